@@ -7,6 +7,8 @@ _INTERRUPTED = 130
 
 def command() -> int:
     """Carry out the command line of this process; returns the exit code."""
+    if sys.platform == "win32":
+        sys.exit("cbtui: Windows lacks the signals and terminals that runs need; use WSL: wsl --install")
     try:
         from cbtui.terminal import interrupts
 

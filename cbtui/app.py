@@ -1,6 +1,7 @@
 """The application: opens the menu and the lessons, and knows what the terminal can show."""
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from time import time
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -8,6 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from textual.app import App, SystemCommand
 from textual.binding import BindingType
 from textual.filter import LineFilter
+from textual.notifications import Notify
 from textual.screen import Screen
 from textual.theme import ThemeProvider
 from textual.types import CSSPathType
@@ -26,6 +28,7 @@ from cbtui.text.harmless_filter import HarmlessFilter
 from lessons.catalogue import find, lessons
 from lessons.lesson import Lesson
 from lessons.progress import Progress
+from lessons.puzzles import puzzles
 
 if TYPE_CHECKING:
     from textual.command import Provider
@@ -36,6 +39,7 @@ if TYPE_CHECKING:
     from cbtui.runs.compared_runs import ComparedRun, ComparisonTerms
     from cbtui.runs.setup.changes import Changes
     from cbtui.runs.setup.shown_program import ShownProgram
+    from lessons.puzzles import Puzzle
     from sim.engine.setup import RealRos, RunSetup
     from sim.recording import Recording
 
@@ -62,10 +66,10 @@ class CbtuiApp(EndingApp):
     """The console.
 
     ``start_lesson`` is the id of a lesson to open at once, ``start_exercise`` of one whose exercise to open,
-    ``start_file`` a program file, its arguments and its clock, ``start_changes`` what is changed about
-    either, ``start_program`` any other program, ``start_recording`` a recording to show, ``start_comparison``
-    two runs to compare. ``theme`` is the name of a colour theme, ``keys`` the keys in force, and
-    ``complaints`` are sentences to begin with.
+    ``start_puzzle`` a puzzle, ``start_file`` a program file, its arguments and its clock, ``start_changes``
+    what is changed about either, ``start_program`` any other program, ``start_recording`` a recording to
+    show, ``start_comparison`` two runs to compare. ``theme`` is the name of a colour theme,
+    ``keys`` the keys in force, and ``complaints`` are sentences to begin with.
     ``open_session`` starts engines in place of the real ones, ``observe`` runs one to its end beside the
     screen.
     """
@@ -86,6 +90,7 @@ class CbtuiApp(EndingApp):
         charset: str = Charset.BRAILLE,
         start_lesson: str | None = None,
         start_exercise: str | None = None,
+        start_puzzle: "Puzzle | None" = None,
         start_file: tuple[Path, Sequence[str], str] | None = None,
         start_changes: "Changes | None" = None,
         start_program: "ShownProgram | None" = None,
@@ -101,6 +106,7 @@ class CbtuiApp(EndingApp):
         self.charset = Charset(charset)
         self._start_lesson = start_lesson
         self._start_exercise = start_exercise
+        self._start_puzzle = start_puzzle
         self._start_file = start_file
         self._start_changes = start_changes
         self._start_program = start_program
@@ -143,6 +149,10 @@ class CbtuiApp(EndingApp):
         if not isinstance(self.screen, SafeCommandPalette):
             self.push_screen(SafeCommandPalette(id="--command-palette"))
 
+    def on_notify(self, event: Notify) -> None:
+        """Show a repeated sentence once: notifications of one identity share a toast."""
+        event.notification.identity = f"{hash(event.notification.message):x}"
+
     def tell_saved(self, sentence: str) -> None:
         """Report what was saved as a screen closed: in a notification, and on the terminal at exit."""
         self.saved.append(sentence)
@@ -161,6 +171,8 @@ class CbtuiApp(EndingApp):
         elif self._start_exercise is not None:
             changes = self._start_changes
             self.open_exercise(find(self._start_exercise), None if changes is None else changes.real)
+        elif self._start_puzzle is not None:
+            self.open_puzzle(self._start_puzzle)
         elif self._start_file is not None:
             path, arguments, clock = self._start_file
             self._run_file(path, arguments, clock, self._start_changes)
@@ -173,11 +185,14 @@ class CbtuiApp(EndingApp):
 
             self.push_screen(ComparisonLoadingScreen(*self._start_comparison, self.charset))
 
-    def open_lesson(self, lesson: Lesson, changes: "Changes | None" = None) -> None:
-        """Run a lesson on screen, in place of another that may be open, as it is or with changes."""
+    def open_lesson(self, lesson: Lesson, changes: "Changes | None" = None, *, tour: bool = False) -> None:
+        """Run a lesson on screen, in place of another that may be open, as it is or with changes.
+
+        With ``tour`` it is shown round first.
+        """
         from cbtui.runs.setup.shown_program import of_lesson
 
-        self._show_program(of_lesson(lesson, lessons()), changes)
+        self._show_program(of_lesson(lesson, lessons()), changes, tour=tour)
         self._remember(RecentKind.LESSON, lesson.id)
 
     def open_exercise(self, lesson: Lesson, real: "RealRos | None" = None) -> None:
@@ -200,6 +215,13 @@ class CbtuiApp(EndingApp):
             return
         self._show_over_menu(screen)
         self.notify(file.sentence, markup=False)
+
+    def open_puzzle(self, puzzle: "Puzzle") -> None:
+        """Let the learner schedule the threads of a puzzle."""
+        from cbtui.runs.setup.shown_program import of_puzzle
+        from cbtui.screens.choosing import ChoosingScreen
+
+        self._show_over_menu(ChoosingScreen(of_puzzle(puzzle), self._open_session, self.charset, puzzle))
 
     def open_file(self, entry: RecentEntry) -> None:
         """Run a program or show a recording, in place of the window that asked for it.
@@ -236,10 +258,12 @@ class CbtuiApp(EndingApp):
         for sentence in self._recents.troubles():
             self.notify(sentence, severity="warning", markup=False)
 
-    def _show_program(self, subject: "ShownProgram", changes: "Changes | None") -> None:
+    def _show_program(
+        self, subject: "ShownProgram", changes: "Changes | None", *, tour: bool = False
+    ) -> None:
         from cbtui.screens.lesson import LessonScreen  # imported late: the menu must appear first
 
-        self._show_over_menu(LessonScreen(subject, self._open_session, self.charset, changes))
+        self._show_over_menu(LessonScreen(subject, self._open_session, self.charset, changes, tour=tour))
 
     def _show_over_menu(self, screen: Screen[Any]) -> None:
         """Show a screen over the menu, in place of a lesson or a question for a file."""
@@ -250,7 +274,7 @@ class CbtuiApp(EndingApp):
 
     def action_help(self) -> None:
         """Show every key."""
-        from cbtui.screens.help import HelpScreen
+        from cbtui.screens.windows.help import HelpScreen
 
         if not isinstance(self.screen, HelpScreen):
             self.push_screen(HelpScreen(self.charset))
@@ -258,6 +282,13 @@ class CbtuiApp(EndingApp):
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:
         """Offer what the palette has beside the registry's actions."""
         yield SystemCommand("Theme", "Choose another colour theme, dark or light", self.action_change_theme)
+        for lesson in lessons():
+            title = f"Open lesson {lesson.number}: {lesson.title}"
+            yield SystemCommand(title, lesson.executor, partial(self.open_lesson, lesson))
+        for puzzle in puzzles():
+            yield SystemCommand(
+                f"Open puzzle: {puzzle.title}", puzzle.task, partial(self.open_puzzle, puzzle)
+            )
         yield SystemCommand("Screenshot", "Save a picture of this screen (SVG)", self.deliver_screenshot)
 
     def get_line_filters(self) -> Sequence[LineFilter]:

@@ -7,12 +7,14 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from cbtui.commands import (
     check,
     compare,
+    completion,
     console,
     doctor,
     eject,
@@ -23,6 +25,7 @@ from cbtui.commands import (
     keys,
     lint_lesson,
     listing,
+    new,
     new_lesson,
     probe,
     prove,
@@ -133,32 +136,39 @@ def _parser() -> argparse.ArgumentParser:
     parser.set_defaults(action=console.open_console, target=None)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
 
-    listing_parser = commands.add_parser("list", help="list the lessons")
-    more_lessons.add_option(listing_parser)
-    listing_parser.set_defaults(action=listing.list_lessons)
+    def command(
+        name: str,
+        add_options: Callable[[argparse.ArgumentParser], None],
+        action: Callable[[argparse.Namespace], int],
+        **told: Any,
+    ) -> CommandParser:
+        own = commands.add_parser(name, **told)
+        add_options(own)
+        own.set_defaults(action=action)
+        return own
 
-    opening = commands.add_parser(
+    command("list", more_lessons.add_option, listing.list_lessons, help="list the lessons")
+    opening = command(
         "open",
+        console.add_open_options,
+        console.open_console,
         help="open a lesson, or a file of your own, in the console",
         usage="%(prog)s [options] LESSON|FILE.py [-- ARGUMENTS of the file]",
     )
-    console.add_open_options(opening)
     more_lessons.add_option(opening)
-    opening.set_defaults(action=console.open_console)
-
-    running = commands.add_parser(
+    command(
         "run",
+        run.add_options,
+        run.run,
         help="run a lesson, or files of your own, without the console",
         usage="%(prog)s [options] LESSON|FILE.py … [-- ARGUMENTS of the files]",
         description="Run a lesson, or node and launch files, headless: the log goes to stderr, a summary to "
         "stdout. Several files run at once, each as a process of its own would.",
     )
-    run.add_options(running)
-    more_lessons.add_option(running)
-    running.set_defaults(action=run.run)
-
-    exploring = commands.add_parser(
+    command(
         "explore",
+        explore.add_options,
+        explore.explore,
         help="look for an order of threads in which a program fails",
         usage="%(prog)s [options] FILE.py|LESSON [-- ARGUMENTS of the file]",
         description="Run a program headless many times, each time in another order of its threads that a "
@@ -166,22 +176,59 @@ def _parser() -> argparse.ArgumentParser:
         "another. Ends with 0 if all went well, with 1 if some failed. Each order has a seed, and run, check "
         "and open show it again with --seed.",
     )
-    explore.add_options(exploring)
-    exploring.set_defaults(action=explore.explore)
-
-    _add_real_ros(commands)
-    _add_exercises(commands)
-
-    replaying = commands.add_parser("replay", help="show a recording in the console")
-    console.add_replay_options(replaying)
-    replaying.set_defaults(action=console.replay)
-
-    informing = commands.add_parser("info", help="tell what is in a recording")
-    info.add_options(informing)
-    informing.set_defaults(action=info.info)
-
-    comparing = commands.add_parser(
+    command(
+        "probe",
+        probe.add_probe_options,
+        probe.probe,
+        help="run a command on real ROS 2 so that attach can watch it",
+        usage="%(prog)s [--keep SECONDS] [--tcp PORT] -- COMMAND …",
+        description="Run a command, such as python3 node.py or ros2 launch …, in which every process that "
+        "imports rclpy can be watched with cbtui attach. The processes need nothing of cbtui's, and go on "
+        "whether they are watched or not.",
+    )
+    command(
+        "robot",
+        robot.add_options,
+        robot.robot,
+        help="the lessons' robot as a real ROS 2 node",
+        description="Drive the lessons' robot on your ROS graph, as your ROS_DOMAIN_ID and discovery say: "
+        "/odom, /scan, /cmd_vel, /reset_world, /motor_power and, where tf2_msgs is installed, /tf. "
+        "Any node on the network can drive it. Ctrl-C ends it.",
+    )
+    command(
+        "attach", probe.add_attach_options, probe.attach, help="watch processes that cbtui probe has started"
+    )
+    command(
+        "prove",
+        prove.add_options,
+        prove.prove,
+        help="look whether a program does the same on the model and on real ROS 2",
+        usage="%(prog)s [options] LESSON|FILE.py … [-- ARGUMENTS of the files]",
+        description=prove.DESCRIPTION,
+    )
+    command("start", start.add_options, start.start, help="begin a lesson's exercise in a file of your own")
+    command(
+        "check",
+        check.add_options,
+        check.check,
+        help="check your file for an exercise",
+        description="Run your file on virtual time, or with --on ros2 on real ROS 2, and look whether it "
+        "does what the exercise asks. Ends with 0 if it does, with 1 if not.",
+    )
+    command(
+        "grade",
+        grade.add_options,
+        grade.grade,
+        help="check the files of many learners",
+        description=grade.DESCRIPTION,
+    )
+    command("reset", reset.add_options, reset.reset, help="forget how far you have come in a lesson")
+    command("replay", console.add_replay_options, console.replay, help="show a recording in the console")
+    command("info", info.add_options, info.info, help="tell what is in a recording")
+    command(
         "compare",
+        compare.add_options,
+        compare.compare,
         help="put two runs side by side",
         usage="%(prog)s [options] A B [-- ARGUMENTS of a file]",
         description="Put the same window of two runs side by side: in the console, one above the other on a "
@@ -189,131 +236,72 @@ def _parser() -> argparse.ArgumentParser:
         "files are run for that, headless on virtual time, or on real ROS 2. A lesson can be compared with "
         "itself, with other numbers of threads, or on the model and on real ROS 2.",
     )
-    compare.add_options(comparing)
-    comparing.set_defaults(action=compare.compare)
-
-    exporting = commands.add_parser(
+    command(
         "export",
+        export.add_options,
+        export.export_command,
         help="take a recording to trace viewers, spreadsheets and paper",
         usage="%(prog)s FILE.mcap --FORMAT OUT …",
     )
-    export.add_options(exporting)
-    exporting.set_defaults(action=export.export_command)
-
-    ejecting = commands.add_parser(
+    command(
         "eject",
+        eject.add_options,
+        eject.eject,
         help="take the lessons' nodes home, as ROS 2 packages",
         description="Write each unit as an ament_python package into a folder, for colcon build and ros2 "
         "launch on a ROS 2 machine. The nodes are the lessons' own, word for word. Nothing is written where "
         "a file that you have changed is in the way.",
     )
-    eject.add_options(ejecting)
-    ejecting.set_defaults(action=eject.eject)
-
-    serving = commands.add_parser(
+    command(
         "serve",
+        serve.add_options,
+        serve.serve,
         help="show the console in a browser",
         usage="%(prog)s [options] [-- what cbtui open gets]",
         description="Show the console in a browser, each visitor one of their own. Without more it opens on "
         "the menu; what stands behind -- is opened as cbtui open would.",
     )
-    serve.add_options(serving)
-    serving.set_defaults(action=serve.serve)
-
-    naming = commands.add_parser("keys", help="print every key, as a configuration to copy from")
-    appearance.add_options(naming)
-    naming.set_defaults(action=keys.print_keys)
-
-    _add_authoring(commands)
-    examining = commands.add_parser(
-        "doctor",
-        help="look whether this machine has what cbtui needs",
-        description="Look at Python, PyBullet, the terminal, folders and files, and run an engine for a "
-        "moment; nothing is changed. Ends with 0 if nothing is wrong, with 1 if something is.",
+    command("new", new.add_options, new.new, help="write a small node of your own to begin with")
+    command(
+        "new-lesson",
+        new_lesson.add_options,
+        new_lesson.new_lesson,
+        help="make a lesson of your own to begin with",
     )
-    doctor.add_options(examining)
-    more_lessons.add_option(examining)
-    examining.set_defaults(action=doctor.examine)
-    commands.add_parser("ros2", help="carry out a ros2 line in the run that is going on", add_help=False)
-    return parser
-
-
-def _add_real_ros(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    probing = commands.add_parser(
-        "probe",
-        help="run a command on real ROS 2 so that attach can watch it",
-        usage="%(prog)s [--keep SECONDS] [--tcp PORT] -- COMMAND …",
-        description="Run a command, such as python3 node.py or ros2 launch …, in which every process that "
-        "imports rclpy can be watched with cbtui attach. The processes need nothing of cbtui's, and go on "
-        "whether they are watched or not.",
-    )
-    probe.add_probe_options(probing)
-    probing.set_defaults(action=probe.probe)
-
-    driving = commands.add_parser(
-        "robot",
-        help="the lessons' robot as a real ROS 2 node",
-        description="Drive the lessons' robot on your ROS graph, as your ROS_DOMAIN_ID and discovery say: "
-        "/odom, /scan, /cmd_vel, /reset_world, /motor_power and, where tf2_msgs is installed, /tf. "
-        "Any node on the network can drive it. Ctrl-C ends it.",
-    )
-    robot.add_options(driving)
-    driving.set_defaults(action=robot.robot)
-
-    attaching = commands.add_parser("attach", help="watch processes that cbtui probe has started")
-    probe.add_attach_options(attaching)
-    attaching.set_defaults(action=probe.attach)
-
-    proving = commands.add_parser(
-        "prove",
-        help="look whether a program does the same on the model and on real ROS 2",
-        usage="%(prog)s [options] LESSON|FILE.py … [-- ARGUMENTS of the files]",
-        description=prove.DESCRIPTION,
-    )
-    prove.add_options(proving)
-    proving.set_defaults(action=prove.prove)
-
-
-def _add_exercises(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    starting = commands.add_parser("start", help="begin a lesson's exercise in a file of your own")
-    start.add_options(starting)
-    starting.set_defaults(action=start.start)
-
-    checking = commands.add_parser(
-        "check",
-        help="check your file for an exercise",
-        description="Run your file on virtual time, or with --on ros2 on real ROS 2, and look whether it "
-        "does what the exercise asks. Ends with 0 if it does, with 1 if not.",
-    )
-    check.add_options(checking)
-    checking.set_defaults(action=check.check)
-
-    grading = commands.add_parser(
-        "grade",
-        help="check the files of many learners",
-        description=grade.DESCRIPTION,
-    )
-    grade.add_options(grading)
-    grading.set_defaults(action=grade.grade)
-
-    resetting = commands.add_parser("reset", help="forget how far you have come in a lesson")
-    reset.add_options(resetting)
-    resetting.set_defaults(action=reset.reset)
-
-
-def _add_authoring(commands: "argparse._SubParsersAction[CommandParser]") -> None:
-    making = commands.add_parser("new-lesson", help="make a lesson of your own to begin with")
-    new_lesson.add_options(making)
-    making.set_defaults(action=new_lesson.new_lesson)
-
-    linting = commands.add_parser(
+    command(
         "lint-lesson",
+        lint_lesson.add_options,
+        lint_lesson.lint_lesson,
         help="prove that a lesson is right",
         description="Run a lesson's node, starter and solution, and look whether all that its files say of "
         "them is so. Ends with 0 if it is.",
     )
-    lint_lesson.add_options(linting)
-    linting.set_defaults(action=lint_lesson.lint_lesson)
+    command(
+        "doctor",
+        doctor.add_options,
+        doctor.examine,
+        help="look whether this machine has what cbtui needs",
+        description="Look at Python, PyBullet, the terminal, folders and files, and run an engine for a "
+        "moment; nothing is changed. Ends with 0 if nothing is wrong, with 1 if something is.",
+    )
+    command(
+        "keys",
+        appearance.add_options,
+        keys.print_keys,
+        help="print every key, as a configuration to copy from",
+    )
+    command(
+        "completion",
+        completion.add_options,
+        partial(completion.completion, _parser),
+        help="print what makes a shell complete cbtui's words",
+        description="Print a script for a shell that completes commands, options, lessons and files: "
+        'eval "$(cbtui completion bash)" in ~/.bashrc, the like in ~/.zshrc; cbtui completion fish | source.',
+    )
+    manual = commands.add_parser("man", help="print the manual page: cbtui man | man -l -")
+    manual.set_defaults(action=partial(completion.man, _parser))
+    commands.add_parser("ros2", help="carry out a ros2 line in the run that is going on", add_help=False)
+    return parser
 
 
 class _VersionAction(argparse.Action):

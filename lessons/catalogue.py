@@ -47,6 +47,12 @@ def find(lesson_id: str) -> Lesson:
     )
 
 
+def lesson_on(rule: str) -> Lesson | None:
+    """Return the lesson whose node shows the problem of a rule, and the fewest others; None if none does."""
+    shown = [lesson for lesson in lessons() if rule in lesson.diagnoses.node]
+    return min(shown, key=lambda lesson: len(lesson.diagnoses.node), default=None)
+
+
 def is_built_in(lesson: Lesson) -> bool:
     """Tell whether a lesson is one of the package's own; others run nothing before somebody opens them."""
     return lesson.folder.is_relative_to(ROOT)

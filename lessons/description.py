@@ -7,6 +7,8 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta, Struct
 
+from sim.profiles import Profile
+
 Text = Annotated[str, Meta(min_length=1)]
 LessonId = Annotated[str, Meta(pattern=r"^[a-z0-9]+(-[a-z0-9]+)*$")]
 Number = Annotated[int, Meta(ge=1)]
@@ -14,6 +16,7 @@ Threads = Annotated[int, Meta(ge=1, le=64)]
 Seconds = Annotated[float, Meta(gt=0, le=3600)]
 Moment = Annotated[float, Meta(ge=0)]
 PythonFile = Annotated[str, Meta(pattern=r"^\w+\.py$")]
+NodeFile = Annotated[str, Meta(pattern=r"^(\.\./[a-z0-9]+(-[a-z0-9]+)*/)?\w+\.py$")]
 FunctionName = Annotated[str, Meta(pattern=r"^[a-z_]\w*$")]
 RuleId = Annotated[str, Meta(pattern=r"^[a-z]+(-[a-z]+)*$")]
 ServiceName = Annotated[str, Meta(pattern=r"^(/[A-Za-z_]\w*)+$")]
@@ -23,12 +26,14 @@ ServiceType = Annotated[str, Meta(pattern=r"^[a-z]\w*/srv/[A-Z]\w*$")]
 class Setup(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Which node a lesson runs, and how it is started."""
 
-    node: PythonFile
-    """File name of the node, in the lesson's folder."""
+    node: NodeFile
+    """File name of the node, in the lesson's folder, or as ``../two-threads/node.py`` in another lesson's."""
     arguments: tuple[str, ...] = ()
     """Command line of the node, without the program's name."""
     threads_argument: Text | None = None
     """The argument that carries the number of threads; None when the node fixes its executor itself."""
+    distro: str = ""
+    """The release of rclpy that it is about, as `--distro` takes it; empty for the usual one."""
     clock: Literal["virtual", "real"] = "virtual"
     """Which time the node runs on. On virtual time computing takes none; what is about that needs the real
     clock, with checks and answers that come out alike on a machine that is busy otherwise."""
@@ -36,6 +41,8 @@ class Setup(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     def __post_init__(self) -> None:
         if self.arguments and self.arguments[-1] == self.threads_argument:
             raise ValueError(f"{self.threads_argument} stands last in arguments and has no number after it")
+        if self.distro:
+            Profile.named(self.distro)
 
 
 class Setting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -66,6 +73,29 @@ class Try(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
     key: Text
     text: Text
+
+
+class Actor(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+    """A figure of a lesson's scene, which moves as a callback runs."""
+
+    figure: Literal[
+        "antenna",
+        "bell",
+        "belt",
+        "camera",
+        "clamp",
+        "crane",
+        "gripper",
+        "hand",
+        "heart",
+        "lamp",
+        "lorry",
+        "oven",
+        "scales",
+        "watchman",
+    ]
+    follows: Text
+    """The callback by its name, or its topic or service."""
 
 
 class Prediction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -151,6 +181,8 @@ class Description(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     """What to do while the lesson runs, so that there is something to see."""
     tries: tuple[Try, ...] = msgspec.field(name="try", default=())
     settings: tuple[Setting, ...] = msgspec.field(name="setting", default=())
+    scene: Annotated[tuple[Actor, ...], Meta(max_length=4)] = ()
+    """What is shown in place of a robot that would only stand still."""
     predictions: Annotated[tuple[Prediction, ...], Meta(max_length=2)] = msgspec.field(
         name="prediction", default=()
     )

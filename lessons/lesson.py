@@ -1,5 +1,6 @@
 """A lesson: the typed description that a `lesson.toml` gives, and the files beside it."""
 
+import os
 import re
 from collections.abc import Iterator
 from pathlib import Path
@@ -33,7 +34,7 @@ class Lesson(Description, frozen=True, kw_only=True, forbid_unknown_fields=True)
     @property
     def node_path(self) -> Path:
         """The node's source file."""
-        return self.folder / self.setup.node
+        return Path(os.path.normpath(self.folder / self.setup.node))
 
     @property
     def guide(self) -> str:

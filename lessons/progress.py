@@ -21,6 +21,8 @@ class LessonProgress(Struct, frozen=True, kw_only=True):
     """What was answered to its predictions, in their order; as many as were answered."""
     seen: bool = False
     """A run was watched to where its predictions can be told from."""
+    explained: bool = False
+    """What the run showed, and why, was read."""
     hints: int = 0
     """How many hints were taken."""
     solution: bool = False
@@ -72,6 +74,10 @@ class Progress:
     def see(self, lesson: str) -> None:
         """Note that a run was watched."""
         self._change(lesson, lambda known: structs.replace(known, seen=True))
+
+    def explain(self, lesson: str) -> None:
+        """Note that what a run showed, and why, was read."""
+        self._change(lesson, lambda known: structs.replace(known, seen=True, explained=True))
 
     def take_hint(self, lesson: str, number: int) -> None:
         """Note that the hint with that number, from 1, was taken."""

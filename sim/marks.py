@@ -4,6 +4,7 @@ A mark is a decorator. It changes nothing about the function, so that it costs n
 """
 
 from collections.abc import Callable
+from traceback import walk_tb
 from types import CodeType, FrameType
 from typing import Any, TypeVar
 
@@ -23,6 +24,11 @@ class FunctionMark:
 
     def __contains__(self, frame: FrameType) -> bool:
         return frame.f_code in self._codes
+
+    def raised(self, error: BaseException) -> bool:
+        """Whether one of them raised an exception, and nothing that it called."""
+        frames = [frame for frame, _ in walk_tb(error.__traceback__)]
+        return frames != [] and frames[-1] in self
 
 
 calls_the_program = FunctionMark()

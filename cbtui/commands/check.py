@@ -11,6 +11,7 @@ from cbtui.text.output import complain, say
 
 if TYPE_CHECKING:
     from lessons.lesson import Lesson
+    from sim.trace.events import AnyEvent
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -44,9 +45,20 @@ def check(options: argparse.Namespace) -> int:
     file = _file(lesson, options.file)
     from cbtui.runs.judged.check_text import checked_text
     from cbtui.runs.judged.checking import check as run_and_judge
+    from cbtui.terminal.progress_line import ProgressLine
     from lessons.judge import Judge
+    from sim.units import SECOND
 
-    checked = run_and_judge(lesson, Judge(lesson), file, options.limit, seed=options.seed, real=real)
+    with ProgressLine() as line:
+
+        def tell(batch: "list[AnyEvent]") -> None:
+            at = max((event.t for event in batch), default=0)
+            line.show(f"{file.name} runs: {at / SECOND:.1f} s of {lesson.run.seconds:g} s")
+
+        tell([])
+        checked = run_and_judge(
+            lesson, Judge(lesson), file, options.limit, seed=options.seed, real=real, take=tell
+        )
     say(checked_text(checked))
     if checked.run.trouble is not None:
         complain(checked.run.trouble)

@@ -63,14 +63,12 @@ def compare(options: argparse.Namespace) -> int:
         for name, changed in ((options.A, _changes(options, "a")), (options.B, _changes(options, "b")))
     )
     terms = _terms(options)
-    if options.text or not (sys.stdin.isatty() and sys.stdout.isatty()):
+    look = appearance.appearance(options)
+    if options.text or look.screen_reader or not (sys.stdin.isatty() and sys.stdout.isatty()):
         from cbtui.runs.compared_runs import compare_runs
 
-        return compare_runs(first, second, terms)
-    look = appearance.appearance(options)
-    app = appearance.console_of(look, start_comparison=(first, second, terms))
-    app.run()
-    return app.return_code or 0
+        return compare_runs(first, second, terms, in_lines=look.screen_reader and not options.text)
+    return appearance.run_console(look, start_comparison=(first, second, terms))
 
 
 def _check(options: argparse.Namespace) -> None:

@@ -1,19 +1,20 @@
 """``cbtui``, ``cbtui open`` and ``cbtui replay``: the commands that open the console."""
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 
 from cbtui.commands.check import exercise_of
 from cbtui.commands.options import changes
-from cbtui.commands.options.appearance import add_options, appearance, console_of
+from cbtui.commands.options.appearance import add_options, appearance, run_console
 from cbtui.commands.options.seeds import add_seed, check_seed
-from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, need_terminal, refuse
+from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, need_terminal, puzzle_of, refuse
 
 
 def add_open_options(parser: argparse.ArgumentParser) -> None:
     """Give ``cbtui open`` its arguments."""
-    parser.add_argument("target", metavar="LESSON|FILE.py", help="a lesson's id, see cbtui list, or a file")
+    parser.add_argument(
+        "target", metavar="LESSON|FILE.py", help="a lesson's or puzzle's id, see cbtui list, or a file"
+    )
     add_options(parser)
     changes.add_options(parser)
     add_seed(parser)
@@ -40,34 +41,40 @@ def open_console(options: argparse.Namespace) -> int:
     target: str | None = options.target
     if target is not None and options.exercise:
         return _open_exercise(options)
-    start_file, lesson = None, None
+    start_file, lesson, puzzle = None, None, None
     if target is not None and is_file_name(target):
         check_seed(options.seed, options.clock)
         clock = options.clock or ("real" if options.seed is None else "virtual")
         start_file = (file_of(target), options.arguments, clock)
+    elif target is not None and (puzzle := puzzle_of(target)) is not None:
+        if changes.seeded_changes_of(options).words:
+            refuse("a puzzle is run as it is: leave out the options on threads and such")
     elif target is not None:
         opened = lesson_of(target)
         check_seed(options.seed, opened.setup.clock)
         lesson = opened.id
     look = appearance(options)
-    need_terminal("cbtui run")
-    _read_lessons()
     changed = None if target is None else changes.seeded_changes_of(options)
-    app = console_of(look, start_lesson=lesson, start_file=start_file, start_changes=changed)
-    app.run()
-    return app.return_code or 0
+    if not look.screen_reader:
+        need_terminal("cbtui run")
+    _read_lessons()
+    return run_console(
+        look, start_lesson=lesson, start_puzzle=puzzle, start_file=start_file, start_changes=changed
+    )
 
 
 def _open_exercise(options: argparse.Namespace) -> int:
+    from dataclasses import replace
+
     lesson = exercise_of(options.target)
     changed = changes.seeded_changes_of(options)
     if replace(changed, real=None).words:
         refuse("an exercise is run as your file says: change that, and leave the options on threads and such")
     look = appearance(options)
+    if look.screen_reader:
+        refuse(f"this is shown as a picture only; cbtui check {lesson.id} tells it in lines")
     need_terminal("cbtui check")
-    app = console_of(look, start_exercise=lesson.id, start_changes=changed)
-    app.run()
-    return app.return_code or 0
+    return run_console(look, start_exercise=lesson.id, start_changes=changed)
 
 
 def _read_lessons() -> None:
@@ -86,7 +93,6 @@ def replay(options: argparse.Namespace) -> int:
     except (RecordingError, ValueError) as error:
         refuse(str(error))
     look = appearance(options)
-    need_terminal("cbtui info")
-    app = console_of(look, start_recording=recording)
-    app.run()
-    return app.return_code or 0
+    if not look.screen_reader:
+        need_terminal("cbtui info")
+    return run_console(look, start_recording=recording)

@@ -5,7 +5,7 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from cbtui.commands.options import appearance
+from cbtui.commands.options import appearance, more_lessons
 from cbtui.text.output import say
 from sim.plural import counted
 
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     appearance.add_options(parser)
+    more_lessons.add_option(parser)
 
 
 def examine(options: argparse.Namespace) -> int:

@@ -2,9 +2,11 @@
 
 import argparse
 import shlex
-import sys
 from contextlib import closing
+from pathlib import Path
 from typing import TYPE_CHECKING
+
+from msgspec import structs
 
 from cbtui.commands.check import add_limit, exercise_of
 from cbtui.commands.options import changes, inputs, more_lessons, values
@@ -13,32 +15,67 @@ from cbtui.terminal.interrupts import INTERRUPTED
 from cbtui.text.output import complain, say
 
 if TYPE_CHECKING:
-    from cbtui.runs.judged.exploring import Exploration, ScheduleResult
+    from collections.abc import Generator, Mapping
+
+    from cbtui.runs.judged.exploration_text import Shrunk
+    from cbtui.runs.judged.exploring import Exploration, ScheduleResult, SeedT
+    from cbtui.runs.judged.shards import Shard
     from lessons.lesson import Lesson
+    from sim.clock.schedule import Seed
 
 DEFAULT_SECONDS = 10.0
+SCHEDULES, MOST_SCHEDULES = 100, 10_000
+SHRINKING = 50
+"""At least how many schedules are tried to find a simple one that fails; else as many as were run."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    parser.add_argument("target", metavar="FILE.py|LESSON", help="a file, or a lesson's id, see cbtui list")
     parser.add_argument(
-        "--schedules", metavar="N", type=values.count, default=100, help="how many orders (%(default)s)"
+        "target", metavar="FILE.py|LESSON", nargs="?", help="a file, or a lesson's id, see cbtui list"
+    )
+    parser.add_argument(
+        "--schedules",
+        metavar="N",
+        type=values.count,
+        help=f"how many orders ({SCHEDULES}; with --preemptions at most {MOST_SCHEDULES})",
+    )
+    parser.add_argument(
+        "--preemptions",
+        metavar="K",
+        type=values.whole_number,
+        help="in place of seeds, run every order that stops a thread which could go on at most K times",
+    )
+    parser.add_argument(
+        "--strategy",
+        choices=("pos", "pct", "random"),
+        default="pos",
+        help="how seeds choose: by priorities of steps, by priorities of threads, or at random (%(default)s)",
     )
     parser.add_argument(
         "--seed", metavar="S", type=values.seed, default=1, help="the seed of the first order (%(default)s)"
     )
-    parser.add_argument(
-        "--for",
-        dest="seconds",
-        metavar="SECONDS",
-        type=values.duration,
-        help=f"how long each run lasts in its own time ({DEFAULT_SECONDS:g}; a lesson: as it says)",
+    inputs.add_length(
+        parser, f"how long each run lasts in its own time ({DEFAULT_SECONDS:g}; a lesson: as it says)"
     )
     inputs.add_options(parser)
     changes.add_options(parser)
     parser.add_argument("--check", metavar="LESSON", help="judge each run of the file by a lesson's checks")
     add_limit(parser, 60)
+    parser.add_argument(
+        "--shard",
+        metavar="I/N",
+        type=values.shard,
+        default=(1, 1),
+        help="run part I of N of the schedules, for machines that share them; see --save and --merge",
+    )
+    parser.add_argument("--save", metavar="FILE.json", help="write the results to a file, for --merge")
+    parser.add_argument(
+        "--merge",
+        metavar="FILE.json",
+        nargs="+",
+        help="run nothing, and tell the results of such files together",
+    )
     more_lessons.add_option(parser)
 
 
@@ -47,23 +84,128 @@ def explore(options: argparse.Namespace) -> int:
 
     Ctrl-C ends it early with 130; the results so far are printed all the same.
     """
+    if options.merge is not None:
+        return _merge(options)
+    from cbtui.runs.judged.shards import BadShardError, Shard
+
+    if options.target is None:
+        refuse("explore needs a FILE.py or a LESSON; cbtui list lists the lessons")
     _check(options)
     exploration, replays = _of_file(options) if is_file_name(options.target) else _of_lesson(options)
-    from cbtui.runs.judged.exploration_text import exploration_text
+    part, parts = options.shard
+    shard = Shard(
+        program=exploration.name,
+        replays=tuple(replays),
+        first=options.seed,
+        schedules=options.schedules or (SCHEDULES if options.preemptions is None else MOST_SCHEDULES),
+        strategy=options.strategy,
+        results={},
+        preemptions=options.preemptions,
+        parts=1 if options.preemptions is None else parts,
+    )
+    run = _sample if options.preemptions is None else _search
+    shard, interrupted = run(shard, exploration, part, parts)
+    if shard.results:
+        sampled = options.preemptions is None and parts == 1 and not interrupted
+        _tell(shard, f"part {part} of {parts}: " if parts > 1 else "", exploration if sampled else None)
+    if options.save is not None:
+        try:
+            shard.write_to(Path(options.save))
+        except BadShardError as error:
+            complain(str(error))
+            return 2
+    return INTERRUPTED if interrupted else _exit_code(shard)
 
-    seeds = range(options.seed, options.seed + options.schedules)
-    found: dict[int, ScheduleResult] = {}
-    interrupted = False
+
+def _sample(shard: "Shard", exploration: "Exploration", part: int, parts: int) -> "tuple[Shard, bool]":
+    """Run one part of the seeds; returns the results, and whether Ctrl-C came first."""
+    numbers = range(shard.first, shard.first + shard.schedules)[part - 1 :: parts]
+    usual = shard.strategy == "pos"
+    seeds: list[Seed] = [number if usual else f"{shard.strategy}:{number}" for number in numbers]
+    found: dict[Seed, ScheduleResult] = {}
+    interrupted = _interrupted(exploration.results(seeds), found, f"of {len(seeds)} ")
+    return structs.replace(shard, results={str(seed): found[seed] for seed in found}), interrupted
+
+
+def _search(shard: "Shard", exploration: "Exploration", part: int, parts: int) -> "tuple[Shard, bool]":
+    """Run all schedules within a bound, or one part of them; returns as ``_sample`` does."""
+    from cbtui.runs.judged.bounded_search import BoundedSearch
+
+    assert shard.preemptions is not None
+    search = BoundedSearch(shard.preemptions, shard.schedules, part, parts)
+    found: dict[str, ScheduleResult] = {}
+    interrupted = _interrupted(exploration.search(search), found)
+    done = (part,) if search.is_complete and not interrupted else ()
+    preempted = {seed: search.preempted(seed) for seed in found}
+    return structs.replace(shard, results=found, done=done, preempted=preempted), interrupted
+
+
+def _tell(shard: "Shard", whose: str = "", exploration: "Exploration | None" = None) -> None:
+    """Print what came of the schedules; with an exploration, also the simplest that fails so."""
+    from cbtui.runs.judged.exploration_text import exploration_text, proof_text
+
+    found, proof = shard.ranked(), ""
+    if shard.preemptions is not None:
+        is_complete = bool(shard.done) if whose else not shard.missing
+        proof = whose + proof_text(found, shard.preemptions, is_complete=is_complete)
+    shrunk = None if exploration is None else _shrunk(exploration, found, shard.schedules)
+    say(exploration_text(shard.program, found, shard.replays, proof, shrunk))
+
+
+def _shrunk(
+    exploration: "Exploration", found: "Mapping[str, ScheduleResult]", schedules: int
+) -> "Shrunk | None":
+    """Look for a simple schedule that fails as one of these did; None if none did, or what fails varies."""
+    from cbtui.runs.judged.exploration_text import Shrunk
+    from cbtui.runs.judged.shrinking import Shrinking
+
+    failures = {failure for result in found.values() for failure in result.failures}
+    if not failures or not all(result.repeatable for result in found.values()):
+        return None
+    shrinking = Shrinking(failures, max(schedules, SHRINKING))
+    tried: dict[str, ScheduleResult] = {}
+    _interrupted(exploration.search(shrinking), tried, "further ")
+    return Shrunk(len(tried), shrinking.best, tried.get(shrinking.best))
+
+
+def _interrupted(
+    results: "Generator[tuple[SeedT, ScheduleResult]]", found: "dict[SeedT, ScheduleResult]", goal: str = ""
+) -> bool:
+    """Put the result of each seed into ``found``; returns whether Ctrl-C came first."""
+    from cbtui.terminal.progress_line import ProgressLine
+
     try:
-        _explore(exploration, seeds, found)
+        with ProgressLine() as line, closing(results):
+            for seed, result in results:
+                found[seed] = result
+                failed = sum(not each.well for each in found.values())
+                line.show(f"{len(found)} {goal}schedules, {failed} failed")
     except KeyboardInterrupt:
-        interrupted = True
-        complain(f"interrupted: {len(found)} of {len(seeds)} schedules were tried")
-    if found:
-        say(exploration_text(exploration.name, dict(sorted(found.items())), replays))
-    if interrupted:
-        return INTERRUPTED
-    return 0 if all(result.well for result in found.values()) else 1
+        complain(f"interrupted: {len(found)} {goal}schedules were tried")
+        return True
+    return False
+
+
+def _exit_code(shard: "Shard") -> int:
+    return 0 if all(result.well for result in shard.results.values()) else 1
+
+
+def _merge(options: argparse.Namespace) -> int:
+    """Tell what files of results hold together; returns the exit code as ``explore`` does."""
+    if options.target is not None or options.save is not None:
+        refuse("--merge runs nothing: leave out the target and --save")
+    from cbtui.runs.judged.shards import BadShardError, merged
+
+    try:
+        whole = merged([Path(name) for name in options.merge])
+    except BadShardError as error:
+        refuse(str(error))
+    if whole.results:
+        _tell(whole)
+    if whole.missing:
+        complain(f"{whole.missing} in none of these files")
+        return 1
+    return _exit_code(whole)
 
 
 def _check(options: argparse.Namespace) -> None:
@@ -90,6 +232,8 @@ def _of_files_only(options: argparse.Namespace) -> dict[str, object]:
         "--group": options.groups,
         "--period": options.periods,
         "--sensor-rate": options.sensor_rate,
+        "--physics": options.physics,
+        "--distro": options.distro,
     }
 
 
@@ -148,19 +292,3 @@ def _judged(lesson: "Lesson", options: argparse.Namespace, file: str | None) -> 
     path = None if file is None else file_of(file)
     name = lesson.node_path.name if path is None else path.name
     return Exploration(setup_to_judge(lesson, path), name, judge, options.limit)
-
-
-def _explore(exploration: "Exploration", seeds: range, found: "dict[int, ScheduleResult]") -> None:
-    """Put the result of each seed into ``found``; progress is shown if standard error is a terminal."""
-    tells = sys.stderr.isatty()
-    try:
-        with closing(exploration.results(seeds)) as results:
-            for seed, result in results:
-                found[seed] = result
-                if tells:
-                    failed = sum(not each.well for each in found.values())
-                    sys.stderr.write(f"\r{len(found)} of {len(seeds)} schedules, {failed} failed ")
-                    sys.stderr.flush()
-    finally:
-        if tells:
-            sys.stderr.write("\r\033[K")

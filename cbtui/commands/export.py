@@ -5,6 +5,7 @@ from pathlib import Path
 
 from cbtui.commands.options.targets import same_file
 from cbtui.commands.options.values import moment, whole_number
+from cbtui.commands.run import add_chain
 from cbtui.runs.recorded.exporting import FORMATS, WIDTH, ExportError, ExportRequest, export
 from cbtui.text.output import complain
 
@@ -16,6 +17,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(f"--{name}", metavar=metavar, help=about)
     parser.add_argument("--from", dest="start", metavar="S", type=moment, help="where the picture begins (0)")
     parser.add_argument("--to", dest="end", metavar="S", type=moment, help="where it ends (the run's end)")
+    add_chain(parser)
     parser.add_argument("--width", metavar="PIXELS", type=whole_number, help=f"how wide it is ({WIDTH})")
 
 
@@ -53,13 +55,17 @@ def _request(options: argparse.Namespace, source: Path) -> ExportRequest:
     placed = [options.start, options.end, options.width]
     if "svg" not in outputs and any(value is not None for value in placed):
         raise ExportError("--from, --to and --width are for the picture; add --svg OUT.svg")
+    if options.chains and not {"markdown", "svg"} & outputs.keys():
+        raise ExportError(
+            "--chain is for report and picture; add --markdown OUT.md or --svg OUT.svg, or use cbtui info"
+        )
     start = 0.0 if options.start is None else options.start
     if options.end is not None and options.end <= start:
         raise ExportError(f"a picture from {start:g} to {options.end:g} s is empty; give --to a later time")
     width = WIDTH if options.width is None else options.width
     if not NARROWEST <= width <= WIDEST:
         raise ExportError(f"a picture cannot be {width} pixels wide; give {NARROWEST} to {WIDEST}")
-    return ExportRequest(outputs, start, options.end, width)
+    return ExportRequest(outputs, start, options.end, width, chains=options.chains)
 
 
 def _check_paths(outputs: dict[str, Path], source: Path) -> None:

@@ -45,6 +45,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         const=_STANDARD_OUTPUT,
         help="write the table as CSV, row by row, to a file or to standard output",
     )
+    parser.add_argument("--junit", metavar="OUT.xml", help="write the results as JUnit XML, for a CI server")
     parser.add_argument(
         "--resume",
         action="store_true",
@@ -60,19 +61,21 @@ def grade(options: argparse.Namespace) -> int:
     real = changes.real_ros_of(options)
     papers = _papers(options)
     path = None if options.csv in {None, _STANDARD_OUTPUT} else Path(options.csv)
-    if path is not None:
-        _check_table(path, papers)
-    elif options.resume:
+    junit = None if options.junit is None else Path(options.junit)
+    for option, output in (("--junit", junit), ("--csv", path)):
+        _check_output(option, output, papers)
+    if options.resume and path is None:
         refuse("--resume goes on with a table; name it with --csv OUT.csv")
     from cbtui.grading.confinement import Confinement
     from cbtui.grading.grading import Grader, PackagesChangedError, line
     from cbtui.grading.mark_sheet import MarkSheet, SheetFile, SheetStream, UnwritableSheetError
+    from cbtui.grading.results import junit_xml, missed_text
 
     handed_in = Grader(papers, real)
     sheet = MarkSheet(handed_in.most_checks)
     if options.resume and path is not None:
         _take_earlier(sheet, path, handed_in)
-    hidden = [Path(options.folder), *_hidden(papers), *([] if path is None else [path])]
+    hidden = [Path(options.folder), *_hidden(papers), *filter(None, (path, junit))]
     confinement = Confinement.best(hidden, real)
     if confinement.missing:
         complain(
@@ -101,9 +104,12 @@ def grade(options: argparse.Namespace) -> int:
     finally:
         with suppress(UnwritableSheetError):
             out.end()
+    if options.csv != _STANDARD_OUTPUT:
+        say(missed_text(sheet.rows, handed_in.asked))
+    written = junit is None or _write(junit, junit_xml(sheet.rows, handed_in.asked))
     if any(row["suspicious"] for row in sheet.rows):
         return SUSPICIOUS
-    return 0 if all(row["passed"] == row["total"] != "0" for row in sheet.rows) else 1
+    return 0 if written and all(row["passed"] == row["total"] != "0" for row in sheet.rows) else 1
 
 
 def _nothing(_text: str) -> None:
@@ -131,11 +137,22 @@ def _hidden(papers: "list[HandIn]") -> "list[Path]":
     return [ROOT, *sorted(folders), state_folder(), config_folder()]
 
 
-def _check_table(path: Path, papers: "list[HandIn]") -> None:
-    """Refuse a table that cannot be written before any file is run."""
+def _write(path: Path, text: str) -> bool:
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        complain(f"{path} cannot be written: {error.strerror}")
+        return False
+    return True
+
+
+def _check_output(option: str, path: Path | None, papers: "list[HandIn]") -> None:
+    """Refuse a file that cannot be written before any program is run."""
+    if path is None:
+        return
     for paper in papers:
         if paper.file is not None and same_file(path, paper.file):
-            refuse(f"--csv would overwrite {paper.file}; give it a file of its own")
+            refuse(f"{option} would overwrite {paper.file}; give it a file of its own")
     try:
         place = path if path.exists() else path.parent
         if path.is_dir():

@@ -38,7 +38,8 @@ def _lines(path: str, now: appearance.Appearance) -> Iterator[str]:
     from cbtui.keys.actions import ACTIONS
 
     yield _HEAD.format(path=path)
-    yield f"[display]\ntheme = {json.dumps(now.theme)}\ncharset = {json.dumps(now.configured_charset)}\n"
+    yield f"[display]\ntheme = {json.dumps(now.theme)}\ncharset = {json.dumps(now.configured_charset)}"
+    yield f'screen_reader = "{"on" if now.screen_reader else "off"}"\n'
     yield _KEYS
     actions = now.keys.of(ACTIONS)
     entries = {action: f"{_entry(action)} " for action in actions}

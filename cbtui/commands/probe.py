@@ -2,17 +2,13 @@
 
 import argparse
 import os
-import secrets
-import shutil
-import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands.options.appearance import add_options, appearance, console_of
+from cbtui.commands.options.appearance import add_options, appearance, run_console
 from cbtui.commands.options.targets import need_terminal, refuse
 from cbtui.commands.options.values import duration, port, process_or_address
 from cbtui.text.output import complain, say
-from sim.engine.setup import RealRos
 
 if TYPE_CHECKING:
     from sim.real.wire import Hello
@@ -55,6 +51,9 @@ def probe(options: argparse.Namespace) -> int:
     command = options.arguments
     if not command:
         refuse("probe needs a command: cbtui probe -- python3 node.py, or cbtui probe -- ros2 launch …")
+    import secrets
+    import shutil
+
     program = shutil.which(command[0])
     if program is None:
         refuse(f"there is no program {command[0]}")
@@ -69,8 +68,11 @@ def probe(options: argparse.Namespace) -> int:
     complain("watch this with: cbtui attach")
     if options.keep is None:
         os.execve(program, command, watched_environment(program, folder, port, token))
+    import tempfile
+
     from cbtui.runs.headless.keeping import run_and_keep
     from cbtui.runs.setup.shown_program import watched_setup
+    from sim.engine.setup import RealRos
 
     with tempfile.TemporaryDirectory(prefix="command-", dir=folder) as own:
         setup = watched_setup(Path(command[-1]).stem, RealRos(watched=own))
@@ -81,6 +83,7 @@ def probe(options: argparse.Namespace) -> int:
 def attach(options: argparse.Namespace) -> int:
     """List what can be watched, or open the console on it; returns the exit code."""
     from cbtui.runs.setup.shown_program import of_processes
+    from sim.engine.setup import RealRos
     from sim.real.probe_link import processes_in, say_token
     from sim.real.watched import label_of
 
@@ -106,9 +109,7 @@ def attach(options: argparse.Namespace) -> int:
     real = RealRos(watched=watched, processes=numbers, addresses=addresses)
     look = appearance(options)
     need_terminal("cbtui attach --list")
-    app = console_of(look, start_program=of_processes(real, found))
-    app.run()
-    return app.return_code or 0
+    return run_console(look, start_program=of_processes(real, found))
 
 
 def _process_at(address: tuple[str, int]) -> "Hello":

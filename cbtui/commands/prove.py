@@ -1,19 +1,17 @@
 """``cbtui prove``: a program on the model and on real ROS 2, and whether it does the same on both."""
 
 import argparse
-import sys
-from dataclasses import replace
 from textwrap import fill
 from threading import Event
 from typing import TYPE_CHECKING
 
-from cbtui.commands.options import changes, inputs, more_lessons, values
+from cbtui.commands.options import changes, inputs, more_lessons
 from cbtui.commands.options.targets import refuse, targets_of
 from cbtui.text.output import say
 from sim.durations import timestamp
 
 if TYPE_CHECKING:
-    from cbtui.runs.compared_runs import RunPair, RunProgress
+    from cbtui.runs.compared_runs import RunPair
     from cbtui.runs.judged.proving import Difference
     from cbtui.runs.setup.lesson_setup import RunRequest
 
@@ -32,12 +30,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "targets", metavar="LESSON|FILE.py", nargs="+", help="a lesson's id, see cbtui list, or node files"
     )
-    parser.add_argument(
-        "--for",
-        dest="seconds",
-        metavar="SECONDS",
-        type=values.duration,
-        help=f"how long each run lasts ({DEFAULT_SECONDS:g}; a lesson: as it says, with the calls it says)",
+    inputs.add_length(
+        parser, f"how long each run lasts ({DEFAULT_SECONDS:g}; a lesson: as it says, with the calls it says)"
     )
     changes.add_options(parser)
     changes.add_python(parser, "the Python that has ROS 2")
@@ -48,22 +42,26 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def prove(options: argparse.Namespace) -> int:
     """Compare a program's runs on both; returns the exit code: 0 they are the same, 1 they differ."""
+    from dataclasses import replace
+
     from cbtui.runs.compared_runs import CannotCompareError, ComparedRun, ComparisonTerms, load_runs
     from cbtui.runs.judged.proving import GROUNDS, differences
+    from cbtui.terminal.progress_line import ProgressLine
 
     request = _request(options)
     assert request.seconds is not None
     inputs.check(options, request.seconds)
+    ground = changes.real_ros(options.python)
+    release = request.changes.distro or changes.release_of(ground.python)
+    request = replace(request, changes=replace(request.changes, distro=release))
     terms = ComparisonTerms(end=request.seconds, calls=tuple(request.calls), lines=tuple(request.lines))
-    real = replace(request, changes=replace(request.changes, real=changes.real_ros(options.python)))
+    real = replace(request, changes=replace(request.changes, real=ground, distro=None))
     model, rclpy = (ComparedRun(*each) for each in zip(GROUNDS, (request, real), strict=True))
     try:
-        pair = load_runs(model, rclpy, terms, _tell if sys.stderr.isatty() else _nothing, Event())
+        with ProgressLine() as line:
+            pair = load_runs(model, rclpy, terms, lambda at: line.show(at.text), Event())
     except CannotCompareError as error:
         refuse(str(error))
-    finally:
-        if sys.stderr.isatty():
-            sys.stderr.write("\r\033[K")
     found = differences(pair.first.timeline, pair.second.timeline, pair.window)
     say(_told(pair, found))
     return 1 if found else 0
@@ -71,6 +69,8 @@ def prove(options: argparse.Namespace) -> int:
 
 def _request(options: argparse.Namespace) -> "RunRequest":
     """The run on the model."""
+    from dataclasses import replace
+
     from cbtui.runs.setup.lesson_setup import RunRequest, request_to_judge
 
     program = targets_of(options.targets)
@@ -116,12 +116,3 @@ def _told(pair: "RunPair", found: "list[Difference]") -> str:
     if len(found) > _MOST:
         lines.append(f"  and {len(found) - _MOST} more")
     return "".join(f"{line}\n" for line in lines)
-
-
-def _tell(progress: "RunProgress") -> None:
-    sys.stderr.write(f"\r\033[K{progress.name}: {progress.at / 1e9:.0f} s ")
-    sys.stderr.flush()
-
-
-def _nothing(_progress: "RunProgress") -> None:
-    """Tell no progress where nobody reads it as it comes."""

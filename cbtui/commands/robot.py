@@ -9,9 +9,9 @@ import time
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from cbtui.commands.options import values
+from cbtui.commands.options import changes, values
 from cbtui.commands.options.appearance import add_options as add_appearance
-from cbtui.commands.options.appearance import appearance, console_of
+from cbtui.commands.options.appearance import appearance, run_console
 from cbtui.commands.options.targets import need_terminal, refuse
 from cbtui.commands.probe import probes_folder
 from cbtui.text.installing import install_command
@@ -32,6 +32,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--map", action="store_true", help="open the console on it, and on what cbtui probe has started"
     )
+    changes.add_physics(parser)
     add_appearance(parser)
 
 
@@ -42,16 +43,14 @@ def robot(options: argparse.Namespace) -> int:
             f"the robot needs a rclpy in cbtui's own Python: {install_command('cbtui[ros]')}, "
             "or source a ROS 2 for this Python"
         )
-    if find_spec("pybullet") is None:
-        refuse("the robot needs PyBullet, which moves it; cbtui doctor tells how to get it")
     if options.map:
         from cbtui.runs.setup.shown_program import of_robot
 
         look = appearance(options)
         need_terminal("cbtui robot")
-        app = console_of(look, start_program=of_robot(probes_folder(), options.rate))
-        app.run()
-        return app.return_code or 0
+        return run_console(
+            look, start_program=of_robot(probes_folder(), options.rate, changes.physics_of(options))
+        )
     from sim.real.robot import drive, transforms
 
     tf = transforms()
@@ -62,7 +61,7 @@ def robot(options: argparse.Namespace) -> int:
     if tf is None:
         say("there is no /tf: tf2_msgs is not installed\n")
     status = _Status()
-    drive(status.take, options.rate, tf)
+    drive(status.take, options.rate, tf, changes.physics_of(options))
     status.end()
     return 0
 

@@ -5,13 +5,14 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands.options import changes, inputs, values
+from cbtui.commands.options import changes, inputs, more_lessons, values
 from cbtui.commands.options.seeds import add_seed, check_seed
 from cbtui.commands.options.targets import RunTargets, is_file_name, refuse, same_file, targets_of
 from cbtui.text.output import complain
 
 if TYPE_CHECKING:
     from cbtui.runs.setup.lesson_setup import RunRequest
+    from sim.engine.setup import RunSetup
 
 DEFAULT_SECONDS = 60.0
 
@@ -24,13 +25,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         nargs="*",
         help="a lesson's id, see cbtui list, or node files or a launch file",
     )
-    parser.add_argument(
-        "--for",
-        dest="seconds",
-        metavar="SECONDS",
-        type=values.duration,
-        help=f"how long the run lasts in its own time ({DEFAULT_SECONDS:g})",
-    )
+    inputs.add_length(parser, f"how long the run lasts in its own time ({DEFAULT_SECONDS:g})")
     changes.add_options(parser)
     add_seed(parser)
     changes.add_on(parser)
@@ -58,7 +53,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         default=math.inf,
         help="seconds of the run per real second, or max (max; on the real clock 1)",
     )
+    add_chain(parser)
     parser.add_argument("--events", metavar="FILE.jsonl", help="write every event as a line of JSON")
+    parser.add_argument(
+        "--json", metavar="FILE.json", help="write the summary and the diagnosis as JSON, too"
+    )
     parser.add_argument(
         "--record",
         metavar="FILE.mcap",
@@ -66,6 +65,21 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--force", action="store_true", help="let --record replace a file that is there already"
+    )
+    more_lessons.add_option(parser)
+
+
+def add_chain(parser: argparse.ArgumentParser) -> None:
+    """Add ``--chain``, which may be given again."""
+    parser.add_argument(
+        "--chain",
+        dest="chains",
+        metavar="FIRST:LAST",
+        type=values.chain,
+        action="append",
+        default=[],
+        help="tell how long messages took from one topic to another, and where: /scan:/cmd_vel; "
+        "what lies between may be named as well; may be given again",
     )
 
 
@@ -81,14 +95,7 @@ def run(options: argparse.Namespace) -> int:
     _check_outputs(options, program.files)
     lesson = program.lesson
     check_seed(options.seed, options.clock or (None if lesson is None else lesson.setup.clock))
-    from cbtui.runs.headless.headless import run_headless
-
-    return run_headless(
-        _request(options, program).setup(),
-        events_path=options.events,
-        recording_path=options.record,
-        replace_recording=options.force,
-    )
+    return _run(_request(options, program).setup(), options)
 
 
 def _repeat(options: argparse.Namespace) -> int:
@@ -100,7 +107,6 @@ def _repeat(options: argparse.Namespace) -> int:
     if options.force and options.record is None:
         refuse("--force lets --record replace a file; there is nothing to record to")
     _check_outputs(options, [Path(name) for name in (options.inputs, *options.targets)])
-    from cbtui.runs.headless.headless import run_headless
     from cbtui.runs.recorded.repeat import CannotRepeatError, repeated_setup
 
     request = _request(options, targets_of(options.targets))
@@ -108,11 +114,19 @@ def _repeat(options: argparse.Namespace) -> int:
         setup = repeated_setup(Path(options.inputs), request, tell=complain)
     except CannotRepeatError as error:
         refuse(str(error))
+    return _run(setup, options)
+
+
+def _run(setup: "RunSetup", options: argparse.Namespace) -> int:
+    from cbtui.runs.headless.headless import run_headless
+
     return run_headless(
         setup,
         events_path=options.events,
+        summary_path=options.json,
         recording_path=options.record,
         replace_recording=options.force,
+        chains=options.chains,
     )
 
 
@@ -141,7 +155,7 @@ def _request(options: argparse.Namespace, program: RunTargets) -> "RunRequest":
 
 def _check_outputs(options: argparse.Namespace, taken: list[Path]) -> None:
     """Refuse to overwrite an input, or to write two outputs into one file."""
-    outputs = {"--events": options.events, "--record": options.record}
+    outputs = {"--events": options.events, "--json": options.json, "--record": options.record}
     for option, path in [(option, Path(name)) for option, name in outputs.items() if name is not None]:
         for each in taken:
             if same_file(each, path):

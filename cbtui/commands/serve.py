@@ -3,7 +3,6 @@
 import argparse
 import errno
 import os
-import secrets
 import sys
 from importlib.util import find_spec
 from urllib.parse import urlsplit
@@ -59,7 +58,8 @@ def serve(options: argparse.Namespace) -> int:
         refuse(f"the browser needs textual-serve; install it with: {install_command('cbtui[serve]')}")
     appearance.appearance(options)
     command = [sys.executable, "-P", "-m", "cbtui", *appearance.given(options), *_opened(options.arguments)]
-    import asyncio  # imported late: no other command needs it
+    import asyncio  # imported late, as the next: no other command needs them
+    import secrets
 
     from cbtui.web.guard import is_loopback
     from cbtui.web.server import ConsoleServer

@@ -1,17 +1,18 @@
 """Examines what cbtui needs of a machine, one function per requirement."""
 
 import os
+import platform
 import shutil
 import sys
-import sysconfig
 from collections.abc import Iterator
+from importlib.util import find_spec
 from pathlib import Path
 
 from cbtui.doctor.engines import engine
 from cbtui.doctor.examination import Examination
 from cbtui.doctor.extras import browser, editor, ros
 from cbtui.doctor.files import configuration, folders, lessons_found, progress
-from cbtui.doctor.packages import bullet, dependencies, python
+from cbtui.doctor.packages import dependencies, physics, python, system
 from cbtui.doctor.probes import ProbeProcess
 from cbtui.doctor.terminal import TerminalFacts, screen
 
@@ -24,9 +25,10 @@ def examinations(charset: str, config: str | None = None) -> Iterator[Examinatio
     """
     importing, world = ProbeProcess.of_imports(), ProbeProcess.of_world()
     try:
+        yield system(sys.platform, platform.release())
         yield python(sys.version_info[:3])
         yield from dependencies(importing)
-        yield bullet(world, sys.version_info[:2], sysconfig.get_platform())
+        yield physics(world, installed=find_spec("pybullet") is not None)
         yield engine()
         yield from lessons_found()
         yield from screen(TerminalFacts(os.environ, charset, _size()))

@@ -17,7 +17,7 @@ _TIMEOUT = 20.0
 """Seconds without events after which the engine has failed."""
 _SLOW = 3.0
 """Seconds from which on the engine's start is reported as slow."""
-_REMEDY = "run cbtui run single-thread --for 1 to see more, and install cbtui anew if it says nothing"
+_REMEDY = "run cbtui run single-thread --for 1 to see more, and reinstall cbtui if it says nothing"
 
 
 def engine() -> Examination:
@@ -25,7 +25,7 @@ def engine() -> Examination:
     try:
         setup = RunRequest(lesson=find(_LESSON), robot=False, seconds=_RUN).setup()
     except ValueError:
-        return note("engine", "was not tried", "mend the lessons first")
+        return note("engine", "was not tried", "fix the lessons first")
     began = time.monotonic()
     try:
         trouble = _trouble(setup)

@@ -26,7 +26,7 @@ def editor(environment: Mapping[str, str]) -> Examination:
     try:
         program = shlex.split(named)[0]
     except ValueError:
-        return note("editor", f"the quotes of {named} do not match", "set EDITOR anew")
+        return note("editor", f"the quotes of {named} do not match", "set EDITOR again")
     if shutil.which(program, path=environment.get("PATH")) is None:
         return note("editor", f"{program} is not there", "set EDITOR to one that is")
     return well("editor", named)

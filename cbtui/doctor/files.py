@@ -72,7 +72,7 @@ def configuration(named: Path | None) -> Iterator[Examination]:
         return
     complaints = read_file(path).complaints
     for complaint in complaints:
-        yield note("config", complaint, f"mend {path}; till then this entry is left out")
+        yield note("config", complaint, f"fix {path}; until then this entry is left out")
     if not complaints:
         yield well("config", str(path))
 
@@ -80,7 +80,7 @@ def configuration(named: Path | None) -> Iterator[Examination]:
 def progress() -> Examination:
     """Examine the progress file."""
     path = usual_path()
-    remedy = f"the next console keeps it under another name and goes on; mend or delete {path}"
+    remedy = f"the next console keeps it under another name and goes on; fix or delete {path}"
     try:
         if not path.is_absolute() or not path.exists():
             return well("progress", "none yet")
@@ -99,7 +99,7 @@ def lessons_found() -> Iterator[Examination]:
     try:
         every = lessons()
     except BadLesson as error:
-        yield fault("lessons", str(error), f"mend it, or take its folder out of {VARIABLE}")
+        yield fault("lessons", str(error), f"fix it, or take its folder out of {VARIABLE}")
         return
     elsewhere = [lesson for lesson in every if not lesson.folder.is_relative_to(ROOT)]
     more = f", {len(elsewhere)} of them from elsewhere" if elsewhere else ""

@@ -1,4 +1,4 @@
-"""Examines Python, the packages that cbtui depends on, and PyBullet."""
+"""Examines the system, Python, the packages that cbtui depends on, and the robot's physics."""
 
 import sys
 from collections.abc import Iterator, Mapping
@@ -8,13 +8,20 @@ from packaging.requirements import Requirement
 
 from cbtui.doctor.examination import Examination, fault, note, well
 from cbtui.doctor.probes import ProbeProcess, module_of
-from cbtui.doctor.requirements import requirements
+from cbtui.doctor.requirements import PHYSICS, requirements
 from cbtui.text.installing import install_command
 
 _OLDEST = (3, 11)
-_NEWEST_WITH_WHEEL = (3, 11)
-_MACHINE_WITH_WHEEL = "linux-x86_64"
-"""The platform that PyBullet has wheels for."""
+
+
+def system(platform: str, release: str) -> Examination:
+    """Examine the operating system: ``sys.platform``, and the kernel's own name of its version."""
+    if platform == "linux":
+        return well("system", f"Linux {release}{' in WSL' if 'microsoft' in release.lower() else ''}")
+    if platform == "darwin":
+        remedy = "if something fails, use the container of .devcontainer/Dockerfile"
+        return note("system", f"macOS {release}: cbtui runs without what Linux alone has, untested", remedy)
+    return fault("system", f"{platform}, on which no run starts", "on Windows use WSL: wsl --install")
 
 
 def python(running: tuple[int, ...]) -> Examination:
@@ -27,7 +34,7 @@ def python(running: tuple[int, ...]) -> Examination:
 
 def dependencies(importing: ProbeProcess) -> Iterator[Examination]:
     """Examine whether each package is installed in a supported version and can be imported."""
-    needed = [each for each in requirements() if each.name != "pybullet"]
+    needed = [each for each in requirements() if each.name not in PHYSICS]
     if not needed:
         yield note(
             "packages", "cbtui is not installed", "install it with pip install . to have them looked at"
@@ -70,24 +77,20 @@ def _broken(importing: ProbeProcess) -> dict[str, str]:
     return broken
 
 
-def bullet(world: ProbeProcess, running: tuple[int, ...], machine: str) -> Examination:
-    """Examine whether PyBullet, the robot's physics, builds a world.
-
-    ``machine`` is the result of ``sysconfig.get_platform``.
-    """
+def physics(world: ProbeProcess, *, installed: bool) -> Examination:
+    """Examine what moves the robot; ``installed`` tells whether there is a module ``pybullet``."""
     outcome = world.outcome()
-    if outcome.code == 0:
-        return well("PyBullet", "builds the robot's world")
-    why = outcome.death or (outcome.complained.strip().splitlines() or ["it failed"])[-1]
-    return fault("PyBullet", f"builds no world ({why})", _bullet_remedy(running, machine))
-
-
-def _bullet_remedy(running: tuple[int, ...], machine: str) -> str:
-    install = install_command("--force-reinstall", "--no-deps", "pybullet")
-    if running <= _NEWEST_WITH_WHEEL and machine == _MACHINE_WITH_WHEEL:
-        return f"install it with {install}"
-    instead = "use Python 3.11, which has a ready-made wheel, or " if machine == _MACHINE_WITH_WHEEL else ""
-    return (
-        f"{instead}have a C++ compiler and Python's headers (apt install g++ python3-dev) and let it be "
-        f"built, for ten minutes or more: {install}"
-    )
+    wheel = next((each for each in requirements() if each.name in PHYSICS), None)
+    install = "" if wheel is None else install_command("--force-reinstall", "--no-deps", wheel.name)
+    if outcome.code != 0:
+        why = outcome.death or (outcome.complained.strip().splitlines() or ["it failed"])[-1]
+        remedy = f"give --physics numpy, or install it anew: {install}" if install else "give --physics numpy"
+        return fault("physics", f"PyBullet builds no world ({why})", remedy)
+    if installed:
+        return well("physics", "PyBullet moves the robot, and draws the camera's pictures")
+    found = "the numpy model moves the robot, without a camera"
+    if wheel is None:
+        return note(
+            "physics", f"{found}: PyBullet has no wheel here", "use Python 3.11 to 3.13 on a PC or Mac"
+        )
+    return note("physics", f"{found}: PyBullet is not installed", f"install it with {install}")

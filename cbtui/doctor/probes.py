@@ -46,9 +46,9 @@ class ProbeProcess:
     @classmethod
     def of_imports(cls) -> "ProbeProcess":
         """Import the packages that cbtui depends on."""
-        from cbtui.doctor.requirements import requirements
+        from cbtui.doctor.requirements import PHYSICS, requirements
 
-        names = [module_of(each.name) for each in requirements() if each.name != "pybullet"]
+        names = [module_of(each.name) for each in requirements() if each.name not in PHYSICS]
         return cls("cbtui.doctor.importing", *names)
 
     @classmethod

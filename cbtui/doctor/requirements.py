@@ -6,6 +6,9 @@ from importlib.metadata import PackageNotFoundError, requires
 
 from packaging.requirements import Requirement
 
+PHYSICS = frozenset({"pybullet", "pybullet-arm64"})
+"""Packages with the module ``pybullet``, of which a machine has one or none."""
+
 
 @cache
 def requirements() -> Sequence[Requirement]:

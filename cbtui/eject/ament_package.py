@@ -11,11 +11,9 @@ import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from string import Template
 from xml.sax.saxutils import escape
-
-from cbtui.eject import ament_texts as texts
 
 _KEYS = {
     "cv2": "python3-opencv",
@@ -26,6 +24,12 @@ _KEYS = {
     "yaml": "python3-yaml",
 }
 """Rosdep keys of modules whose package has another name."""
+_CALL = 'Call it: `ros2 service call {} {} "{{data: true}}"`'
+_ARGUMENT_IMPORTS = """\
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+"""
+_TEMPLATES = Path(__file__).with_name("templates")
 _ROBOT_INTERFACES = frozenset(("geometry_msgs", "nav_msgs", "sensor_msgs"))
 
 
@@ -69,14 +73,14 @@ class AmentPackage:
         """The content of every file by its path in the package's folder."""
         launch_files = {
             **self.launch_files,
-            **{f"{each.name}.launch.py": _launch_file(self.name, each).encode() for each in self.programs},
+            **{f"{each.name}.launch.py": self._launch_file(each).encode() for each in self.programs},
         }
         nodes = [each.source for each in self.programs]
         depends = {"ros2launch", *_depends(nodes), *_depends(launch_files.values())}
         return {
             PurePosixPath("package.xml"): self._manifest(depends).encode(),
             PurePosixPath("setup.py"): self._setup().encode(),
-            PurePosixPath("setup.cfg"): self._filled(texts.SETUP_CFG).encode(),
+            PurePosixPath("setup.cfg"): self._filled("setup.cfg").encode(),
             PurePosixPath("README.md"): self._readme(_depends(nodes)).encode(),
             PurePosixPath("resource", self.name): b"",
             PurePosixPath(self.name, "__init__.py"): b"",
@@ -85,30 +89,51 @@ class AmentPackage:
             PurePosixPath("test", "test_programs.py"): self._test().encode(),
         }
 
-    def _filled(self, text: str, **more: str) -> str:
+    def _filled(self, template: str, **more: str) -> str:
+        text = (_TEMPLATES / f"{template}.in").read_text("utf-8")
         return Template(text).substitute(package=self.name, **more)
+
+    def _launch_file(self, program: LessonProgram) -> str:
+        """The launch file that starts it with its arguments, those with a value as launch arguments."""
+        declared = _launch_arguments(program.arguments)
+        words = [_literal(word) for word in program.arguments]
+        declarations: list[str] = []
+        for place, (name, value) in declared.items():
+            words[place] = f"LaunchConfiguration({_literal(name)})"
+            declarations.append(
+                f"            DeclareLaunchArgument({_literal(name)}, default_value={_literal(value)}),\n"
+            )
+        lines = "".join(f"                    {word},\n" for word in words)
+        return self._filled(
+            "program.launch.py",
+            name=program.name,
+            how=" with the arguments of its lesson" if words else "",
+            imports=_ARGUMENT_IMPORTS if declared else "",
+            declarations="".join(declarations),
+            arguments=f"                arguments=[\n{lines}                ],\n" if words else "",
+        )
 
     def _manifest(self, depends: Iterable[str]) -> str:
         lines = "\n".join(f"  <exec_depend>{escape(each)}</exec_depend>" for each in sorted(depends))
-        return self._filled(texts.MANIFEST, description=escape(self.title), depends=lines)
+        return self._filled("package.xml", description=escape(self.title), depends=lines)
 
     def _setup(self) -> str:
         programs = {each.name: each for each in self.programs} | {**self.also}
         entries = [f"{name} = {self.name}.{each.module}:main" for name, each in programs.items()]
         lines = "\n".join(f"            {_literal(entry)}," for entry in entries)
-        return self._filled(texts.SETUP_PY, description=_literal(self.title), entries=lines)
+        return self._filled("setup.py", description=_literal(self.title), entries=lines)
 
     def _test(self) -> str:
         names = "\n".join(f"    {_literal(each.module)}," for each in self.programs)
-        return self._filled(texts.TEST, modules=names)
+        return self._filled("test_programs.py", modules=names)
 
     def _readme(self, depends: Iterable[str]) -> str:
         return self._filled(
-            texts.README,
+            "README.md",
             title=self.title,
             first=self.programs[0].name,
             launching="".join(self._launching()),
-            robot=texts.ROBOT if _ROBOT_INTERFACES.intersection(depends) else "",
+            robot=self._filled("robot.md") if _ROBOT_INTERFACES.intersection(depends) else "",
             lessons="\n".join(map(self._about, self.programs)),
         )
 
@@ -117,7 +142,7 @@ class AmentPackage:
         for program in self.programs:
             for name, value in _launch_arguments(program.arguments).values():
                 argument = shlex.quote(f"{name}:={value}")
-                yield self._filled(texts.LAUNCHING, name=program.name, argument=argument)
+                yield self._filled("launching.md", name=program.name, argument=argument)
                 return
 
     def _about(self, program: LessonProgram) -> str:
@@ -128,28 +153,8 @@ class AmentPackage:
             line = shlex.join(["ros2", "run", self.name, program.name, *program.arguments])
             sentences.append(f"`{line}`")
         if program.service is not None:
-            sentences.append(texts.CALL.format(*program.service))
+            sentences.append(_CALL.format(*program.service))
         return "\n  ".join(sentences)
-
-
-def _launch_file(package: str, program: LessonProgram) -> str:
-    """The launch file that starts the program with its arguments, those with a value as launch arguments."""
-    if not program.arguments:
-        return Template(texts.LAUNCH).substitute(package=package, name=program.name)
-    declared = _launch_arguments(program.arguments)
-    words = [_literal(word) for word in program.arguments]
-    for place, (name, _) in declared.items():
-        words[place] = f"LaunchConfiguration({_literal(name)})"
-    return Template(texts.LAUNCH_WITH_ARGUMENTS).substitute(
-        package=package,
-        name=program.name,
-        imports=texts.LAUNCH_ARGUMENT_IMPORTS if declared else "",
-        substitutions=texts.SUBSTITUTION_IMPORTS if declared else "",
-        declarations="".join(
-            texts.DECLARATION.format(_literal(name), _literal(value)) for name, value in declared.values()
-        ),
-        words="\n".join(f"                    {word}," for word in words),
-    )
 
 
 def _launch_arguments(words: tuple[str, ...]) -> dict[int, tuple[str, str]]:

@@ -3,7 +3,7 @@
 import ast
 import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -62,7 +62,7 @@ def package_of(unit: CourseUnit) -> AmentPackage:
     Raises:
         EjectError: a node cannot be read, or cannot be part of a package as it is.
     """
-    programs = tuple(map(_program, unit.lessons))
+    programs = tuple(program for lesson in unit.lessons for program in _programs(lesson))
     also: dict[str, LessonProgram] = {}
     launch_files: dict[str, bytes] = {}
     for package in _packages_beside(unit):
@@ -135,8 +135,16 @@ def _further_names(package: Package, programs: Sequence[LessonProgram]) -> dict[
     return {name: program for name, program in found.items() if name not in taken}
 
 
-def _program(lesson: Lesson) -> LessonProgram:
-    path = lesson.node_path
+def _programs(lesson: Lesson) -> Iterator[LessonProgram]:
+    """The lesson's node, and the solution of its exercise if it has one."""
+    name = lesson.id.replace("-", "_")
+    yield _program(lesson, lesson.node_path, name, lesson.title, lesson.teaches)
+    if lesson.exercise is not None and lesson.solution_path is not None:
+        title = f"{lesson.title}: its exercise, solved"
+        yield _program(lesson, lesson.solution_path, f"{name}_solution", title, lesson.exercise.asks)
+
+
+def _program(lesson: Lesson, path: Path, name: str, title: str, teaches: str) -> LessonProgram:
     try:
         source = path.read_bytes()
         modules = imported_modules(source)
@@ -151,9 +159,9 @@ def _program(lesson: Lesson) -> LessonProgram:
             raise EjectError(f"{path} imports {module} from its own folder, which a package has no place for")
     offered = lesson.service.name.lstrip("/").encode() in source
     return LessonProgram(
-        name=lesson.id.replace("-", "_"),
-        title=lesson.title,
-        teaches=lesson.teaches,
+        name=name,
+        title=title,
+        teaches=teaches,
         source=source,
         arguments=tuple(lesson.arguments_with(None)),
         service=(lesson.service.name, lesson.service.type) if offered else None,

@@ -6,7 +6,6 @@ from contextlib import suppress
 from queue import Empty, Full, Queue
 from threading import Event
 from time import monotonic
-from types import TracebackType
 from typing import TYPE_CHECKING, Self, TypeAlias
 
 if TYPE_CHECKING:
@@ -50,9 +49,7 @@ class FollowedRun:
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(
-        self, _kind: type[BaseException] | None, _error: BaseException | None, _trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self._left.set()
         self.session.stop()
 

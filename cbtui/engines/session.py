@@ -12,6 +12,7 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
+from types import ModuleType
 from typing import Any, Protocol, TypeAlias
 from uuid import uuid4
 
@@ -269,17 +270,20 @@ _environment_lock = threading.Lock()
 def engine_environment(mark: str = "") -> Iterator[None]:
     """Start processes inside the block with the engine's environment and a mark; one thread at a time.
 
-    SIGINT is blocked in them, so that Ctrl-C in the terminal reaches the console alone.
+    SIGINT is blocked in them, so that Ctrl-C in the terminal reaches the console alone. The main module of
+    this process, which an engine does not need, is hidden, as multiprocessing would import it in them.
     """
     wanted = {**_ENVIRONMENT, MARK: mark}
     with without_current_folder(), _environment_lock:
         before = {name: os.environ.get(name) for name in wanted}
         os.environ.update(wanted)
+        main, sys.modules["__main__"] = sys.modules["__main__"], ModuleType("__main__")
         blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
             yield
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
+            sys.modules["__main__"] = main
             for name, value in before.items():
                 if value is None:
                     del os.environ[name]

@@ -112,7 +112,8 @@ class Grader:
             BadLesson: the checks of a lesson cannot be used.
         """
         self._real = real
-        self._totals: dict[str, int] = {}
+        self.asked: dict[str, tuple[str, ...]] = {}
+        """What the checks of each lesson ask, by the lesson's id."""
         self.entries = [self._entry(paper) for paper in papers]
         self._packages = _PackageFiles(entry.paper.lesson for entry in self.entries)
         self._on_disk = {entry: entry.key for entry in self.entries}
@@ -120,7 +121,7 @@ class Grader:
     @property
     def most_checks(self) -> int:
         """The number of checks of the exercise with the most checks."""
-        return max(self._totals.values(), default=0)
+        return max(map(len, self.asked.values()), default=0)
 
     def grades(
         self,
@@ -157,9 +158,9 @@ class Grader:
     def _entry(self, paper: HandIn) -> LoadedHandIn:
         if paper.lesson is None:
             return LoadedHandIn(paper, problem=paper.problem)
-        if paper.lesson.id not in self._totals:
-            self._totals[paper.lesson.id] = len(Judge(paper.lesson).checks)
-        total = self._totals[paper.lesson.id]
+        if paper.lesson.id not in self.asked:
+            self.asked[paper.lesson.id] = tuple(check.asks for check in Judge(paper.lesson).checks)
+        total = len(self.asked[paper.lesson.id])
         if paper.file is None:
             return LoadedHandIn(paper, total, problem=paper.problem)
         if not is_text(paper.file.name):

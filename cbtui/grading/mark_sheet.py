@@ -96,8 +96,18 @@ def _key(row: SheetRow) -> tuple[str, ...]:
     return row["learner"], row["lesson"], row["digest"]
 
 
+_PASSED, _FAILED = "passed: ", "failed: "
+
+
+def check_results(row: SheetRow) -> Iterator[tuple[bool, str]]:
+    """Yield for each check of a row, in order, whether it passed and the line on it."""
+    for column, cell in row.items():
+        if column.startswith("check ") and cell:
+            yield cell.startswith(_PASSED), cell.removeprefix(_PASSED).removeprefix(_FAILED)
+
+
 def _result(passed: bool, text: str) -> str:
-    return f"{'passed' if passed else 'failed'}: {text}"
+    return f"{_PASSED if passed else _FAILED}{text}"
 
 
 def _harmless(cell: str) -> str:

@@ -13,6 +13,8 @@ PANES = ("guide", "code", "factory", "robot", "log", "shell")
 """The panes of a lesson, in the order of their keys."""
 CHECKS = "checks"
 """The pane that an exercise has beside them; its key comes after theirs."""
+CHOICE = "choice"
+"""The pane that a run has beside them whose threads the learner schedules; with the same key."""
 
 
 class Scope(StrEnum):
@@ -28,6 +30,7 @@ class Scope(StrEnum):
     FILTER = "Filter of the log"
     CODE = "Code"
     CHECKS = "Checks of an exercise"
+    CHOICE = "Choice of who goes on"
     PROMPT = "Prompt"
     KEYBOARD = "Keyboard of the program"
     THREADS = "Choice of threads"
@@ -40,14 +43,17 @@ class Scope(StrEnum):
     ASKING = "Question"
     NUMBER = "Choice of a number"
     MOMENT = "Choice of a moment"
+    CHAIN = "Choice of a chain"
     HELP = "Help"
+    TOUR = "Tour"
+    JUMP = "Jump"
 
 
 class KeyAction(NamedTuple):
     """Something the user can do. ``key`` is Textual's name of a key, ``help`` one sentence.
 
-    Neighbours with the same ``label`` share a place in the footer; those with the same ``series`` share a
-    line of the help, which says that instead.
+    Neighbours with the same ``label`` share a place in the footer, which leaves out those without one. Those
+    with the same ``series`` share a line of the help, which says that instead.
     """
 
     scope: Scope
@@ -56,6 +62,11 @@ class KeyAction(NamedTuple):
     label: str
     help: str
     series: str = ""
+
+    @property
+    def name(self) -> str:
+        """Its id without arguments, by which the screen's method is named."""
+        return self.id.partition("(")[0]
 
     @property
     def line(self) -> str:

@@ -4,10 +4,10 @@ A screen implements ``action_<id>`` for the actions of its scope, and ``check_ac
 action is available now.
 """
 
-from cbtui.keys.action import CHECKS, PANES, KeyAction, Scope
+from cbtui.keys.action import CHECKS, CHOICE, PANES, KeyAction, Scope
 
 _ON_A_SCREEN = (Scope.MENU, Scope.LESSON, Scope.COMPARE)
-_ON_A_PANE = (Scope.LOG, Scope.CODE, Scope.CHECKS)
+_ON_A_PANE = (Scope.LOG, Scope.CODE, Scope.CHECKS, Scope.CHOICE)
 """Scopes of a pane of a lesson, whose actions work there beside the lesson's."""
 
 _Row = tuple[str, str, str, str] | tuple[str, str, str, str, str]
@@ -17,98 +17,115 @@ _PANNING = "Show an earlier or later stretch, and leave the cursor"
 _LANES = "Select the lane above or below, when on the lanes"
 _EVENTS = "Go to the selected lane's bar before or after the cursor"
 _BARS = "Go to the clicked lane's bar before or after the cursor"
-_LESSON_NUMBER = "Open the lesson with this number"
+_WIDTH = "Make the pane wider or narrower; that is remembered"
+_HEIGHT = "Make the pane, or the lanes, taller or lower"
+_JUMP = "Show a letter on whatever can be gone to; type it to go there"
+_OPTION = "Highlight another thread, and its line"
+_OPTION_NUMBER = "Have the thread with this number go on"
 _ANSWER_NUMBER = "Highlight the answer with this number"
 _PANE = f"Go to a pane: {', '.join(PANES)}"
 
 _ROWS: dict[Scope, tuple[_Row, ...]] = {
     Scope.MENU: (
         ("open", "enter", "open", "Open the highlighted lesson or file"),
-        *(
-            (f"open_number({number})", str(number), "open", f"Open lesson {number}", _LESSON_NUMBER)
-            for number in range(1, 10)
-        ),
-        ("previous", "up", "choose", "Highlight what is above", "Highlight another"),
-        ("next", "down", "choose", "Highlight what is below", "Highlight another"),
-        ("search", "/", "search", "Show only lessons and files that have some words"),
+        ("previous", "up", "choose", "Highlight the one above", "Highlight another"),
+        ("next", "down", "choose", "Highlight the one below", "Highlight another"),
+        ("search", "/", "search", "Find a lesson or file: type its number or words"),
+        ("tour", "T", "tour", "Take a tour of a minute over lesson 1"),
         ("open_file", "o", "file", "Open a program or a recording of your own"),
-        ("forget", "delete", "take off", "Take the highlighted file off the list"),
+        ("forget", "delete", "remove", "Remove the highlighted file from the list"),
         ("end_search", "escape", "show all", "Show all lessons and files again"),
+        ("jump", "j", "", _JUMP),
         ("leave", "q", "quit", "Leave the console"),
     ),
     Scope.SEARCH: (
-        ("submit", "enter", "open", "Open what is highlighted"),
-        ("above", "up", "choose", "Highlight what is above", "Highlight another"),
-        ("below", "down", "choose", "Highlight what is below", "Highlight another"),
+        ("submit", "enter", "open", "Open the highlighted entry"),
+        ("above", "up", "choose", "Highlight the one above", "Highlight another"),
+        ("below", "down", "choose", "Highlight the one below", "Highlight another"),
         ("give_up", "escape", "show all", "Show all lessons and files again"),
     ),
     Scope.OPENING: (
         ("go", "enter", "open", "Open the file"),
-        ("complete", "tab", "complete", "Complete the path as far as there is one way"),
-        ("close", "escape", "close", "Close the window, and open nothing"),
+        ("complete", "tab", "complete", "Complete the path"),
+        ("close", "escape", "close", "Close the window without opening anything"),
     ),
     Scope.LOG: (
-        ("filter", "/", "filter", "Show some lines only, by words, level or writer"),
+        ("filter", "/", "filter", "Filter the lines by words, level or writer"),
         ("follow", "f", "follow", "Go to the end of the log, and follow it", _FOLLOWING),
         ("stay", "f", "stay", "Stay at these lines of the log", _FOLLOWING),
         ("line_above", "up", "line", "Pick the line above", "Pick the line above or below"),
         ("line_below", "down", "line", "Pick the line below", "Pick the line above or below"),
         ("pick_line", "enter", "go there", "Move the cursor of every pane to the line's time"),
         ("copy", "y", "copy", "Copy the picked line, or those in view"),
-        ("let_go", "escape", "let go", "Have no line picked"),
+        ("let_go", "escape", "clear", "Clear the selection"),
     ),
     Scope.CODE: (
         ("line_above", "up", "line", "Go to the line above", "Go to the line above or below"),
         ("line_below", "down", "line", "Go to the line below", "Go to the line above or below"),
+        ("sideways_left", "shift+left", "", "Scroll to the left", "Scroll sideways"),
+        ("sideways_right", "shift+right", "", "Scroll to the right", "Scroll sideways"),
         ("pick_callback", "enter", "go to lane", "Go from the line's callback to its lane"),
         ("open_here", "o", "editor", "Open the file at the line in $EDITOR"),
         ("copy", "y", "copy", "Copy the callback at the line"),
-        ("let_go", "escape", "let go", "Pick no line, and go to what runs again"),
+        ("let_go", "escape", "clear", "Clear the selection, and follow what runs again"),
     ),
     Scope.CHECKS: (
         ("check_above", "up", "check", "Go to the check above", "Go to another check"),
         ("check_below", "down", "check", "Go to the check below", "Go to another check"),
-        ("look_there", "enter", "look there", "Go to the moment that the check speaks of"),
+        ("look_there", "enter", "go there", "Go to the moment that the check is about"),
+    ),
+    Scope.CHOICE: (
+        *((f"choose({number})", str(number), "", _OPTION_NUMBER, _OPTION_NUMBER) for number in range(1, 10)),
+        ("cursor_up", "up", "who", "Highlight the thread above", _OPTION),
+        ("cursor_down", "down", "who", "Highlight the thread below", _OPTION),
+        ("take", "enter", "choose", "Have the highlighted thread go on"),
     ),
     Scope.LESSON: (
         ("call_service", "s", "service", "Call the lesson's SetBool service with true"),
         ("call_service_off", "S", "false", "Call the lesson's SetBool service with false"),
-        ("pause", "space", "pause", "Stop time for every thread"),
-        ("resume", "space", "go on", "Let time go on"),
+        ("pause", "space", "pause", "Pause: stop time for every thread"),
+        ("resume", "space", "go on", "Resume: let time go on"),
+        ("undo", "u", "undo", "Take back the last choice of who goes on"),
         ("live", "0", "live", "Go back to the present"),
-        ("predict", "P", "predict", "Say what you expect of the run; a given answer stays"),
-        ("explain", "a", "explain", "Tell what the run shows to be true, and why"),
-        ("step", "full_stop", "step", "Go on by one decision, in a pause; looking back, by one event"),
+        ("predict", "P", "predict", "Say what you expect of the run; your answer is final"),
+        ("explain", "a", "explain", "Tell what happened in the run, and why"),
+        ("step", "full_stop", "step", "Go on by one decision; looking back, by one event"),
         ("run_again", "r", "run again", "Run again, when the run is over"),
         ("threads", "t", "threads", "Choose how many threads the executor gets, and run again"),
         ("exercise", "e", "exercise", "Do the exercise, in a file of your own in the current folder"),
-        ("watch", "w", "watch", "Run your file again at the pace of real time"),
+        ("watch", "w", "watch", "Run your file again at real-time speed"),
         ("hint", "h", "hint", "Take the next hint for the exercise"),
-        ("lesson", "e", "lesson", "Go from the exercise back to its lesson"),
+        ("lesson", "e", "lesson", "Go from the exercise or puzzle to its lesson"),
         ("next_lesson", "n", "next", "Open the next lesson"),
-        ("solution", "H", "solution", "Look at the solution of the exercise"),
+        ("solution", "H", "solution", "Look at the solution of the exercise or puzzle"),
         ("group", "g", "group", "Give the selected callback another group, and run again"),
-        ("set_up", "p", "set-up", "Change timers' periods and all else of the set-up"),
+        ("set_up", "p", "set-up", "Change timer periods and the rest of the set-up"),
         ("reset_world", "r", "reset", "Put the robot back to its start"),
         ("compare", "C", "compare", "Compare this run with the one before"),
-        ("diagnoses", "d", "diagnoses", "List what goes wrong in this run, why, and what to do about it"),
+        ("no_exercise", "e", "", "Tell why there is no exercise here"),
+        ("no_hint", "h", "", "Tell why there is no hint now"),
+        ("no_solution", "H", "", "Tell why there is no solution now"),
+        ("no_comparison", "C", "", "Tell what can be compared"),
+        ("diagnoses", "d", "diagnoses", "List what went wrong, why, and what to do about it"),
         *(
             (f"show_pane('{name}')", str(number), "pane", f"Go to the {name}", _PANE)
             for number, name in enumerate(PANES, start=1)
         ),
         (f"show_pane('{CHECKS}')", str(len(PANES) + 1), "pane", "Go to the checks of an exercise"),
-        ("prompt", "colon", "ros2", "Type a ros2 line; tab completes, up brings lines back"),
+        (f"show_pane('{CHOICE}')", str(len(PANES) + 1), "pane", "Go to the choice of who goes on"),
+        ("prompt", "colon", "ros2", "Type a ros2 command; tab completes it"),
         ("type", "i", "type", "Type for the program that reads from the keyboard"),
         ("filter_log", "/", "filter", "Go to the log, and filter it"),
         ("open_source", "o", "editor", "Open the code in $EDITOR"),
-        ("record", "R", "record", "Begin a recording of the run in the current folder, or end it"),
-        ("export", "x", "export", "Make a picture, a report, a table or a trace of the run so far"),
+        ("record", "R", "record", "Start or stop recording the run to a file"),
+        ("export", "x", "export", "Export the run so far as a picture, report, table or trace"),
         ("start_over", "ctrl+r", "start over", "End this run, and run again, at any time"),
-        ("go_to_time", "G", "go to", "Look back at a moment, or run on until it has come"),
+        ("go_to_time", "G", "go to", "Go to a moment, past or future"),
         ("cycle_camera", "c", "camera", "Show the robot's map, the camera's picture, or both"),
         ("step_back", "comma", "look back", "Look at the event before the moment on screen"),
         ("earlier", "left_square_bracket", "look back", "Move the cursor of every pane back"),
         ("later", "right_square_bracket", "look back", "Move the cursor of every pane on"),
+        ("narrate", "N", "narrator", "Tell what the executor decides, and why, or stop"),
         ("slower", "minus", "speed", "Let time pass more slowly"),
         ("faster", "plus", "speed", "Let time pass faster"),
         ("zoom_out", "less_than_sign", "zoom", "Show a longer stretch of time"),
@@ -127,48 +144,57 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
             _EVENTS,
         ),
         ("next_event", "right_curly_bracket", "event", "Go on to the selected lane's next bar", _EVENTS),
-        ("deselect", "escape", "deselect", "Leave the lanes, and select nothing"),
-        ("copy_details", "y", "copy", "Copy the selected bar's details, or else the moment's, as text"),
+        ("deselect", "escape", "deselect", "Leave the lanes, and clear the selection"),
+        ("copy_details", "y", "copy", "Copy the selected bar's details, or the moment's"),
         ("next_pane", "tab", "next pane", "Go to the next pane"),
-        ("maximise", "z", "enlarge", "Let one pane fill the screen; press again to go back"),
-        ("enlarge_lanes", "Z", "enlarge", "Let the lanes fill the screen; press again to go back"),
+        ("jump", "j", "jump", _JUMP),
+        ("maximise", "z", "enlarge", "Enlarge one pane; press again to go back"),
+        ("enlarge_lanes", "Z", "enlarge", "Enlarge the lanes; press again to go back"),
+        ("wider", "ctrl+right", "size", "Give the pane more columns", _WIDTH),
+        ("narrower", "ctrl+left", "size", "Give the pane fewer columns", _WIDTH),
+        ("taller", "ctrl+up", "size", "Give the pane, or the lanes, more rows", _HEIGHT),
+        ("lower", "ctrl+down", "size", "Give the pane, or the lanes, fewer rows", _HEIGHT),
+        ("usual_sizes", "equals_sign", "usual sizes", "Give lanes and panes their usual sizes"),
+        ("chain", "k", "chain", "Follow messages between topics: their path on the lanes"),
+        ("take_over", "W", "choose", "From a paused moment on, choose which thread goes on"),
         ("leave", "q", "menu", "End the run and go back to the menu"),
     ),
     Scope.COMPARE: (
-        ("window", "w", "whole or screen", "Let the table tell of whole runs, or of what is on screen"),
+        ("window", "w", "whole or screen", "Let the table cover whole runs, or only what is on screen"),
         ("earlier", "left_square_bracket", "look back", "Move the cursor back"),
         ("later", "right_square_bracket", "look back", "Move the cursor on"),
         ("pan_earlier", "left", "pan", "Show an earlier stretch, and leave the cursor", _PANNING),
         ("pan_later", "right", "pan", "Show a later stretch, and leave the cursor", _PANNING),
         ("previous_event", "left_curly_bracket", "bar", "Go back to the lane's bar before", _BARS),
         ("next_event", "right_curly_bracket", "bar", "Go on to the lane's next bar", _BARS),
-        ("deselect", "escape", "deselect", "Select nothing"),
+        ("deselect", "escape", "deselect", "Clear the selection"),
         ("zoom_out", "less_than_sign", "zoom", "Show a longer stretch of time"),
         ("zoom_in", "greater_than_sign", "zoom", "Show a shorter stretch of time"),
         ("go_to_time", "G", "go to", "Go to a moment"),
         ("live", "0", "end", "Go to the end"),
-        ("maximise", "z", "table", "Let the table fill the screen; press again to go back"),
-        ("enlarge_lanes", "Z", "lanes", "Let the lanes fill the screen; press again to go back"),
-        ("scroll_table_up", "up", "scroll", "Show what lies above in the table"),
-        ("scroll_table_down", "down", "scroll", "Show what lies below in the table"),
+        ("maximise", "z", "table", "Enlarge the table; press again to go back"),
+        ("enlarge_lanes", "Z", "lanes", "Enlarge the lanes; press again to go back"),
+        ("scroll_table_up", "up", "scroll", "Scroll the table up"),
+        ("scroll_table_down", "down", "scroll", "Scroll the table down"),
         ("step_back", "comma", "event", "Go to the event before, of either run"),
         ("step", "full_stop", "event", "Go to the next event, of either run"),
+        ("jump", "j", "", _JUMP),
         ("leave", "q", "back", "Leave the comparison"),
     ),
     Scope.FILTER: (
-        ("submit", "enter", "keep", "Go to the lines that the filter lets through"),
+        ("submit", "enter", "keep", "Keep the filter, and go to its lines"),
         ("drop_filter", "escape", "clear", "Show every line again"),
     ),
     Scope.PROMPT: (
-        ("submit", "enter", "run", "Carry out the line"),
+        ("submit", "enter", "run", "Run the line"),
         ("complete", "tab", "complete", "Complete the word at the cursor"),
         ("older", "up", "lines before", "Bring back the line before"),
         ("newer", "down", "lines before", "Go on to the line after"),
-        ("interrupt", "ctrl+c", "interrupt", "End the line that goes on"),
+        ("interrupt", "ctrl+c", "interrupt", "Interrupt the running line"),
         ("leave_prompt", "escape", "other keys", "Go back to the other keys"),
     ),
     Scope.KEYBOARD: (
-        ("submit", "enter", "give", "Give the line to the program that reads it"),
+        ("submit", "enter", "send", "Send the line to the program"),
         ("interrupt", "ctrl+c", "interrupt", "Interrupt the program, as in any terminal"),
         (
             "leave_keyboard",
@@ -183,7 +209,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
             for number in range(1, 9)
         ),
         ("choose(0)", "o", "the program's own", "Run with the program's own number"),
-        ("close", "escape,q", "close", "Close the window, and leave everything as it is"),
+        ("close", "escape,q", "close", "Close the window, and change nothing"),
     ),
     Scope.GROUP: (
         *(
@@ -195,8 +221,8 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
                 ("d", "default", "the node's default group"),
             )
         ),
-        ("choose('')", "p", "the program's", "Give it the group that the program says"),
-        ("close", "escape,q", "close", "Close the window, and leave everything as it is"),
+        ("choose('')", "p", "the program's", "Use the group that the program says"),
+        ("close", "escape,q", "close", "Close the window, and change nothing"),
     ),
     Scope.EXPORT: (
         *(
@@ -205,6 +231,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
                 ("p", "picture", "a picture of the stretch on screen"),
                 ("w", "whole", "a picture of the whole run"),
                 ("r", "report", "a report"),
+                ("h", "html", "a page that plays the run in any browser"),
                 ("t", "table", "a table of the calls"),
                 ("u", "perfetto", "a trace for ui.perfetto.dev"),
                 ("c", "chrome", "a trace for chrome://tracing and Speedscope"),
@@ -214,14 +241,15 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
     ),
     Scope.SETUP: (
         ("change", "enter", "change", "Change what is highlighted"),
-        ("run", "r", "run with it", "Run again with what is changed"),
-        ("undo_all", "u", "undo all", "Have everything as the program says"),
-        ("close", "escape,q", "close", "Close the window, and let the run go on as it is"),
+        ("run", "r", "run with it", "Run again with the changes"),
+        ("undo_all", "u", "undo all", "Undo every change"),
+        ("close", "escape,q", "close", "Close the window, and change nothing"),
     ),
     Scope.DIAGNOSES: (
-        ("previous", "up", "choose", "Highlight what is above", "Highlight another"),
-        ("next", "down", "choose", "Highlight what is below", "Highlight another"),
-        ("go", "enter", "go there", "Go to the moment and to the code"),
+        ("previous", "up", "choose", "Highlight the one above", "Highlight another"),
+        ("next", "down", "choose", "Highlight the one below", "Highlight another"),
+        ("go", "enter", "go there", "Go to the moment and the code; on an arrow, do what it says"),
+        ("try_cure", "t", "try the cure", "Run again with the cure, and compare with the run before"),
         ("close", "escape,q", "close", "Close the window, and stay where you are"),
     ),
     Scope.PREDICTION: (
@@ -229,10 +257,10 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
             (f"choose({number})", str(number), "choose", f"Highlight answer {number}", _ANSWER_NUMBER)
             for number in range(1, 6)
         ),
-        ("previous", "up", "choose", "Highlight what is above", "Highlight another"),
-        ("next", "down", "choose", "Highlight what is below", "Highlight another"),
-        ("take", "enter", "answer", "Give the highlighted answer, for good"),
-        ("skip", "escape", "without predicting", "Go on without an answer"),
+        ("previous", "up", "choose", "Highlight the one above", "Highlight another"),
+        ("next", "down", "choose", "Highlight the one below", "Highlight another"),
+        ("take", "enter", "answer", "Give the highlighted answer; it is final"),
+        ("skip", "escape", "without predicting", "Go on without predicting"),
         ("page_up", "pageup", "scroll", "Scroll the text up"),
         ("page_down", "pagedown", "scroll", "Scroll the text down"),
         ("close", "q", "back", "Go back to where you came from"),
@@ -244,17 +272,26 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
     ),
     Scope.ASKING: (
         ("take", "enter", "look at it", "Look at the solution"),
-        ("close", "escape,q", "not yet", "Close the window, and look at nothing"),
+        ("close", "escape,q", "not yet", "Close the window"),
     ),
     Scope.NUMBER: (
         ("go", "enter", "take", "Take the number"),
-        ("close", "escape", "close", "Close the window, and leave the number as it is"),
+        ("close", "escape", "close", "Close the window, and keep the number"),
     ),
     Scope.MOMENT: (
         ("go", "enter", "go", "Go to the moment"),
         ("close", "escape", "close", "Close the window, and stay where you are"),
     ),
-    Scope.HELP: (("close", "escape,q,question_mark", "close", "Go back to where you were"),),
+    Scope.CHAIN: (
+        ("go", "enter", "follow", "Follow the chain"),
+        ("close", "escape", "close", "Close the window, and follow what was followed before"),
+    ),
+    Scope.HELP: (
+        ("search", "/", "search", "Show only signs and keys with certain words"),
+        ("close", "escape,q,question_mark", "close", "Go back to where you were"),
+    ),
+    Scope.TOUR: (("close", "escape", "any key leaves the tour", "Leave the tour, as any key does"),),
+    Scope.JUMP: (("close", "escape", "leave, a letter goes there", "Leave without going anywhere"),),
     Scope.EVERYWHERE: (
         ("command_palette", "ctrl+p", "commands", "Find any command, and colour themes"),
         ("help", "question_mark", "help", "Show every key and what it does"),
@@ -263,6 +300,32 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
 """The other fields of each scope's actions, in the order of ``KeyAction``."""
 
 ACTIONS = tuple(KeyAction(scope, *row) for scope, rows in _ROWS.items() for row in rows)
+
+
+TASKS = {
+    task: tuple(names.split())
+    for task, names in {
+        "Learn": "predict explain exercise watch hint solution lesson next_lesson leave",
+        "Act on the run": (
+            "call_service call_service_off prompt type reset_world run_again start_over undo take_over"
+        ),
+        "Time": (
+            "pause resume step step_back narrate slower faster earlier later go_to_time live zoom_in "
+            "zoom_out pan_earlier pan_later"
+        ),
+        "Ask why": (
+            "diagnoses chain select lane_above lane_below previous_event next_event to_code copy_details "
+            "deselect"
+        ),
+        "Change something and compare": "threads group set_up compare",
+        "Panes": (
+            "show_pane next_pane jump maximise enlarge_lanes wider narrower taller lower usual_sizes "
+            "cycle_camera filter_log"
+        ),
+        "Files": "open_source record export",
+    }.items()
+}
+"""A lesson's actions by what they are for, in the order of the help."""
 
 
 def actions_of(scope: Scope) -> tuple[KeyAction, ...]:

@@ -20,6 +20,7 @@ _PLACES = {
     Scope.FILTER: "focused",
     Scope.CODE: "focused",
     Scope.CHECKS: "focused",
+    Scope.CHOICE: "focused",
     Scope.PROMPT: "focused",
     Scope.KEYBOARD: "focused",
 }

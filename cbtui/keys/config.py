@@ -22,6 +22,7 @@ _TABLES = ("keys", "display")
 _CHOICES = {
     "theme": [*(theme.name for theme in THEMES), *BUILTIN_THEMES],
     "charset": [AUTO, *Charset],
+    "screen_reader": ["on", "off"],
 }
 
 
@@ -31,6 +32,7 @@ class Config:
 
     theme: str | None = None
     charset: str | None = None
+    screen_reader: str | None = None
     keymap: Keymap = field(default_factory=Keymap)
 
 
@@ -77,7 +79,7 @@ def read_text(text: str, name: str) -> ParsedConfig:
     keys = _table(document, "keys", complain)
     keymap = read_keys(dict(_flat(keys)), lambda entry, sentence: complain(f"keys.{entry}", sentence))
     display = _display(_table(document, "display", complain), complain)
-    config = Config(display.get("theme"), display.get("charset"), keymap)
+    config = Config(display.get("theme"), display.get("charset"), display.get("screen_reader"), keymap)
     return ParsedConfig(config, [f"{name}:{line}: {sentence}" for line, sentence in sorted(complaints)])
 
 

@@ -90,7 +90,10 @@ def _clashes(keymap: Keymap) -> Iterator[tuple[str, str, str]]:
     """Yield pairs of actions that share a key where they do not share one in the registry."""
     for scope in Scope:
         own = actions_of(scope)
-        for (one, one_now), (other, other_now) in combinations(zip(own, keymap.of(own), strict=True), 2):
-            shared = set(keys_of(one_now)).intersection(keys_of(other_now))
-            if shared and not set(keys_of(one)).intersection(keys_of(other)):
-                yield key_id(one), key_id(other), min(shared)
+        keys = [
+            (key_id(action), set(keys_of(action)), set(keys_of(now)))
+            for action, now in zip(own, keymap.of(own), strict=True)
+        ]
+        for (one, usual, now), (other, others_usual, others_now) in combinations(keys, 2):
+            if now & others_now and not usual & others_usual:
+                yield one, other, min(now & others_now)

@@ -29,7 +29,7 @@ _PLAIN_SIGNS = _SIGNS | {
 
 def signs_of(actions: Iterable[KeyAction], charset: Charset) -> str:
     """Return the keys of some actions for display."""
-    keys = [action.key.partition(",")[0] for action in actions]
+    keys = list(dict.fromkeys(action.key.partition(",")[0] for action in actions))
     digits = [key for key in keys if key.isdigit()]
     if len(digits) > 2 and "".join(digits) in "0123456789":
         keys = [key for key in keys if key not in digits] + [f"{digits[0]}-{digits[-1]}"]

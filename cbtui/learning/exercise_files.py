@@ -32,7 +32,7 @@ class ExerciseFile:
 
 
 _SENTENCES = {
-    StarterPlacement.NEW: "{name} is in {folder} now, and is yours: it is checked whenever you save it.",
+    StarterPlacement.NEW: "{name} is yours now, in {folder}: it is checked whenever you save it.",
     StarterPlacement.THERE_ALREADY: (
         "{name} is in {folder} already, unchanged: it is checked whenever you save it."
     ),

@@ -17,6 +17,7 @@ from lessons.judge import Judge
 from lessons.lesson import DESCRIPTION_FILE, EXPLANATION_FILE, GUIDE_FILE, BadLesson, Lesson, read_lesson
 from sim import foreign_file
 from sim.diagnosis import RULES
+from sim.diagnosis.rules.errors import ProgramRaised
 
 WIDTH = 79
 """The longest line of a guide in columns, for the narrowest terminals."""
@@ -178,6 +179,8 @@ def _run_faults(lesson: Lesson, file: str, run: ObservedRun, declared: Iterable[
         yield f"{_in(lesson, file)}: {run.trouble}"
         return
     found = {each.rule.id for each in problems(run.timeline)}
+    if run.trouble is not None:  # which is told, or to be mended
+        found -= {ProgramRaised.id} - set(declared)
     for rule in sorted(found - set(declared)):
         yield f"{_in(lesson, file)}: the diagnosis finds {rule}, which [diagnoses] does not declare"
     for rule in sorted(set(declared) - found):

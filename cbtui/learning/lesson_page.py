@@ -7,6 +7,7 @@ from enum import StrEnum
 from typing import TypeAlias
 
 from cbtui.learning.outcome import PredictionOutcome, run_text
+from cbtui.learning.stage import all_predicted, is_revealed
 from lessons.description import Exercise, Prediction
 from lessons.lesson import Lesson
 from lessons.progress import LessonProgress
@@ -52,11 +53,6 @@ class PageState:
     progress: LessonProgress
     outcome: PredictionOutcome | None = None
     held: bool = False
-
-
-def all_predicted(lesson: Lesson, progress: LessonProgress) -> bool:
-    """Tell whether every prediction was answered."""
-    return len(progress.answers) >= len(lesson.predictions)
 
 
 def introduction(guide: str) -> str:
@@ -105,7 +101,7 @@ def _parts(lesson: Lesson, standing: PageState, signs: PageKeys) -> Iterator[tup
         yield PageSection.TASK, f"## Task\n\n{lesson.task}"
     if lesson.predictions and not seen:
         yield PageSection.PREDICTION, _predictions(lesson, progress, signs)
-    if seen or all_predicted(lesson, progress):
+    if is_revealed(lesson, progress):
         yield PageSection.GUIDE, "".join(section for section in sections if not section.startswith(_WHY))
     if not seen:
         return
@@ -126,13 +122,15 @@ def _predictions(lesson: Lesson, progress: LessonProgress, signs: PageKeys) -> s
         for each, answer in zip(lesson.predictions, progress.answers, strict=False)
     ]
     if all_predicted(lesson, progress):
-        way_on = f"The run decides. When you have seen enough, `{signs.explain}` tells what is true, and why."
+        way_on = (
+            f"Now watch the run. When you have seen enough, `{signs.explain}` tells what happened, and why."
+        )
     else:
         way_on = (
-            f"`{signs.predict}` asks what you expect; what to watch for opens here then. "
-            f"`{signs.explain}` tells what is true, and why."
+            f"`{signs.predict}` asks what you expect, and then shows here what to watch for. "
+            f"`{signs.explain}` tells what happens, and why."
         )
-    title = "## Your prediction" if given else "## Not predicted yet"
+    title = "## Your prediction" if given else "## No prediction yet"
     return "\n\n".join((title, *given, way_on))
 
 
@@ -140,19 +138,19 @@ def _shown(lesson: Lesson, standing: PageState, signs: PageKeys) -> str:
     outcome, answers = standing.outcome, standing.progress.answers
     if outcome is None:
         note = (
-            "The lesson is run once more, to read off what is true …"
+            "The lesson runs once more to check your prediction …"
             if standing.held
-            else f"`{signs.explain}` holds your prediction against a run."
+            else f"`{signs.explain}` checks your prediction against a run."
         )
         return f"## What the run showed\n\n{note}"
     if outcome.trouble is not None:
-        trouble = f"Your prediction could not be held against a run: {outcome.trouble}."
+        trouble = f"Your prediction could not be checked against a run: {outcome.trouble}."
         return f"## What the run showed\n\n{trouble}"
     told = [
         _verdict(prediction, answers[place] if place < len(answers) else None, true)
         for place, (prediction, true) in enumerate(zip(lesson.predictions, outcome.true, strict=True))
     ]
-    held = f"Read off {run_text(lesson)}{' on real ROS 2' if outcome.is_real else ''}."
+    held = f"Checked against {run_text(lesson)}{' on real ROS 2' if outcome.is_real else ''}."
     return "\n\n".join((f"## What the run showed: {tally(lesson, standing)}", *told, held))
 
 
@@ -160,19 +158,19 @@ def tally(lesson: Lesson, standing: PageState) -> str:
     """Return how many predictions were right, in words."""
     answers, true = standing.progress.answers, standing.outcome.true if standing.outcome else ()
     if not answers:
-        return "not predicted"
+        return "no prediction"
     right = sum(answer == shown for answer, shown in zip(answers, true, strict=False))
-    return f"{right} of {len(lesson.predictions)} as you said"
+    return f"You got {right} of {len(lesson.predictions)}"
 
 
 def _verdict(prediction: Prediction, answer: int | None, true: int) -> str:
     shown = prediction.answers[true]
     if answer == true:
-        told = f"✓ As you said: **{shown}**"
+        told = f"✓ You were right: **{shown}**"
     elif answer is None:
-        told = f"· Not predicted. True is: **{shown}**"
+        told = f"· You made no prediction. What happened: **{shown}**"
     else:
-        told = f"✗ You said: {prediction.answers[answer]}\n\n→ True is: **{shown}**"
+        told = f"✗ You said: {prediction.answers[answer]}\n\n→ What happened: **{shown}**"
     because = prediction.because
     if true != prediction.right:
         expected = prediction.answers[prediction.right]
@@ -182,7 +180,7 @@ def _verdict(prediction: Prediction, answer: int | None, true: int) -> str:
 
 def _exercise(exercise: Exercise, progress: LessonProgress, signs: PageKeys) -> str:
     title = "## Exercise: passed ✓" if progress.passed else "## Exercise"
-    begin = f"`{signs.exercise}` goes there: to a file of your own in the current folder."
+    begin = f"`{signs.exercise}` starts it, in a file of your own in the current folder."
     return "\n\n".join((title, exercise.asks.strip(), begin))
 
 
@@ -192,7 +190,7 @@ def _hints(exercise: Exercise, progress: LessonProgress, signs: PageKeys) -> str
     told = [f"**Hint {number} of {total}:** {hint}" for number, hint in enumerate(taken, start=1)]
     if len(taken) < total:
         told.append(
-            f"`{signs.hint}` gives hint {len(taken) + 1} of {total}; `{signs.solution}` the solution."
+            f"`{signs.hint}` gives hint {len(taken) + 1} of {total}; `{signs.solution}` shows the solution."
         )
     else:
         told.append(f"`{signs.solution}` shows the solution.")

@@ -1,9 +1,21 @@
-"""The stages of a lesson's progress, as signs and in words."""
+"""The stages of a lesson's progress, as signs and in words, and the steps that lead through a lesson."""
 
+from collections.abc import Iterable, Iterator, Mapping
 from enum import Enum
+from typing import NamedTuple
 
 from lessons.lesson import Lesson
 from lessons.progress import LessonProgress
+
+
+def all_predicted(lesson: Lesson, progress: LessonProgress) -> bool:
+    """Tell whether every prediction was answered."""
+    return len(progress.answers) >= len(lesson.predictions)
+
+
+def is_revealed(lesson: Lesson, progress: LessonProgress) -> bool:
+    """Tell whether what a run shows can be shown, since it gives no answer to a prediction away any more."""
+    return progress.seen or all_predicted(lesson, progress)
 
 
 class Stage(Enum):
@@ -13,28 +25,120 @@ class Stage(Enum):
     OPENED = "○"
     PREDICTED = "◐"
     WATCHED = "●"
-    """Only of a lesson with an exercise, which is still to be done."""
+    """Watched, and something is still to be done."""
     DONE = "✓"
 
 
 def stage_of(lesson: Lesson, progress: LessonProgress, *, opened: bool) -> Stage:
-    """Return the stage of a lesson; one without an exercise is done once it was watched."""
-    if progress.passed or (progress.seen and lesson.exercise is None):
+    """Return the stage of a lesson; done is one predicted, explained and, with an exercise, solved."""
+    solved = progress.passed or lesson.exercise is None
+    if progress.explained and all_predicted(lesson, progress) and solved:
         return Stage.DONE
-    if progress.seen:
+    if progress.seen or progress.passed:
         return Stage.WATCHED
     if progress.answers:
         return Stage.PREDICTED
     return Stage.OPENED if opened else Stage.UNTOUCHED
 
 
-_WORDS = {
-    Stage.PREDICTED: "predicted, to be watched",
-    Stage.WATCHED: "watched, exercise to do",
-    Stage.DONE: "done",
+def stage_of_puzzle(progress: LessonProgress) -> Stage:
+    """Return the stage of a puzzle; one whose solution was only looked at is not done."""
+    return Stage.DONE if progress.passed else Stage.WATCHED if progress.solution else Stage.UNTOUCHED
+
+
+def puzzle_text(progress: LessonProgress) -> str:
+    """Return the sign of a puzzle's stage and what it means; "" for one that is untouched."""
+    stage = stage_of_puzzle(progress)
+    words = {Stage.DONE: "solved", Stage.WATCHED: "solution seen, not solved yet"}
+    return f"{stage.value} {words[stage]}" if stage in words else ""
+
+
+_MEANINGS = {
+    Stage.UNTOUCHED: "not opened yet",
+    Stage.OPENED: "opened",
+    Stage.PREDICTED: "predicted, not watched yet",
+    Stage.WATCHED: "watched; the explanation or the exercise is left, or nothing was predicted",
+    Stage.DONE: "done: predicted, explained, and the exercise passed",
 }
 
 
-def stage_text(stage: Stage) -> str:
-    """Return a stage's sign and meaning; "" for the stages before a prediction."""
-    return f"{stage.value} {_WORDS[stage]}" if stage in _WORDS else ""
+def meaning_of(stage: Stage) -> str:
+    """Return what the sign of a stage means."""
+    return _MEANINGS[stage]
+
+
+def stage_text(lesson: Lesson, progress: LessonProgress, stage: Stage) -> str:
+    """Return a stage's sign and what is left to do; "" for the stages before a prediction."""
+    match stage:
+        case Stage.PREDICTED:
+            text = "predicted, not watched yet"
+        case Stage.WATCHED if not progress.seen:
+            text = "exercise passed, not watched yet"
+        case Stage.WATCHED if not progress.explained:
+            text = "watched, not explained yet"
+        case Stage.WATCHED if lesson.exercise is not None and not progress.passed:
+            text = "explained, exercise to do"
+        case Stage.WATCHED:
+            text = "explained without a prediction"
+        case Stage.DONE:
+            text = "done"
+        case _:
+            return ""
+    return f"{stage.value} {text}"
+
+
+def next_lesson(lessons: Iterable[Lesson], stages: Mapping[str, Stage]) -> Lesson | None:
+    """Return where to go on: the first lesson with something left to do; None if there is none."""
+    return next((lesson for lesson in lessons if stages[lesson.id] not in (Stage.WATCHED, Stage.DONE)), None)
+
+
+class StepState(Enum):
+    """Where the learner is with a step."""
+
+    DONE = "✓"
+    CURRENT = "●"
+    OPEN = ""
+
+
+class Step(NamedTuple):
+    """One of the steps through a lesson; ``note`` is shown in place of the state's sign."""
+
+    name: str
+    state: StepState
+    note: str = ""
+
+    @property
+    def text(self) -> str:
+        """The name with its note or sign."""
+        return f"{self.name} {self.note or self.state.value}".rstrip()
+
+
+def steps_of(lesson: Lesson, progress: LessonProgress, checks: str = "") -> tuple[Step, ...]:
+    """Return the steps that a lesson has; the first one that is not done is current.
+
+    ``checks`` tells how many checks of the exercise pass, if it is on screen: the exercise is current then.
+    """
+    done, predicted = dict(_steps_done(lesson, progress)), all_predicted(lesson, progress)
+    current = "Exercise" if checks else next((name for name, is_done in done.items() if not is_done), "")
+    return tuple(
+        Step(
+            name,
+            StepState.CURRENT if name == current else StepState.DONE if is_done else StepState.OPEN,
+            checks
+            if name == "Exercise"
+            else "missed"
+            if name == "Predict" and not predicted and is_done
+            else "",
+        )
+        for name, is_done in done.items()
+    )
+
+
+def _steps_done(lesson: Lesson, progress: LessonProgress) -> Iterator[tuple[str, bool]]:
+    """Yield each step, and whether it is done; a prediction that was missed cannot be made up for."""
+    if lesson.predictions:
+        yield "Predict", progress.seen or all_predicted(lesson, progress)
+    yield "Run", progress.seen
+    yield "Explain", progress.explained
+    if lesson.exercise is not None:
+        yield "Exercise", progress.passed

@@ -95,6 +95,9 @@ class Glyphs:
     lost: str
     blocked: str
     between: str
+    heights: str
+    """From nothing to a full column, by eighths."""
+    sleeps: str
     textures: str
     textured: Role
 
@@ -108,6 +111,7 @@ _BLOCKS = Glyphs(
     hatch={
         Reason.GROUP_HELD: "\N{BOX DRAWINGS LIGHT DIAGONAL UPPER RIGHT TO LOWER LEFT}",
         Reason.NO_FREE_WORKER: "\N{BOX DRAWINGS LIGHT DIAGONAL UPPER LEFT TO LOWER RIGHT}",
+        Reason.EVENT_QUEUE: "\N{IDENTICAL TO}",
         Reason.NOBODY_SPINS: "\N{BOX DRAWINGS LIGHT DIAGONAL CROSS}",
     },
     frame="│",
@@ -122,6 +126,8 @@ _BLOCKS = Glyphs(
     lost="×",
     blocked="░",
     between="·",
+    heights=" ▁▂▃▄▅▆▇█",
+    sleeps="┄",
     textures="█·═║┼○",
     textured=Role.TEXTURE,
 )
@@ -131,7 +137,12 @@ _PLAIN = Glyphs(
     line="-",
     double_line="=",
     point=".",
-    hatch={Reason.GROUP_HELD: "/", Reason.NO_FREE_WORKER: "\\", Reason.NOBODY_SPINS: "x"},
+    hatch={
+        Reason.GROUP_HELD: "/",
+        Reason.NO_FREE_WORKER: "\\",
+        Reason.EVENT_QUEUE: "_",
+        Reason.NOBODY_SPINS: "x",
+    },
     frame="|",
     cursor=":",
     up="^",
@@ -144,6 +155,8 @@ _PLAIN = Glyphs(
     lost="*",
     blocked="%",
     between="-",
+    heights=" ..::==##",
+    sleeps=".",
     textures="#+=o@&",
     textured=Role.BAR,
 )
@@ -185,11 +198,7 @@ def style_of(ink: Ink, palette: Palette, background: str) -> Style:
         return Style(color=Color.from_triplet(drawn), bgcolor=Color.from_triplet(colour))
     if ink.role is Role.LABEL:
         return Style(color=Color.from_triplet(readable_on(colour)), bgcolor=Color.from_triplet(colour))
-    return Style(
-        color=Color.from_triplet(colour),
-        bgcolor=Color.from_triplet(ground),
-        bold=ink.role in _BOLD,
-    )
+    return Style(color=Color.from_triplet(colour), bgcolor=Color.from_triplet(ground), bold=ink.role in _BOLD)
 
 
 _LATER = 2 / 3

@@ -12,11 +12,12 @@ from cbtui.runs.live.live_run import ShownRun
 from cbtui.runs.recorded.repeat import CannotRepeatError, repeated_setup
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import RunRequest
+from cbtui.terminal.progress_line import ProgressLine
 from cbtui.text.output import complain, say
 from sim.engine.setup import RunSetup
 from sim.recording import RecordingError, read
 from sim.trace.figures.comparison import compare
-from sim.trace.figures.comparison_text import comparison_text
+from sim.trace.figures.comparison_text import comparison_lines, comparison_text
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND, nearest_ns
@@ -97,6 +98,12 @@ class RunProgress:
     at: Nanoseconds
     until: Nanoseconds | None = None
 
+    @property
+    def text(self) -> str:
+        """It as one line."""
+        until = "" if self.until is None else f" of {self.until / SECOND:g} s"
+        return f"{self.doing} {self.name}: {self.at / SECOND:.1f} s{until}"
+
 
 Tell: TypeAlias = Callable[[RunProgress], None]
 
@@ -121,16 +128,26 @@ def compared_side(run: ShownRun, changes: Changes) -> ComparedSide:
     )
 
 
-def compare_runs(first: ComparedRun, second: ComparedRun, terms: ComparisonTerms) -> int:
-    """Print the comparison; returns the exit code: 0 on success, 1 if a run failed, 2 if there is none."""
+def compare_runs(
+    first: ComparedRun, second: ComparedRun, terms: ComparisonTerms, *, in_lines: bool = False
+) -> int:
+    """Print the comparison as a table, or ``in_lines``, none of which is written over.
+
+    Returns the exit code: 0 on success, 1 if a run failed, 2 if there is no comparison.
+    """
     try:
-        found = load_runs(first, second, terms, tell=lambda _: None, given_up=Event())
+        with ProgressLine() as line:
+            tell = (lambda _: None) if in_lines else (lambda at: line.show(at.text))
+            found = load_runs(first, second, terms, tell, Event())
     except CannotCompareError as error:
         complain(str(error))
         return 2
     one, other = found.first, found.second
     compared = compare(one.timeline, other.timeline, found.window)
-    say(comparison_text(compared, one.name, other.name))
+    if in_lines:
+        say("".join(f"{line}\n" for line in comparison_lines(compared, one.name, other.name)))
+    else:
+        say(comparison_text(compared, one.name, other.name))
     failures = [side.failure for side in (one, other) if side.failure is not None]
     for sentence in dict.fromkeys([one.damage, other.damage, *failures]):
         if sentence is not None:

@@ -17,17 +17,19 @@ from cbtui.runs.live.playhead import SPANS, Playhead
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.bars import BarSelection
 from cbtui.screens.parts.frames import FRAMES_A_SECOND
-from cbtui.screens.parts.navigation import TimeNavigation
+from cbtui.screens.parts.jumps import Jumps
+from cbtui.screens.parts.navigation import MomentKey, TimeNavigation
 from cbtui.screens.parts.part import ScreenParts
 from cbtui.screens.sized import SizedScreen
+from cbtui.screens.windows.jump import JumpScreen
 from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, HeadingLine
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
 from sim.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
-from sim.trace.figures.comparison import compare_incrementally
-from sim.trace.figures.comparison_rows import RUNS, Section, extent, sections, stretch
+from sim.trace.figures.comparison import compare_incrementally, first_difference
+from sim.trace.figures.comparison_rows import RUNS, Section, extent, sections, stretch, verdict
 from sim.trace.incremental import Incremental
 from sim.trace.model import Nanoseconds, Window
 
@@ -72,22 +74,33 @@ class CompareScreen(SizedScreen[None]):
         self._bounds = bounds
         self._whole = True
         self.navigation = TimeNavigation(
-            self, lambda: [side.timeline for side in self._sides], lambda: self._end, self._moved
+            lambda: [side.timeline for side in self._sides], lambda: self._end, self._moved
         )
         if bounds is not None:
             self.navigation.playhead = _at_the_end_of(bounds, self._end)
         self.bars = BarSelection(
             lambda: list(self.query(Lanes)), self.navigation, lambda: self.query_one(KeyBar).changed()
         )
-        self._parts = ScreenParts(self, Scope.COMPARE, self.navigation, self.bars)
+        self._parts = ScreenParts(
+            self,
+            Scope.COMPARE,
+            self.navigation,
+            MomentKey(self, self.navigation),
+            self.bars,
+            Jumps(self, self),
+        )
         self._drawn: tuple[object, ...] = ()
         self._compared: Window | None = None
         self._comparing = False
         self._rest_until = 0.0
+        self._verdict = ""
+        self._first_difference: Nanoseconds | None = None
+        self._has_moved = bounds is not None
 
     def compose(self) -> ComposeResult:
         """Lay out both runs and the table."""
         yield HeadingLine(self.charset, id="status")
+        yield HeadingLine(self.charset, id="verdict")
         for number in range(len(self._sides)):
             yield HeadingLine(self.charset, id=f"run{number}")
             yield Lanes(id=f"lanes{number}")
@@ -113,7 +126,7 @@ class CompareScreen(SizedScreen[None]):
         """Show the playhead's moment if it or a run has changed."""
         ends = tuple((side.timeline.end, side.alive()) for side in self._sides)
         now = (self.navigation.playhead, ends, self.layout_now)
-        if self.layout_now is Layout.SMALL:
+        if self.layout_now is Layout.SMALL or isinstance(self.app.screen, JumpScreen):
             return
         if now != self._drawn:
             self._drawn = now
@@ -137,6 +150,7 @@ class CompareScreen(SizedScreen[None]):
             lanes = self._lanes(number)
             # Nothing is known of a run after its end, even of a callback that was still running.
             lanes.window, lanes.now = shown, min(at, side.timeline.end)
+            lanes.whole = max(each.timeline.end for each in self._sides)
             lanes.timeline = side.timeline
 
     def _draw_table(self) -> None:
@@ -168,8 +182,19 @@ class CompareScreen(SizedScreen[None]):
                 turn = monotonic()
         self._title(words)
         self.query_one(ComparisonTable).show(shown)
+        self._look_at_first_difference()
         self._comparing = False
         self._rest_until = monotonic() + _REST_FACTOR * (worked + monotonic() - turn)
+
+    def _look_at_first_difference(self) -> None:
+        """Show the verdict on whole runs, and where they differ, unless the person has gone elsewhere."""
+        if not self._verdict:
+            return
+        at = self._first_difference
+        where = "no call differs" if at is None else f"they differ from {timestamp(at)}"
+        self.query_one("#verdict", HeadingLine).words = (TextRun(f" {self._verdict}; {where}", _STRONG),)
+        if at is not None and not self._has_moved:
+            self.navigation.seek(at)
 
     def _title(self, words: str) -> None:
         """Set the heading of the table."""
@@ -191,6 +216,8 @@ class CompareScreen(SizedScreen[None]):
             return f"{what}: nothing that both runs have; {_shorter(first, second)}", ()
         compared = yield from compare_incrementally(first.timeline, second.timeline, asked)
         if self._whole:
+            self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
+            self._verdict = verdict(compared)
             return f"{what}, {extent(compared)}", sections(compared)
         cut = asked.end < min(self._asked.end, self._end)
         after = f"; {_shorter(first, second)}" if cut else ""
@@ -240,6 +267,7 @@ class CompareScreen(SizedScreen[None]):
         self.bars.select(None)
 
     def _moved(self) -> None:
+        self._has_moved = True
         if self._comparing and not self._whole:
             self._forget_comparison()
         self.draw()
@@ -251,11 +279,11 @@ class CompareScreen(SizedScreen[None]):
         self.draw()
 
     def action_scroll_table_up(self) -> None:
-        """Show what lies above in the table."""
+        """Scroll the table up."""
         self.query_one(ComparisonTable).scroll_relative(y=-_ROWS_A_KEY, animate=False)
 
     def action_scroll_table_down(self) -> None:
-        """Show what lies below in the table."""
+        """Scroll the table down."""
         self.query_one(ComparisonTable).scroll_relative(y=_ROWS_A_KEY, animate=False)
 
     def action_maximise(self) -> None:
@@ -284,10 +312,7 @@ def _about(number: int, side: ComparedSide, at: Nanoseconds) -> tuple[TextRun, .
     timeline = side.timeline
     state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
     told = [text for text in (executor_label(timeline), f"dropped {timeline.dropped(at)}", state) if text]
-    return (
-        TextRun(f" {RUNS[number]}  {side.name}", _STRONG),
-        TextRun(f"   {'   '.join(told)}", _PLAIN),
-    )
+    return (TextRun(f" {RUNS[number]}  {side.name}", _STRONG), TextRun(f"   {'   '.join(told)}", _PLAIN))
 
 
 def _shorter(first: ComparedSide, second: ComparedSide) -> str:

@@ -118,7 +118,7 @@ class ComparisonLoadingScreen(SizedScreen[None]):
 
     @on(Progressed)
     def _show_progress(self, message: Progressed) -> None:
-        self.query_one("#progress", Static).update(progress_text(message.progress))
+        self.query_one("#progress", Static).update(message.progress.text)
 
     @on(Ready)
     def _take(self, message: Ready) -> None:
@@ -147,10 +147,3 @@ class ComparisonLoadingScreen(SizedScreen[None]):
             self.app.exit(return_code=2)
         else:
             self.dismiss()
-
-
-def progress_text(progress: RunProgress) -> str:
-    """The progress of a run in words."""
-    at = f"{progress.at / 1e9:.1f} s"
-    of = "" if progress.until is None else f" of {progress.until / 1e9:g} s"
-    return f"{progress.doing} {progress.name}: {at}{of}"

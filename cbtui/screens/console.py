@@ -9,22 +9,34 @@ from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.recent import RecentEntry
 from lessons.lesson import Lesson
 from lessons.progress import Progress
+from lessons.puzzles import Puzzle
 from sim.engine.setup import RealRos
 
 
-class ConsoleApp(Protocol):
-    """The app as its screens see it."""
+class LessonOpener(Protocol):
+    """What opens lessons, and knows how far the learner is."""
 
     progress: Progress
     """The learner's progress."""
+
+    def open_lesson(self, lesson: Lesson, changes: Changes | None = None, *, tour: bool = False) -> None:
+        """Run a lesson on screen, in place of another that may be open, as it is or with changes.
+
+        With ``tour`` it is shown round first.
+        """
+
+
+class ConsoleApp(LessonOpener, Protocol):
+    """The app as its screens see it."""
+
     observe: Observe
     """Runs a lesson in the background, to find the true answers to its predictions."""
 
-    def open_lesson(self, lesson: Lesson, changes: Changes | None = None) -> None:
-        """Run a lesson on screen, in place of another that may be open, as it is or with changes."""
-
     def open_exercise(self, lesson: Lesson, real: RealRos | None = None) -> None:
         """Run and check the learner's file for a lesson's exercise, on the model or on that ROS 2."""
+
+    def open_puzzle(self, puzzle: Puzzle) -> None:
+        """Let the learner schedule the threads of a puzzle."""
 
     def open_file(self, entry: RecentEntry) -> None:
         """Run a program or show a recording.

@@ -7,31 +7,32 @@ from typing import ClassVar
 
 import msgspec
 from textual import on
-from textual.message import Message
+from textual.app import ComposeResult
 from textual.widget import Widget
 
 from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.keys.action import CHECKS, PANES, Scope
 from cbtui.keys.keymap import STANDARD, Keymap, keymap_of
 from cbtui.learning.lesson_page import page_of_exercise
+from cbtui.learning.stage import Step
 from cbtui.looks.theme import Charset
 from cbtui.runs.judged.checking import ObservedRun, ended_run
 from cbtui.runs.judged.run_budget import RunBudget
-from cbtui.runs.live.file_watch import CANNOT_WATCH, contents
-from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import of_exercise
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey
-from cbtui.screens.parts.exercise_help import ExerciseHelp
-from cbtui.screens.parts.judging import Judging
-from cbtui.screens.parts.learning import Learning, signs
-from cbtui.screens.parts.restarts import Restarts
+from cbtui.screens.parts.own_file import FileRead, read_when_saved
+from cbtui.screens.parts.restarts import CompareKey, Restarts
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.run import RunScreen
+from cbtui.screens.teaching.exercise_help import ExerciseHelp
+from cbtui.screens.teaching.judging import Judging
+from cbtui.screens.teaching.learning import Learning, signs
 from cbtui.widgets.checks import ChecksSheet, CheckStatus, ChecksView
 from cbtui.widgets.checks.exercise_sheet import ExerciseKeys, ExerciseTexts
 from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
+from cbtui.widgets.passed_banner import PassedBanner
 from lessons.lesson import Lesson
 from sim.engine.setup import RealRos
 
@@ -52,13 +53,6 @@ class ExerciseScreen(RunScreen[LiveRun]):
     PANES_HERE = (*PANES, CHECKS)
     FIRST_PANE = CHECKS
     AUTO_FOCUS = f"#{CHECKS}"
-
-    class Saved(Message):
-        """The file was read; ``content`` may be unchanged, None if the file is missing."""
-
-        def __init__(self, content: bytes | None) -> None:
-            super().__init__()
-            self.content = content
 
     def __init__(
         self,
@@ -93,6 +87,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
             PaceKeys(self, runs),
             RecordingKey(self, runs, self.finisher),
             self.restarts,
+            CompareKey(self, self.restarts),
             ExerciseHelp(
                 self,
                 self,
@@ -104,11 +99,6 @@ class ExerciseScreen(RunScreen[LiveRun]):
             lesson=lambda: self.console.open_lesson(lesson, Changes(real=real)),
         )
         runs.begin(speed=None)
-
-    @property
-    def recording(self) -> LiveRecording | None:
-        """What records the run."""
-        return self.runs.run.recording
 
     @property
     def is_judged(self) -> bool:
@@ -123,6 +113,11 @@ class ExerciseScreen(RunScreen[LiveRun]):
 
     # what is shown
 
+    def compose(self) -> ComposeResult:
+        """Lay out the screen, and over it the banner."""
+        yield from super().compose()
+        yield PassedBanner(self.charset)
+
     def compose_panes(self) -> Iterator[Widget]:
         """Yield the panes, the checks first: in the grid they stand before the code."""
         yield ChecksView(self._sheet, id=CHECKS)
@@ -131,7 +126,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
     def on_mount(self) -> None:
         """Watch the file and the run."""
         self.set_interval(_BUDGET_INTERVAL, self.check_budget)
-        self.run_worker(self._watch_file(), group="file")
+        self.run_worker(read_when_saved(self._judging.file, self.post_message, self.tell), group="file")
 
     def draw_pane(self, pane: Widget) -> None:
         """Show the moment on screen on one pane."""
@@ -144,14 +139,21 @@ class ExerciseScreen(RunScreen[LiveRun]):
         """Return the task, the hints, and what was explained already."""
         return self._learning.page()
 
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """The steps through the lesson; the last one counts the checks that pass."""
+        return self._learning.steps(self._sheet.count)
+
     def diagnosis(self) -> Diagnosis:
         """Return the diagnosis of the moment on screen, or the result of a finished run."""
         if self.navigation.playhead.at is not None or self.runs.run.alive:
             return super().diagnosis()
-        sheet = self._sheet
-        if sheet.standing is CheckStatus.FAILED and not sheet.note:
+        sheet, has_failed = self._sheet, self._sheet.standing is CheckStatus.FAILED
+        if has_failed and not sheet.note:
             return Diagnosis(sheet.news, DiagnosisLevel.TROUBLE, stays=True)
-        return Diagnosis(sheet.news, DiagnosisLevel.FINE)
+        # A problem of the run takes the place of a diagnosis that is fine.
+        alone = not any(each.is_problem for each in self.runs.findings.findings)
+        return Diagnosis(sheet.news, DiagnosisLevel.TROUBLE if has_failed and alone else DiagnosisLevel.FINE)
 
     @property
     def _words(self) -> ExerciseTexts:
@@ -212,21 +214,26 @@ class ExerciseScreen(RunScreen[LiveRun]):
         self._judging.sheet = self._words.judged(checked)
         self.look_for_findings()
         if checked.good:
+            if not self._learning.progress.passed:
+                self._celebrate(checked.total)
             self._learning.store.passes(self._learning.lesson.id)
             await self._learning.update_page()
 
+    def _celebrate(self, checks: int) -> None:
+        """Show over the lanes that the exercise passed."""
+        key = self.key("next_lesson")
+        way_on = (
+            f"{key} opens the next lesson"
+            if self.subject.following is not None
+            else "that was the last lesson"
+        )
+        text = f"✓ {self._learning.lesson.title}: all {checks} checks pass, {way_on}"
+        self.query_one(PassedBanner).celebrate(text)
+
     # the file
 
-    async def _watch_file(self) -> None:
-        file = self._judging.file
-        try:
-            async for content in contents(file):
-                self.post_message(self.Saved(content))
-        except CANNOT_WATCH:
-            self.tell(f"{file.parent} cannot be watched, so saving is not noticed there.")
-
-    @on(Saved)
-    async def _take_saved(self, message: Saved) -> None:
+    @on(FileRead)
+    async def _take_saved(self, message: FileRead) -> None:
         if self._judging.is_changed_by(message.content):
             await self.restarts.action_run_again()
         else:

@@ -1,5 +1,6 @@
 """The screen of a lesson or of the user's own program."""
 
+import asyncio
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
@@ -8,23 +9,36 @@ from textual import on
 
 from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.learning.lesson_page import PageSection, page_of
+from cbtui.learning.stage import Step
 from cbtui.looks.theme import Charset
-from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram
+from cbtui.screens.choosing import ChoosingScreen
+from cbtui.screens.parts.choices import TakeOver
+from cbtui.screens.parts.cures import CureTrials
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TypingKeys, WorldKeys
-from cbtui.screens.parts.exercise_help import ExerciseHelp
-from cbtui.screens.parts.learning import Learning, signs
+from cbtui.screens.parts.keys import Refusals
+from cbtui.screens.parts.own_file import FileRead, OwnFile, read_when_saved
 from cbtui.screens.parts.part import ScreenPart
-from cbtui.screens.parts.predictions import Predictions
-from cbtui.screens.parts.restarts import Restarts, SetUpKeys
+from cbtui.screens.parts.restarts import CompareKey, Restarts, SetUpKeys
 from cbtui.screens.parts.runs import RunController
-from cbtui.screens.prediction import PredictionExit
 from cbtui.screens.run import RunScreen
+from cbtui.screens.teaching.exercise_help import ExerciseHelp
+from cbtui.screens.teaching.learning import Learning, signs
+from cbtui.screens.teaching.predictions import Predictions
+from cbtui.screens.windows.prediction import PredictionExit
+from cbtui.screens.windows.tour import TourScreen
+from cbtui.widgets.code import CodeView
+from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellView
 from lessons.lesson import Lesson
 from sim.engine.setup import Keyboard
+from sim.units import SECOND
+
+_TOUR_SPEED = 0.1
+_TOUR_END = 39 * SECOND // 10
+"""The tour's run is slow, and pauses before it shows what is to be predicted."""
 
 
 class LessonScreen(RunScreen[LiveRun]):
@@ -39,6 +53,8 @@ class LessonScreen(RunScreen[LiveRun]):
         open_session: OpenSession,
         charset: Charset,
         changes: Changes | None = None,
+        *,
+        tour: bool = False,
     ) -> None:
         self._open_session = open_session
         runs = RunController(self._make_run, self.post)
@@ -46,8 +62,15 @@ class LessonScreen(RunScreen[LiveRun]):
         self.restarts = Restarts(
             self, runs, changes or Changes(), self.show_new_run, speed=lambda: runs.run.speed
         )
+        comparison = CompareKey(self, self.restarts)
+        self.selection.cures = CureTrials(runs, self.restarts, subject, comparison.action_compare)
         self._learning: Learning | None = None
         self._predictions: Predictions | None = None
+        self._own_file = (
+            OwnFile(self, self, runs, self.restarts, self.panes, subject.node_path)
+            if subject.is_own_file
+            else None
+        )
         lesson, more = subject.lesson, {}
         if lesson is not None and lesson.exercise is not None:
             more["exercise"] = lambda: self.console.open_exercise(lesson, runs.run.setup.real)
@@ -57,11 +80,17 @@ class LessonScreen(RunScreen[LiveRun]):
             WorldKeys(runs),
             TypingKeys(runs, self.panes, lambda: self.query_one(ShellView)),
             self.restarts,
+            comparison,
             SetUpKeys(self, runs, self.restarts, self.selection, subject),
+            TakeOver(
+                runs, subject, lambda taken: self.ask(ChoosingScreen(taken, open_session, charset), None)
+            ),
             *([] if lesson is None else self._teaching_parts(lesson)),
+            Refusals(self, lesson, lambda action: self._parts.offer(action, ())),
             **more,
         )
-        runs.begin(speed=1.0)
+        self._is_tour = tour
+        runs.begin(speed=_TOUR_SPEED if tour else 1.0)
 
     def _teaching_parts(self, lesson: Lesson) -> Iterator[ScreenPart]:
         learning = self._learning = Learning(
@@ -79,16 +108,20 @@ class LessonScreen(RunScreen[LiveRun]):
         """The user's changes to the program's set-up."""
         return self.restarts.changes
 
-    @property
-    def recording(self) -> LiveRecording | None:
-        """What records the run."""
-        return self.runs.run.recording
-
     def page(self) -> Mapping[str, str]:
         """Return the unlocked sections of the guide."""
+        if self._own_file is not None:
+            return self._own_file.page()
         return super().page() if self._learning is None else self._learning.page()
 
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """The steps through the lesson."""
+        return () if self._learning is None else self._learning.steps()
+
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
+        if self._own_file is not None:
+            self._own_file.begin()
         changes = self.changes
         setup = changes.applied(self.subject.set_up(changes.threads, speed))
         setup = msgspec.structs.replace(setup, keyboard=Keyboard.LIVE)
@@ -98,12 +131,32 @@ class LessonScreen(RunScreen[LiveRun]):
 
     def start(self) -> None:
         """Start after the predictions, which are about the unchanged node."""
+        if self._is_tour:
+            super().start()
+            self.ask(TourScreen(self._show_round, self.charset), self._end_tour)
+            return
         predictions = self._predictions
         unchanged = not replace(self.changes, real=None).words
         if predictions is not None and predictions.can_predict and unchanged:
             predictions.ask(self._start_after)
         else:
             super().start()
+
+    def _show_round(self, place: str) -> None:
+        """Bring the lanes or a pane to the fore."""
+        self.query_one(Lanes).set_class(place == "lanes", "-shown")
+        if place != "lanes":
+            self.panes.show(place)
+
+    async def _end_tour(self, _: None) -> None:
+        """Begin the lesson itself, with its predictions."""
+        self._is_tour = False
+        self._show_round("guide")
+        before = self.runs.run
+        self.runs.begin(speed=1.0)
+        self.show_new_run()
+        await asyncio.to_thread(before.stop)
+        self.start()
 
     async def _start_after(self, way: PredictionExit | None) -> None:
         learning = self._learning
@@ -115,9 +168,33 @@ class LessonScreen(RunScreen[LiveRun]):
             self.action_leave()
 
     def drawn(self) -> None:
-        """Unlock the explanation once enough of the run was watched."""
-        if self._predictions is not None:
+        """Unlock the explanation once enough of the run was watched; a tour gives nothing away."""
+        run = self.runs.run
+        if self._own_file is not None:
+            self._own_file.update_guide()
+        if self._is_tour:
+            if run.timeline.end >= _TOUR_END and not run.paused:
+                run.pause()
+        elif self._predictions is not None:
             self._predictions.look_whether_watched()
+
+    # a learner's own file
+
+    def on_mount(self) -> None:
+        """Watch the file."""
+        if self._own_file is not None:
+            file = self._own_file.file
+            self.run_worker(read_when_saved(file, self.post_message, self.tell), group="file")
+
+    @on(FileRead)
+    async def _take_saved(self, message: FileRead) -> None:
+        if self._own_file is not None:
+            await self._own_file.take(message.content)
+
+    @on(CodeView.ModuleSaved)
+    async def _take_module(self, message: CodeView.ModuleSaved) -> None:
+        if self._own_file is not None:
+            await self._own_file.run_anew(message.name)
 
     @on(Predictions.Found)
     async def _take_outcome(self, message: Predictions.Found) -> None:

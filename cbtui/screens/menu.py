@@ -1,7 +1,8 @@
 """The menu: lessons by unit, recent files, and a description of the highlighted entry."""
 
-import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from importlib import import_module
 from time import time
 from typing import TYPE_CHECKING, ClassVar
 
@@ -10,61 +11,50 @@ from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Container
-from textual.events import DescendantBlur, DescendantFocus
-from textual.message import Message
-from textual.timer import Timer
+from textual.events import DescendantBlur, DescendantFocus, Key
 from textual.widgets import Input, OptionList
 
-from cbtui.engines.follow import GivenUpError
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.learning.lesson_page import short_description
-from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, PreviewRun, why_no_preview
-from cbtui.learning.stage import Stage, stage_of, stage_text
+from cbtui.learning.preview import CALLS, LENGTH, why_no_preview
+from cbtui.learning.stage import Stage, is_revealed, puzzle_text, stage_of, stage_of_puzzle, stage_text
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import RecentEntry, RecentList
 from cbtui.screens.console import console_of
 from cbtui.screens.layout import Layout
+from cbtui.screens.parts.previews import Previews
 from cbtui.screens.sized import SizedScreen
+from cbtui.terminal.textual_internals import is_being_removed
 from cbtui.widgets.banner import Banner
-from cbtui.widgets.description_pane import DescriptionPane, EntryDescription, of_file, of_lesson
+from cbtui.widgets.description_pane import DescriptionPane, EntryDescription, of_file, of_lesson, of_puzzle
 from cbtui.widgets.key_bar import KeyBar
-from cbtui.widgets.menu_list import MenuList, MenuRows, WideMenuRows, with_words
+from cbtui.widgets.menu_list import MenuChoice, MenuList, MenuRows, WideMenuRows, with_words
 from cbtui.widgets.menu_search import MenuSearch
 from cbtui.widgets.miniature import Miniature, PreviewPicture
+from lessons.catalogue import find
 from lessons.lesson import Lesson
 from lessons.progress import Progress
+from lessons.puzzles import Puzzle, puzzles, puzzles_of
 
 if TYPE_CHECKING:
     from cbtui.engines.session import OpenSession
 
-_HOVER_DELAY = 0.3
-"""Seconds that a lesson must stay highlighted before its preview is run."""
-_EXIT_TIMEOUT = 1.0
-"""Seconds to wait at exit for the engine of a preview, which is killed sooner."""
+_IDLE = 0.2
+"""Seconds from the first picture to the import of what the next screen needs."""
 _CALLED = " and ".join(f"{at / 1e9:g}" for at in CALLS)
 _TITLE = f"first {LENGTH / 1e9:g} s, {{key}} pressed at {_CALLED} s"
-_NO_PICTURE = "no picture"
-_WAIT = f"Rest on a lesson, and {LENGTH / 1e9:g} s of it are run and drawn here."
+_ASKED = "its first question"
+_NO_PICTURE = "no preview"
+_WAIT = f"Stay on a lesson for a moment: its first {LENGTH / 1e9:g} s are run and drawn here."
 
 
 class MenuScreen(SizedScreen[None]):
-    """The first screen, to which every lesson returns.
-
-    The highlighted lesson is run once for its preview: one engine at a time, only while the menu is active.
-    """
+    """The first screen, to which every lesson returns."""
 
     SCOPE = Scope.MENU
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.MENU)]
-
-    class Drawn(Message):
-        """A preview run has ended; ``subject`` is its picture, a sentence, or None if aborted."""
-
-        def __init__(self, lesson: Lesson, subject: PreviewPicture | str | None) -> None:
-            super().__init__()
-            self.lesson = lesson
-            self.subject = subject
 
     def __init__(
         self,
@@ -79,12 +69,10 @@ class MenuScreen(SizedScreen[None]):
         self._lessons = lessons
         self._recents = recents
         self._progress = progress
-        self._open_session = open_session
-        self._charset = charset
+        self.charset = charset
+        """What the terminal can show."""
         self._now = now
-        self._subjects: dict[str, PreviewPicture | str] = {}
-        self._run: PreviewRun | None = None
-        self._rest: Timer | None = None
+        self._previews = Previews(self, open_session, charset, lambda: self._previewed)
         self._filled_with: object = None
         self._words = ""
 
@@ -95,11 +83,12 @@ class MenuScreen(SizedScreen[None]):
             yield MenuList(id="lessons")
             yield DescriptionPane()
             yield Miniature()
-        yield KeyBar(Scope.MENU, self._charset)
+        yield KeyBar(Scope.MENU, self.charset)
 
     def on_mount(self) -> None:
-        """Focus the list."""
+        """Focus the list, and get ready what a lesson is shown with."""
         self._list.focus()
+        self.set_timer(_IDLE, self._import_lessons)
 
     def on_screen_resume(self) -> None:
         """Refresh recent entries and progress, which other consoles may have changed."""
@@ -110,21 +99,21 @@ class MenuScreen(SizedScreen[None]):
             self._fill()
 
     def on_screen_suspend(self) -> None:
-        """Abort the preview, as another engine may start now."""
-        if self._rest is not None:
-            self._rest.stop()
-        self._give_up()
+        """Abort the preview."""
+        self._previews.suspend()
 
     async def on_unmount(self) -> None:
-        """Wait for the preview's engine to end."""
-        if self._run is not None:
-            self._run.give_up()
-            await asyncio.to_thread(self._run.wait, _EXIT_TIMEOUT)
+        """Leave no engine behind."""
+        await self._previews.leave()
 
     def laid_out(self) -> None:
         """Tell more in the list where there is room."""
         if self._filled_with != self._contents:
             self._fill()
+
+    def _import_lessons(self) -> None:
+        """Import the lessons' screen on a thread of its own, so that the first one opens at once."""
+        self.run_worker(lambda: import_module("cbtui.screens.lesson"), thread=True, group="import")
 
     # the list
 
@@ -135,21 +124,29 @@ class MenuScreen(SizedScreen[None]):
 
     @property
     def _stages(self) -> dict[str, Stage]:
-        """The stage of each lesson by its id."""
+        """The stage of each lesson and puzzle by its id."""
         opened = self._recents.lessons
         return {
             lesson.id: stage_of(lesson, self._progress.of(lesson.id), opened=lesson.id in opened)
             for lesson in self._lessons
-        }
+        } | {puzzle.id: stage_of_puzzle(self._progress.of(puzzle.id)) for puzzle in puzzles()}
 
     def _fill(self) -> None:
         self._filled_with = self._contents
         kind = WideMenuRows if self.layout_now is Layout.GRID else MenuRows
         rows = kind(self._lessons, self._stages, self._now())
         wanted = with_words(self._words)
-        self._list.show(filter(wanted, self._lessons), filter(wanted, self._recents.files), rows)
+        listed = ((unit, each) for unit, each in self._taught() if wanted(each))
+        self._list.show(listed, filter(wanted, self._recents.files), rows)
         self._tell_troubles()
         self._describe()
+
+    def _taught(self) -> Iterator[tuple[str, Lesson | Puzzle]]:
+        """Every lesson and its puzzles, each with its unit."""
+        for lesson in self._lessons:
+            yield lesson.unit, lesson
+            for puzzle in puzzles_of(lesson.id):
+                yield lesson.unit, puzzle
 
     def _tell_troubles(self) -> None:
         for sentence in (*self._recents.troubles(), *self._progress.troubles()):
@@ -162,16 +159,15 @@ class MenuScreen(SizedScreen[None]):
         about.description = self._description
         about.set_class(not isinstance(chosen, Lesson), "-alone")
         self._miniature.display = isinstance(chosen, Lesson)
-        key = keymap_of(self.app).sign(Scope.LESSON, "call_service", self._charset)
+        key = keymap_of(self.app).sign(Scope.LESSON, "call_service", self.charset)
+        asked = self._asked_first(chosen)
         reason = why_no_preview(chosen) if isinstance(chosen, Lesson) else None
-        self._miniature.border_title = Text(_TITLE.format(key=key) if reason is None else _NO_PICTURE)
+        title = _ASKED if asked else _TITLE.format(key=key) if reason is None else _NO_PICTURE
+        self._miniature.border_title = Text(title)
         if isinstance(chosen, Lesson) and reason is not None:
-            self._subjects[chosen.id] = f"It is not run for its picture: {reason}."
+            self._previews.subjects[chosen.id] = f"It has no preview: {reason}."
         self._show_drawn()
-        if self._rest is not None:
-            self._rest.stop()
-        if isinstance(chosen, Lesson) and chosen.id not in self._subjects:
-            self._rest = self.set_timer(_HOVER_DELAY, self._draw)
+        self._previews.look()
         self.query_one(KeyBar).changed()
 
     @property
@@ -180,12 +176,17 @@ class MenuScreen(SizedScreen[None]):
         if isinstance(chosen, Lesson):
             text = short_description(chosen, self._progress.of(chosen.id))
             opened = self._recents.lessons.get(chosen.id)
-            so_far = stage_text(self._stages[chosen.id])
-            return of_lesson(chosen, text, opened, self._now(), so_far, keymap_of(self.app))
+            progress = self._progress.of(chosen.id)
+            so_far = stage_text(chosen, progress, self._stages[chosen.id])
+            described = of_lesson(chosen, text, opened, self._now(), so_far, keymap_of(self.app))
+            return described if is_revealed(chosen, progress) else replace(described, keys=())
+        if isinstance(chosen, Puzzle):
+            so_far = puzzle_text(self._progress.of(chosen.id))
+            return of_puzzle(chosen, find(chosen.lesson).title, so_far)
         if chosen is not None:
-            forget = keymap_of(self.app).sign(Scope.MENU, "forget", self._charset)
+            forget = keymap_of(self.app).sign(Scope.MENU, "forget", self.charset)
             return of_file(chosen, self._now(), forget)
-        return EntryDescription("Nothing found", "No lesson and no recent file has all of these words.")
+        return EntryDescription("Nothing found", "No lesson or recent file has all of these words.")
 
     @on(OptionList.OptionHighlighted)
     def _show_highlighted(self) -> None:
@@ -197,61 +198,54 @@ class MenuScreen(SizedScreen[None]):
 
     # the picture
 
-    def _draw(self) -> None:
-        """Start the preview of the highlighted lesson, after aborting another one."""
+    @on(Previews.Drawn)
+    def _take_drawn(self, message: Previews.Drawn) -> None:
+        self._previews.take(message)
+        self._show_drawn()
+
+    @property
+    def _previewed(self) -> Lesson | None:
+        """The highlighted lesson if its preview gives nothing away."""
         chosen = self._list.chosen
-        if not isinstance(chosen, Lesson) or chosen.id in self._subjects or not self.is_active:
-            return
-        if self._run is not None:
-            if self._run.lesson is not chosen:
-                self._run.give_up()
-            return
-        run = self._run = PreviewRun(chosen, self._open_session)
-        self.run_worker(lambda: self._draw_with(run, chosen), thread=True)
+        return chosen if isinstance(chosen, Lesson) and not self._asked_first(chosen) else None
 
-    def _draw_with(self, run: PreviewRun, lesson: Lesson) -> None:
-        """Run a preview, on a worker thread."""
-        subject: PreviewPicture | str | None
-        try:
-            timeline = run.run()
-        except CannotPreviewError as error:
-            subject = f"It could not be run for its picture: {error}."
-        except GivenUpError:
-            subject = None
-        else:
-            from cbtui.widgets.lanes import (
-                LanePainter,  # on this thread: the screen must not stand still for it
-            )
-
-            key = keymap_of(self.app).sign(Scope.LESSON, "call_service", self._charset)
-            subject = PreviewPicture(timeline, LanePainter(self._charset, lesson.service.name, call_key=key))
-        self.post_message(self.Drawn(lesson, subject))
-
-    @on(Drawn)
-    def _take_drawn(self, message: Drawn) -> None:
-        self._run = None
-        if message.subject is not None:
-            self._subjects[message.lesson.id] = message.subject
-            self._show_drawn()
-        self._draw()
+    def _asked_first(self, chosen: MenuChoice | None) -> str:
+        """The first question of a lesson whose preview would give its answer away; "" without one."""
+        if not isinstance(chosen, Lesson) or is_revealed(chosen, self._progress.of(chosen.id)):
+            return ""
+        return chosen.predictions[0].question
 
     def _show_drawn(self) -> None:
-        chosen = self._list.chosen
-        subject = self._subjects.get(chosen.id) if isinstance(chosen, Lesson) else None
-        self._miniature.sentence = subject if isinstance(subject, str) else _WAIT
+        lesson, asked = self._previewed, self._asked_first(self._list.chosen)
+        subject = None if lesson is None else self._previews.subjects.get(lesson.id)
+        self._miniature.sentence = subject if isinstance(subject, str) else asked or _WAIT
         self._miniature.subject = subject if isinstance(subject, PreviewPicture) else None
-
-    def _give_up(self) -> None:
-        if self._run is not None:
-            self._run.give_up()
 
     # the search
 
+    def on_key(self, event: Key) -> None:
+        """Begin a search with a letter or digit that is no key of the menu."""
+        typed = event.character or ""
+        if typed.isalnum() and not self.query(MenuSearch) and event.key not in self.active_bindings:
+            event.stop()
+            self.action_search()
+            self.query_one(MenuSearch).insert_text_at_cursor(typed)
+            self._look_for(typed)  # now, as the next key may already be enter
+
     @on(Input.Changed)
     def _search_for(self, event: Input.Changed) -> None:
-        self._words = event.value
+        if event.value != self._words and not is_being_removed(event.input):
+            self._look_for(event.value)
+
+    def _look_for(self, words: str) -> None:
+        """Show what is found, and open the only lesson whose number that can be."""
+        self._words = words
         self._list.highlight_first()
         self._fill()
+        found = list(filter(with_words(words), self._lessons)) if words.isdecimal() else []
+        if len(found) == 1 and words == str(found[0].number):
+            self._list.choose(found[0].id)
+            self._open(found[0])
 
     @on(Input.Submitted)
     def _open_found(self) -> None:
@@ -286,8 +280,6 @@ class MenuScreen(SizedScreen[None]):
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the actions of the highlighted entry, and the numbers of existing lessons."""
         match action:
-            case "open_number":
-                return any(lesson.number == parameters[0] for lesson in self._lessons)
             case "open" | "submit":
                 return self._list.chosen is not None
             case "forget":
@@ -297,22 +289,19 @@ class MenuScreen(SizedScreen[None]):
         return True
 
     def action_open(self) -> None:
-        """Open what is highlighted."""
+        """Open the highlighted entry."""
         self._list.action_select()
 
-    def action_open_number(self, number: int) -> None:
-        """Open the lesson with a number."""
-        for lesson in self._lessons:
-            if lesson.number == number:
-                self._list.choose(lesson.id)
-                self._open(lesson)
+    def action_tour(self) -> None:
+        """Open the first lesson with a tour over it."""
+        console_of(self).open_lesson(self._lessons[0], tour=True)
 
     def action_previous(self) -> None:
-        """Highlight what is above."""
+        """Highlight the one above."""
         self._list.action_cursor_up()
 
     def action_next(self) -> None:
-        """Highlight what is below."""
+        """Highlight the one below."""
         self._list.action_cursor_down()
 
     def action_search(self) -> None:
@@ -321,14 +310,20 @@ class MenuScreen(SizedScreen[None]):
             self.mount(MenuSearch(), before="#choice")
         self.query_one(MenuSearch).focus()
 
+    def action_jump(self) -> None:
+        """Show a letter on each entry; typing it highlights that."""
+        from cbtui.screens.parts.jumps import Jumps
+
+        Jumps(self, self).action_jump()
+
     def action_open_file(self) -> None:
         """Ask for a file."""
-        from cbtui.screens.open_file import OpenFileScreen
+        from cbtui.screens.windows.open_file import OpenFileScreen
 
-        self.app.push_screen(OpenFileScreen(self._charset))
+        self.app.push_screen(OpenFileScreen(self.charset))
 
     def action_forget(self) -> None:
-        """Take the highlighted file off the list."""
+        """Remove the highlighted file from the list."""
         chosen = self._list.chosen
         if isinstance(chosen, RecentEntry):
             self._recents.forget(chosen)
@@ -346,10 +341,15 @@ class MenuScreen(SizedScreen[None]):
     def _miniature(self) -> Miniature:
         return self.query_one(Miniature)
 
-    def _open(self, choice: Lesson | RecentEntry) -> None:
+    def _open(self, choice: MenuChoice) -> None:
         app = console_of(self)
+        if self._words.isdecimal():
+            self.action_end_search()
         if isinstance(choice, Lesson):
             app.open_lesson(choice)
+            return
+        if isinstance(choice, Puzzle):
+            app.open_puzzle(choice)
             return
         from cbtui.runs.setup.own_files import CannotOpenError
 

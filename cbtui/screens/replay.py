@@ -1,56 +1,16 @@
 """The screen of a recording, which can be played."""
 
-from collections.abc import Callable
 from time import monotonic_ns
 
 from cbtui.looks.theme import Charset
 from cbtui.runs.live.replay import RecordedRun, of_recording
 from cbtui.runs.recorded.recording_file import setup_of
 from cbtui.runs.setup.changes import Changes, changes_in
-from cbtui.screens.parts.engine_keys import PaceKeys
 from cbtui.screens.parts.frames import FRAMES_A_SECOND
-from cbtui.screens.parts.navigation import TimeNavigation
-from cbtui.screens.parts.part import ScreenHost
+from cbtui.screens.parts.playback import Playback
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.run import RunScreen
 from sim.recording import Recording
-
-
-class Playback(PaceKeys):
-    """Plays a recording by moving the cursor at the chosen speed.
-
-    ``clock`` tells real time in nanoseconds.
-    """
-
-    def __init__(
-        self,
-        host: ScreenHost,
-        runs: RunController[RecordedRun],
-        navigation: TimeNavigation,
-        clock: Callable[[], int],
-    ) -> None:
-        super().__init__(host, runs)
-        self._recorded = runs
-        self._navigation = navigation
-        self._clock = clock
-        self._played_at = 0
-
-    def action_resume(self) -> None:
-        """Play from the cursor, or from the beginning if the cursor is at the end."""
-        if self._navigation.playhead.at is None:
-            self._navigation.seek(0)
-        self._played_at = self._clock()
-        super().action_resume()
-
-    def play(self) -> bool:
-        """Advance the cursor by the time since the last call; returns whether it is being played."""
-        run = self._recorded.run
-        if run.paused:
-            return False
-        now = self._clock()
-        elapsed, self._played_at = now - self._played_at, now
-        self._navigation.playhead = run.played(self._navigation.playhead, elapsed)
-        return True
 
 
 class ReplayScreen(RunScreen[RecordedRun]):

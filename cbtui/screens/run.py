@@ -1,7 +1,7 @@
 """The base of screens with a run: lanes, panes, the moment in words, and common keys."""
 
 import asyncio
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import ClassVar, Generic
 
@@ -16,33 +16,44 @@ from textual.widget import Widget
 from cbtui.keys.action import PANES, Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
+from cbtui.learning.stage import Step
 from cbtui.looks.theme import Charset
-from cbtui.runs.live.live_recording import LiveRecording
-from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.live.live_run import LiveRun, has_robot
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.console import ConsoleApp, console_of
-from cbtui.screens.diagnoses import problems_note
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts import exporting
 from cbtui.screens.parts.bars import BarSelection
+from cbtui.screens.parts.chains import ChainPath
 from cbtui.screens.parts.copying import DetailsCopy
 from cbtui.screens.parts.exporting import Exports
 from cbtui.screens.parts.finishing import FileFinisher
-from cbtui.screens.parts.frames import FRAMES_A_SECOND, FrameContent, FrameSchedule
+from cbtui.screens.parts.frames import FrameContent, FrameLoop
+from cbtui.screens.parts.jumps import Jumps
 from cbtui.screens.parts.keys import OfferedKeys
-from cbtui.screens.parts.navigation import TimeNavigation
+from cbtui.screens.parts.narration import Narration
+from cbtui.screens.parts.navigation import MomentKey, TimeNavigation
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenPart, ScreenParts
 from cbtui.screens.parts.runs import RunController, RunT_co
 from cbtui.screens.parts.selection import LaneSelection
+from cbtui.screens.parts.sizes import SizeKeys
 from cbtui.screens.sized import SizedScreen
+from cbtui.screens.windows.diagnoses import problems_note
+from cbtui.screens.windows.jump import JumpScreen
 from cbtui.terminal.compositing import PatchCompositor
 from cbtui.terminal.garbage_collector import collect_now, unfreeze_screen
-from cbtui.terminal.processor import cpu_wait, time_off_cpu
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
-from cbtui.widgets.diagnosis import Diagnosis, call_note, diagnosis_on_screen, way_on, with_worst_problem
+from cbtui.widgets.diagnosis import (
+    Diagnosis,
+    DiagnosisLevel,
+    call_note,
+    diagnosis_on_screen,
+    way_on,
+    with_worst_problem,
+)
 from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.factory import FactoryView
 from cbtui.widgets.guide import Guide
@@ -90,17 +101,21 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self.charset = charset
         """What the terminal can show."""
         self.runs = runs
-        self._frames = FrameSchedule()
+        self._frames = FrameLoop(self, runs, self._draw, lambda: isinstance(self.app.screen, JumpScreen))
         self.finisher = FileFinisher(self.tell)
         self.navigation = TimeNavigation(
-            self, lambda: [runs.timeline], lambda: runs.timeline.end, self.redraw, live
+            lambda: [runs.timeline], lambda: runs.timeline.end, self.redraw, live
         )
+        self._narration = Narration(self, runs, self.navigation)
+        self.navigation.stepped = self._narration.show
         self.panes = PaneLayout(self, self, self.PANES_HERE, self.FIRST_PANE, lambda: self.changes.words)
+        self._sizes = SizeKeys(self, self.panes, self.tell)
         self.bars = BarSelection(lambda: [self.query_one(Lanes)], self.navigation, self.redraw)
         self.selection = LaneSelection(
-            self, self, runs, self.navigation, self.bars, self.panes, subject.service
+            self, self, runs, self.navigation, self.bars, self.panes, subject.service, subject.lesson
         )
         self._exports = Exports(self, runs, self.navigation, self.finisher)
+        self._chain = ChainPath(self, runs, self.navigation)
         self._copy = DetailsCopy(self, self, runs, self.navigation, subject.heading)
 
     def add_parts(self, *parts: ScreenPart, **more: Callable[[], object]) -> None:
@@ -110,8 +125,10 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
             more["next_lesson"] = lambda: self.console.open_lesson(
                 following, Changes(real=self.runs.run.setup.real)
             )
-        every = (self.navigation, self.panes, self.bars, self.selection, self._exports, self._copy)
-        self._parts = ScreenParts(self, Scope.LESSON, *every, *parts, **more)
+        moment = MomentKey(self, self.navigation)
+        more_keys = (Jumps(self, self, self.panes), moment, self._chain, self._copy, self._narration)
+        every = (self.navigation, self.panes, self.bars, self.selection, self._sizes, self._exports)
+        self._parts = ScreenParts(self, Scope.LESSON, *every, *more_keys, *parts, **more)
         self._keys = OfferedKeys(self, self._parts, self.charset)
 
     def post(self, message: Message) -> None:
@@ -136,9 +153,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def redraw(self) -> None:
         """Draw everything in the next frame, or at once if none was just drawn."""
-        self._frames.invalidate()
-        if self.is_running:
-            self.call_next(self._draw_at_once)
+        self._frames.redraw()
 
     def go_on(self) -> None:
         """Note that the run has grown, which the next frames draw."""
@@ -151,21 +166,23 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         """The changes to the program's set-up."""
         return Changes()
 
-    @property
-    def recording(self) -> LiveRecording | None:
-        """The recording of the run, if it can be recorded."""
-        return None
-
     def page(self) -> Mapping[str, str]:
         """Return the unlocked sections of the guide."""
         return {"guide": self.subject.guide}
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """The steps through a lesson, with how far the learner is."""
+        return ()
 
     def drawn(self) -> None:
         """Hook that is called after each drawing."""
 
     def diagnosis(self) -> Diagnosis:
         """Return the diagnosis of the moment on screen."""
-        runs = self.runs
+        runs, told = self.runs, self._chain.sentence
+        if told:
+            return Diagnosis(told, DiagnosisLevel.FINE, stays=True)
         return diagnosis_on_screen(runs.run, self.navigation.playhead, runs.concurrency, keymap_of(self.app))
 
     def show_new_run(self) -> None:
@@ -182,11 +199,13 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         """Lay out lines, lanes and panes."""
         yield StatusLine()
         yield Lanes()
-        yield Tabs(self.PANES_HERE)
+        yield self._narration.widget
+        has_scene = bool(self.subject.scene)
+        yield Tabs(self.PANES_HERE, has_scene)
         with Container(id="panes"):
             for pane in self.compose_panes():
                 assert pane.id is not None
-                pane.border_title = title_of(pane.id)
+                pane.border_title = title_of(pane.id, has_scene)
                 pane.add_class("pane")
                 yield pane
         yield DiagnosisLine()
@@ -204,6 +223,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
     def on_mount(self) -> None:
         """Start the run and the timer that draws it."""
         lanes, robot, factory = self.query_one(Lanes), self.query_one(RobotView), self.query_one(FactoryView)
+        robot.actors = self.subject.scene
         lanes.charset = robot.charset = factory.charset = self.charset
         lanes.service = self.subject.service
         self.panes.enlarge("")
@@ -212,12 +232,13 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         prompt.disabled, prompt.display = not takes_lines, takes_lines
         self.panes.show(self.panes.current)
         self.start()
-        self.set_interval(1 / FRAMES_A_SECOND, self._draw_if_due)
+        self._frames.start()
         self.set_interval(exporting.PROGRESS_INTERVAL, self._exports.look)
-        self.set_interval(_DISK, self.query_one(CodeView).look_at_disk)
+        code = self.query_one(CodeView)
+        self.set_interval(_DISK, lambda: code.look_at_disk(self.runs.timeline.entities.values()))
         for name in self.PANES_HERE:
             pane = self.panes.pane(name)
-            if isinstance(pane, CodeView | LogView | ChecksView):
+            if isinstance(pane, CodeView | FactoryView | LogView | ChecksView):
                 self.watch(pane, "note", self.panes.update_titles)
         for lines in (*self.query(CodeView), *self.query(LogLines), *self.query(ChecksView)):
             self.watch(lines, "picked", self.redraw)
@@ -261,34 +282,33 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def draw(self) -> None:
         """Show the playhead's moment."""
-        self._draw(FrameContent.ALL, self.PANES_HERE)
+        self._frames.draw(FrameContent.ALL)
 
-    def _draw_all_but_texts(self) -> None:
-        names = [name for name in self.PANES_HERE if not isinstance(self.panes.pane(name), _TEXTS)]
-        self._draw(FrameContent.ALL_BUT_TEXTS, names)
-
-    def _draw(self, extent: FrameContent, panes: Iterable[str]) -> None:
-        self._frames.drawn(extent)
+    def _draw(self, content: FrameContent) -> None:
         if self.layout_now is Layout.SMALL:
             return
         self.draw_lanes()
+        if content is FrameContent.LANES:
+            return
+        self._narration.draw()
         run, told, keymap = self.runs.run, self.runs.findings.findings, keymap_of(self.app)
+        self.panes.set_robot(has_robot(run) or bool(self.subject.scene))
         self.query_one(StatusLine).status = status_of(
             self.subject.heading,
             run,
             self.navigation.playhead,
             self.subject.executor,
-            self.recording,
             self._exports.percent,
+            self.steps,
+            self.runs.findings.nothing_moves_since(),
         )
         self.query_one(CodeView).over = not run.alive
         line = self.query_one(DiagnosisLine)
         line.diagnosis = with_worst_problem(self.diagnosis(), told, way_on(run, keymap))
         line.note = call_note(run.timeline, self.navigation.now)
         line.problems = problems_note(told, keymap, self.charset)
-        for name in panes:
-            pane = self.panes.pane(name)
-            if pane.display:
+        for pane in map(self.panes.pane, self.PANES_HERE):
+            if pane.display and (content is FrameContent.ALL or not isinstance(pane, _TEXTS)):
                 self.draw_pane(pane)
         self._keys.show()
         self.drawn()
@@ -297,6 +317,8 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         """Show it on the lanes only."""
         lanes = self.query_one(Lanes)
         lanes.window, lanes.now = self.navigation.window, self.navigation.now
+        here = self._chain.here
+        lanes.path = () if here is None else here.steps
         lanes.timeline = self.runs.timeline
 
     def draw_pane(self, pane: Widget) -> None:
@@ -311,34 +333,16 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
                 if not run.alive and isinstance(self.focused, ProgramKeyboard):
                     self.focused.action_leave_keyboard()
             case FactoryView():
-                pane.show(run.timeline, now, run.speed or 1.0)
+                stuck = self.runs.findings.stuck_at(now)
+                pane.show(run.timeline, now, run.speed or 1.0, () if stuck is None else stuck.ring)
             case RobotView():
                 pane.now, pane.timeline = now, run.timeline
 
     def laid_out(self) -> None:
         """Draw again for the new layout."""
+        if self.is_mounted:
+            self._sizes.apply()
         self.redraw()
-
-    def _draw_at_once(self) -> None:
-        if self._frames.is_due_before_next():
-            self.draw()
-
-    def _draw_if_due(self) -> None:
-        if self.runs.findings.look_when_due():
-            self.redraw()
-        match self._frames.next():
-            case FrameContent.ALL:
-                self.draw()
-            case FrameContent.ALL_BUT_TEXTS:
-                self._draw_all_but_texts()
-            case FrameContent.LANES if self.layout_now is not Layout.SMALL:
-                self.draw_lanes()
-            case _:
-                return
-        self.call_after_refresh(self._rest, time_off_cpu())
-
-    def _rest(self, before: float) -> None:
-        self._frames.rest(cpu_wait(before))
 
     # keys
 

@@ -35,9 +35,7 @@ class SizedScreen(Screen[Result]):
         return super().dismiss(result) if self.is_active else AwaitComplete()
 
     def ask(
-        self,
-        question: Screen[ScreenResultType],
-        take: ScreenResultCallbackType[ScreenResultType] | None,
+        self, question: Screen[ScreenResultType], take: ScreenResultCallbackType[ScreenResultType] | None
     ) -> None:
         """Lay another screen over this one; ``take`` gets its result."""
         self.app.push_screen(question, take)

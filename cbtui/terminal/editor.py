@@ -50,11 +50,11 @@ def command_for(environment: Mapping[str, str], path: Path, line: int) -> list[s
         raise EditorError(f"{path} is not on this machine, so no editor can open it")
     named = environment.get("VISUAL", "").strip() or environment.get("EDITOR", "").strip()
     if not named:
-        raise EditorError("no editor is named; leave, type export EDITOR=nano or another, and start anew")
+        raise EditorError("no editor is named; leave, type export EDITOR=nano or another, and start again")
     try:
         command = shlex.split(named)
     except ValueError:
-        raise EditorError(f"EDITOR is {named}, whose quotes do not match; set it anew") from None
+        raise EditorError(f"EDITOR is {named}, whose quotes do not match; set it again") from None
     name = Path(command[0]).name
     file = str(path)
     if name in _COLON:

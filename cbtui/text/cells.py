@@ -3,6 +3,7 @@
 import unicodedata
 from functools import lru_cache
 from itertools import groupby
+from textwrap import wrap
 
 from rich.cells import cell_len
 
@@ -14,6 +15,13 @@ _UNSHOWABLE = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Zs"}
 _PICTURES = {chr(code): chr(0x2400 + code) for code in range(0x20)} | {"\x7f": "␡", "\xa0": " "}
 
 _TAB = 8
+_MOST_COLUMNS = 90
+"""The widest lines of running text that are read with ease."""
+
+
+def lines_of_text(text: str, width: int, charset: Charset = Charset.BRAILLE) -> list[str]:
+    """Break running text, made safe to display, into lines of ``width`` columns at most, or 90."""
+    return wrap(visible(text, charset), min(width, _MOST_COLUMNS), break_on_hyphens=False)
 
 
 def visible(text: str, charset: Charset) -> str:

@@ -5,10 +5,12 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TextIO
 
+from cbtui.text.colours import with_coloured_signs
+
 
 def say(text: str) -> None:
-    """Write to standard output, in ASCII if its encoding is not Unicode."""
-    _write(sys.stdout, shown(text))
+    """Write to standard output, in ASCII if its encoding is not Unicode; signs are coloured on a terminal."""
+    _write(sys.stdout, with_coloured_signs(shown(text), sys.stdout))
 
 
 def say_data(data: str) -> None:

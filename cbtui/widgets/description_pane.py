@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from textwrap import wrap
 
 from textual.geometry import Size
 from textual.reactive import reactive
@@ -12,9 +11,10 @@ from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.keys.named_keys import key_in_force
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, time_ago
-from cbtui.text.cells import fit, visible
+from cbtui.text.cells import fit, lines_of_text
 from cbtui.widgets.painted_widget import PaintedWidget, painted
 from lessons.lesson import Lesson
+from lessons.puzzles import Puzzle
 
 _STRONG = Ink(Role.STRONG)
 _PLAIN = Ink(Role.TEXT)
@@ -46,12 +46,7 @@ class DescriptionPane(PaintedWidget):
 
 
 def of_lesson(
-    lesson: Lesson,
-    text: str,
-    opened: int | None,
-    now: float,
-    so_far: str = "",
-    keymap: Keymap = STANDARD,
+    lesson: Lesson, text: str, opened: int | None, now: float, so_far: str = "", keymap: Keymap = STANDARD
 ) -> EntryDescription:
     """Describe a lesson that was opened at a moment, None for never; times are seconds since 1970.
 
@@ -69,9 +64,21 @@ def of_lesson(
     return EntryDescription(lesson.title, text, facts, keys)
 
 
+_PUZZLE = (
+    "A puzzle: you are the scheduler. Wherever more than one thread can go on, time stands still, "
+    "and you choose."
+)
+
+
+def of_puzzle(puzzle: Puzzle, lesson: str, so_far: str) -> EntryDescription:
+    """Describe a puzzle; ``lesson`` is the title of its lesson, ``so_far`` how far the learner is in it."""
+    facts = (("lesson", lesson), *((("so far", so_far),) if so_far else ()))
+    return EntryDescription(puzzle.title, f"{puzzle.task} {_PUZZLE}", facts)
+
+
 _WHAT = {
-    RecentKind.PROGRAM: "A program of your own: it is run again, on {clock} time.",
-    RecentKind.RECORDING: "A recording: it is shown, and nothing in it is run.",
+    RecentKind.PROGRAM: "Your own program: opening it runs it again, on the {clock} clock.",
+    RecentKind.RECORDING: "A recording: opening it shows it, and runs nothing.",
 }
 
 
@@ -85,8 +92,8 @@ def of_file(entry: RecentEntry, now: float, forget_key: str) -> EntryDescription
     if entry.arguments:
         facts.append(("arguments", " ".join(entry.arguments)))
     if not path.is_file():
-        gone = f"There is no file {entry.name} there any more."
-        return EntryDescription(entry.name, gone, tuple(facts), ((forget_key, "Take it off this list."),))
+        gone = f"The file {entry.name} is gone."
+        return EntryDescription(entry.name, gone, tuple(facts), ((forget_key, "Remove it from this list."),))
     return EntryDescription(entry.name, _WHAT[entry.kind].format(clock=entry.clock), tuple(facts))
 
 
@@ -94,7 +101,7 @@ def described(about: EntryDescription, size: Size) -> list[list[TextRun]]:
     """Return the lines of a description, each ``size.width`` columns wide; there may be too many."""
     width = size.width
     rows = [[_line(about.title, width, _STRONG)]]
-    rows += [[_line(text, width, _PLAIN)] for text in wrap(visible(about.text, Charset.BRAILLE), width)]
+    rows += [[_line(text, width, _PLAIN)] for text in lines_of_text(about.text, width)]
     rows.append([_line("", width, _PLAIN)])
     for name, fact in about.facts:
         rows += _entry(name, fact, width, _FACTS, _FAINT)
@@ -110,7 +117,7 @@ def described(about: EntryDescription, size: Size) -> list[list[TextRun]]:
 
 def _entry(name: str, text: str, width: int, indent: int, ink: Ink) -> Iterator[list[TextRun]]:
     """Yield a word at the left and text beside it, wrapped."""
-    for number, line in enumerate(wrap(visible(text, Charset.BRAILLE), max(10, width - indent))):
+    for number, line in enumerate(lines_of_text(text, max(10, width - indent))):
         left = TextRun(fit("" if number else name, indent, Charset.BRAILLE), ink)
         yield [left, _line(line, width - indent, _PLAIN)]
 

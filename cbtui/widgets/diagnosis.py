@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
+from operator import attrgetter
 
 from cbtui.keys.action import Scope
 from cbtui.keys.keymap import STANDARD, Keymap
@@ -10,16 +11,15 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
+from sim.diagnosis.words import thread_count
 from sim.durations import duration
 from sim.trace.descriptions import name_of
 from sim.trace.events import KeyboardAsked, Notice, NoticeKind, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
+from sim.trace.figures.waiting import WORTH_TELLING, waits_for_others
 from sim.trace.model import Call, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
-
-WORTH_TELLING: Nanoseconds = 10_000_000
-"""Shorter waits are the usual hand-over between callbacks, and are not reported."""
 
 _SERIOUS: Nanoseconds = SECOND
 _NOTICE_STAYS: Nanoseconds = 5_000_000_000
@@ -39,13 +39,15 @@ class Diagnosis:
     """A sentence about a moment, and its importance; ``at_length`` is shown instead if it fits.
 
     One that stays (a notice, the end of a run) may take several lines; the others change from moment to
-    moment and take one line, so that the screen does not jump.
+    moment and take one line, so that the screen does not jump. ``is_stall``: nothing moves, and why is not
+    known.
     """
 
     text: str
     level: DiagnosisLevel
     stays: bool = field(default=False, compare=False)
     at_length: str = ""
+    is_stall: bool = field(default=False, compare=False)
 
 
 def diagnosis_on_screen(
@@ -80,10 +82,15 @@ def with_worst_problem(
 ) -> Diagnosis:
     """Replace a diagnosis without a problem by the worst problem that the rules found in the run.
 
-    A diagnosis that stays is kept. ``way_on`` is added to a wait for ever where there is room.
+    A diagnosis that stays is kept, unless it is a stall; any other gives way to a wait that never ends.
+    ``way_on`` is added to such a wait where there is room.
     """
-    worst = next((each for each in findings if each.is_problem), None)
-    if worst is None or moment.stays or moment.level is not DiagnosisLevel.FINE:
+    problems = [each for each in findings if each.is_problem]
+    endless = (each for each in problems if each.explanation.for_ever)
+    worst = next(endless, next(iter(problems), None))
+    if worst is None or (moment.stays and not (moment.is_stall and worst.explanation.for_ever)):
+        return moment
+    if moment.level is not DiagnosisLevel.FINE and not worst.explanation.for_ever:
         return moment
     explanation = worst.explanation
     what = explanation.what
@@ -123,23 +130,35 @@ def diagnosis_at(
     """Return the most important fact of a moment."""
     notice = _latest_notice(timeline, at)
     if notice is not None:
-        return Diagnosis(notice.text, DiagnosisLevel.TROUBLE, stays=True)
+        stalled = notice.kind is NoticeKind.NO_PROGRESS
+        return Diagnosis(notice.text, DiagnosisLevel.TROUBLE, stays=True, is_stall=stalled)
     asked = timeline.asked(at)
     if asked is not None and not timeline.entities:
         return Diagnosis(_of_keyboard(asked, keymap), DiagnosisLevel.FINE)
     if not timeline.entities:
         return Diagnosis("no callback yet: the node is starting", DiagnosisLevel.FINE)
     moment = timeline.moment(at)
-    waits = [wait for wait in moment.waiting.values() if at - wait.since >= WORTH_TELLING]
-    for_others = sorted((wait for wait in waits if wait.holder != wait.entity), key=_since)
+    for_others = waits_for_others(moment)
     if for_others:
         return _of_waits(for_others, moment, timeline)
-    for_itself = min(waits, key=_since, default=None)
+    own = (wait for wait in moment.waiting.values() if at - wait.since >= WORTH_TELLING)
+    for_itself = min(own, key=attrgetter("since"), default=None)
     overdue = "" if for_itself is None else f"; {_overdue(for_itself, at, timeline)}"
     if asked is not None:
         return Diagnosis(_of_keyboard(asked, keymap), DiagnosisLevel.FINE)
-    threads = _threads_needed(timeline, concurrency.peak(at))
-    return Diagnosis(f"nothing waits; {threads}{overdue}", DiagnosisLevel.FINE)
+    at_rest = (
+        _in_a_call(moment, timeline) or f"nothing waits; {_threads_needed(timeline, concurrency.peak(at))}"
+    )
+    return Diagnosis(f"{at_rest}{overdue}", DiagnosisLevel.FINE)
+
+
+def _in_a_call(moment: Moment, timeline: Timeline) -> str:
+    """The text on the callback that has been blocked longest in a service call; "" if none has."""
+    stuck = min(moment.blocked.values(), key=lambda blocked: blocked.start, default=None)
+    if stuck is None or moment.at - stuck.start < WORTH_TELLING:
+        return ""
+    who = name_of(stuck.entity, timeline) if stuck.entity else "the program"
+    return f"{who} has been blocked in the call of {stuck.service} for {duration(moment.at - stuck.start)}"
 
 
 def _of_keyboard(asked: KeyboardAsked, keymap: Keymap) -> str:
@@ -176,10 +195,6 @@ def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
     return None
 
 
-def _since(wait: Wait) -> Nanoseconds:
-    return wait.since
-
-
 def _overdue(wait: Wait, at: Nanoseconds, timeline: Timeline) -> str:
     """The text on a callback that only waits for its own previous call."""
     return f"{name_of(wait.entity, timeline)}, due again {duration(at - wait.since)} ago, still runs"
@@ -200,7 +215,7 @@ def _why(wait: Wait, moment: Moment, timeline: Timeline) -> str:
     match wait.reason:
         case Reason.GROUP_HELD:
             return f"{_group_of(wait, timeline)} is held by {name_of(wait.holder, timeline)}"
-        case Reason.NO_FREE_WORKER:
+        case Reason.NO_FREE_WORKER | Reason.EVENT_QUEUE:
             return _busy_threads(moment, timeline)
         case Reason.NOBODY_SPINS:
             return "nobody spins its node"
@@ -219,17 +234,15 @@ def _busy_threads(moment: Moment, timeline: Timeline) -> str:
     if len(running) == 1:
         return f"the only thread runs {running[0]}"
     names = sorted(dict.fromkeys(running), key=running.count, reverse=True)
-    return f"all {len(running)} threads are busy with {' and '.join(names[:2])}"
+    every = "both" if len(running) == 2 else f"all {len(running)}"
+    return f"{every} threads are busy with {' and '.join(names[:2])}"
 
 
 def _threads_needed(timeline: Timeline, peak: int) -> str:
     count = thread_count(timeline)
     if count <= 1:
         return "one thread does all the work"
+    if not peak:
+        return "no callback has run yet"
     were = "was" if peak == 1 else "were"
     return f"{peak} of {count} threads {were} ever needed at once"
-
-
-def thread_count(timeline: Timeline) -> int:
-    """Return how many callbacks the run's executors can run at once."""
-    return sum(executor.threads for executor in timeline.executors.values())

@@ -2,9 +2,11 @@
 
 from collections.abc import Sequence
 
+from rich.segment import Segment
 from rich.style import Style
 from textual.message import Message
 from textual.scroll_view import ScrollView
+from textual.strip import Strip
 
 from cbtui.looks.colour_themes import palette_of
 from cbtui.looks.theme import Ink, style_of
@@ -48,6 +50,15 @@ class InkedView(ScrollView):
             style = self.get_component_rich_style(component) if component else self.rich_style
             self._classes_drawn[component] = style
         return self._classes_drawn[component]
+
+    def set_off(self, line: Strip, component: str) -> Strip:
+        """Give a line a component's background, except where it has its own."""
+        usual, ground = self.in_class("").bgcolor, Style(bgcolor=self.in_class(component).bgcolor, bold=True)
+        parts = [
+            Segment(text, style + ground) if style and style.bgcolor == usual else Segment(text, style)
+            for text, style, _ in line
+        ]
+        return Strip(parts, line.cell_length)
 
     def copy(self, lines: Sequence[str]) -> None:
         """Copy lines to the terminal's clipboard (OSC 52, which works over ssh), and report their number."""

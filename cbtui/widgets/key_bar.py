@@ -54,7 +54,7 @@ class KeyBar(PaintedWidget):
 
     def working(self) -> list[KeyAction]:
         """Return the available actions with the keys in force."""
-        working = [action for action in actions_of(self._scope) if self._works(action)]
+        working = [action for action in actions_of(self._scope) if action.label and self._works(action)]
         working.sort(key=lambda action: action.label not in self.first)
         return keymap_of(self.app).of(working)
 

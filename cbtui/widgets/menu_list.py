@@ -1,25 +1,32 @@
 """The menu's list: lessons by unit, then recent files; a search filters it."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import groupby
+from operator import itemgetter
 from typing import TypeAlias
 
 from textual.content import Content
+from textual.geometry import Offset
 from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
-from cbtui.learning.stage import Stage
+from cbtui.learning.stage import Stage, next_lesson
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, time_ago
 from cbtui.text.cells import fit, visible
+from cbtui.widgets.jump import JumpTarget
 from lessons.lesson import Lesson
+from lessons.puzzles import Puzzle
 
-MenuChoice: TypeAlias = Lesson | RecentEntry
+MenuChoice: TypeAlias = Lesson | RecentEntry | Puzzle
 
 _KINDS = {RecentKind.PROGRAM: "program", RecentKind.RECORDING: "recording"}
 RECENT = "Recent"
 
 _TITLE, _EXECUTOR, _GROUPS = 24, 17, 24
+_OVERHANG = 3
+"""Columns behind a title that the narrow list has."""
 """Columns of a lesson's description; with mark and number they fill the wide list."""
 
 
@@ -40,14 +47,19 @@ class MenuList(OptionList, inherit_bindings=False):
         """Return the lesson or file of an option."""
         return self._choices[option_id]
 
-    def show(self, lessons: Iterable[Lesson], files: Iterable[RecentEntry], rows: "MenuRows") -> None:
-        """Show entries; the highlight stays on its entry, or goes to the first if that is gone."""
+    def show(
+        self, lessons: Iterable[tuple[str, Lesson | Puzzle]], files: Iterable[RecentEntry], rows: "MenuRows"
+    ) -> None:
+        """Show entries; the highlight stays on its entry, or goes to the first if that is gone.
+
+        With each lesson and puzzle comes its unit.
+        """
         before = self.highlighted_option
         options: list[Option] = []
         self._choices = {}
-        for unit, members in groupby(lessons, key=lambda lesson: lesson.unit):
+        for unit, members in groupby(lessons, key=itemgetter(0)):
             options.append(_heading(f"Unit {unit}{rows.total(unit)}"))
-            options += [self._option(lesson.id, lesson, rows.lesson(lesson)) for lesson in members]
+            options += [self._option(each.id, each, rows.row(each)) for _, each in members]
         listed = [self._option(":".join(entry.key), entry, rows.file(entry)) for entry in files]
         options += [_heading(RECENT), *listed] if listed else []
         self.set_options(options)
@@ -66,6 +78,14 @@ class MenuList(OptionList, inherit_bindings=False):
         first = next(iter(self._choices), None)
         self.highlighted = None if first is None else self.get_option_index(first)
 
+    def jump_targets(self) -> Iterator[JumpTarget]:
+        """Yield the entries in view, each of which is one row."""
+        top = round(self.scroll_offset.y)
+        for row in range(top, min(top + self.size.height, self.option_count)):
+            entry = self.get_option_at_index(row).id
+            if entry is not None:
+                yield JumpTarget(Offset(0, row - top), partial(self.choose, entry))
+
     def _option(self, option_id: str, choice: MenuChoice, row: Content) -> Option:
         self._choices[option_id] = choice
         return Option(row, id=option_id)
@@ -74,22 +94,39 @@ class MenuList(OptionList, inherit_bindings=False):
 class MenuRows:
     """The lines of the narrow list: names only, as the details are shown beside it."""
 
+    WIDTH = _TITLE + _OVERHANG
+    """Columns for a title, and an invitation to open it."""
+
     def __init__(self, lessons: Sequence[Lesson], stages: Mapping[str, Stage], now: float) -> None:
         """Take all lessons, how far the learner is in each by its id, and seconds since 1970."""
         self._lessons = lessons
         self._stages = stages
         self._now = now
+        self._next = next_lesson(lessons, stages)
+        begun = any(stage is not Stage.UNTOUCHED for stage in stages.values())
+        self._invitations = ("◂ go on here", "◂ go on") if begun else ("◂ start here", "◂ start")
 
     def total(self, unit: str) -> str:
         """Return how many lessons of a unit are done."""
         stages = [self._stages[lesson.id] for lesson in self._lessons if lesson.unit == unit]
         return f" {stages.count(Stage.DONE)}/{len(stages)}"
 
+    def row(self, choice: Lesson | Puzzle) -> Content:
+        """Return the line of a lesson, or of a puzzle below its own."""
+        if isinstance(choice, Lesson):
+            return self.lesson(choice)
+        return Content(f"{self._stages[choice.id].value}     ? {choice.title}")
+
     def lesson(self, lesson: Lesson) -> Content:
         """Return a lesson's line: how far the learner is in it, its number, its title."""
+        title = fit(lesson.title, min(len(lesson.title), _TITLE), Charset.BRAILLE)
+        room = self.WIDTH - len(title) - 1
+        invitations = (*self._invitations, "◂", "") if lesson is self._next else ("",)
+        invitation = next(text for text in invitations if len(text) <= max(0, room))
         return Content.assemble(
             f"{self._stages[lesson.id].value} {lesson.number:>2}  ",
-            (fit(lesson.title, _TITLE, Charset.BRAILLE), "bold"),
+            (fit(title, self.WIDTH - len(invitation), Charset.BRAILLE), "bold"),
+            (invitation, "bold $text-accent"),
         )
 
     def file(self, entry: RecentEntry) -> Content:
@@ -99,6 +136,8 @@ class MenuRows:
 
 class WideMenuRows(MenuRows):
     """The lines of the wide list, with details."""
+
+    WIDTH = _TITLE
 
     def lesson(self, lesson: Lesson) -> Content:
         """Return a lesson's line with its executor and groups."""
@@ -128,14 +167,21 @@ def _name(entry: RecentEntry, width: int) -> str:
 
 
 def with_words(text: str) -> Callable[[MenuChoice], bool]:
-    """Return a predicate: whether an entry contains all words of a text, ignoring case."""
+    """Return a predicate: whether an entry contains all words of a text, ignoring case.
+
+    A number alone is that of a lesson, or its first digit.
+    """
     words = text.casefold().split()
+    if text.isdecimal():
+        return lambda choice: isinstance(choice, Lesson) and str(choice.number).startswith(text)
     return lambda choice: all(word in _said(choice) for word in words)
 
 
 def _said(choice: MenuChoice) -> str:
     if isinstance(choice, RecentEntry):
         parts: Sequence[str] = (choice.what, _KINDS[choice.kind], RECENT)
+    elif isinstance(choice, Puzzle):
+        parts = (choice.title, choice.task, "puzzle")
     else:
         unit = f"Unit {choice.unit}"
         parts = (str(choice.number), choice.title, choice.teaches, choice.executor, choice.groups, unit)

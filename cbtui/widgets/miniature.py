@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from textwrap import wrap
 from time import monotonic
 from typing import TYPE_CHECKING
 
@@ -11,7 +10,7 @@ from textual.reactive import reactive
 from textual.timer import Timer
 
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
-from cbtui.text.cells import fit, visible
+from cbtui.text.cells import fit, lines_of_text
 from cbtui.widgets.painted_widget import PaintedWidget, painted
 
 if TYPE_CHECKING:
@@ -89,5 +88,5 @@ def sentence_rows(sentence: str, size: Size) -> list[Sequence[TextRun]]:
     """Paint a sentence, wrapped; ``size`` may be nothing."""
     if not size.width:
         return []
-    lines = wrap(visible(sentence, Charset.BRAILLE), size.width)[: size.height]
+    lines = lines_of_text(sentence, size.width)[: size.height]
     return [[TextRun(fit(line, size.width, Charset.BRAILLE), Ink(Role.FAINT))] for line in lines]

@@ -33,6 +33,7 @@ _HISTORY = 200
 """Lines that the prompt remembers."""
 _OFFERED = 60
 """Completions that are listed at most."""
+_EXAMPLE = "a ros2 line, such as ros2 topic list"
 
 
 _SEQUENCES = {
@@ -148,11 +149,22 @@ class Prompt(Input):
             self.cursor = cursor
 
     def __init__(self) -> None:
-        super().__init__(
-            placeholder="a ros2 line, such as ros2 topic list", compact=True, select_on_focus=False
-        )
+        super().__init__(compact=True, select_on_focus=False)
         self._history: list[str] = []
         self._place = 0
+
+    def on_mount(self) -> None:
+        """Tell how to get here."""
+        self.on_blur()
+
+    def on_blur(self) -> None:
+        """Tell which key leads here."""
+        way = keymap_of(self.app).sign(Scope.LESSON, "prompt", Charset.BRAILLE)
+        self.placeholder = f"{way} types {_EXAMPLE}"
+
+    def on_focus(self) -> None:
+        """Tell what can be typed."""
+        self.placeholder = _EXAMPLE
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """Give the line."""
@@ -184,7 +196,7 @@ class Prompt(Input):
         self.post_message(self.CompletionWanted(self.value, self.cursor_position))
 
     def action_interrupt(self) -> None:
-        """End the line that goes on."""
+        """Interrupt the running line."""
         self.post_message(self.LineInterrupted())
 
     def action_leave_prompt(self) -> None:

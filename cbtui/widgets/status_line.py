@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from textual.geometry import Size
 from textual.reactive import reactive
 
+from cbtui.learning.stage import Step, StepState
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
-from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import fit
@@ -23,6 +23,8 @@ _WARN = Ink(Role.WARN)
 _GAP = TextRun("   ", _PLAIN)
 _LEAST_TITLE = 5
 """The least columns of the title before the recording's state is dropped."""
+_TURN = 0.15
+"""Seconds between two turns of the sign that an engine starts."""
 _WORTH_TELLING = 10_000_000
 """Bytes from which on the size of a recording is shown."""
 
@@ -49,6 +51,10 @@ class RunStatus:
     unrecorded: int = 0
     recorded_bytes: int = 0
     exported: int | None = None
+    steps: tuple[Step, ...] = ()
+    """The steps through the lesson, if there are any."""
+    still: Nanoseconds | None = None
+    """For how long nothing moves any more, None if something does."""
 
 
 def status_of(
@@ -56,11 +62,15 @@ def status_of(
     run: ShownRun,
     playhead: Playhead,
     usual_executor: str,
-    recording: LiveRecording | None = None,
     exported: int | None = None,
+    steps: tuple[Step, ...] = (),
+    still_since: Nanoseconds | None = None,
 ) -> RunStatus:
-    """Return the status of a run; until its executor appears, the lesson's own text stands for it."""
-    timeline = run.timeline
+    """Return the status of a run; until its executor appears, the lesson's own text stands for it.
+
+    ``still_since`` is when its last callback came to a stop for ever, None if it goes on.
+    """
+    timeline, recording = run.timeline, run.recording
     at = playhead.now(timeline.end)
     return RunStatus(
         title=title,
@@ -75,6 +85,8 @@ def status_of(
         unrecorded=0 if recording is None else recording.lost,
         recorded_bytes=0 if recording is None else recording.size,
         exported=exported,
+        steps=steps,
+        still=None if still_since is None else timeline.end - still_since,
     )
 
 
@@ -87,30 +99,46 @@ def _pace(run: ShownRun) -> str:
 
 
 class StatusLine(PaintedWidget):
-    """Shows a status."""
+    """Shows a status; ``turn`` is a number that grows while an engine starts, so that something moves."""
 
     status: reactive[RunStatus | None] = painted(None)
+    turn: reactive[int] = painted(0)
+
+    def on_mount(self) -> None:
+        """Let the sign turn."""
+        if self.app.animation_level != "none":
+            self.set_interval(_TURN, self._turn_sign)
+
+    def _turn_sign(self) -> None:
+        if self.status is not None and self.status.state is RunState.STARTING:
+            self.turn += 1
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the line."""
-        return [] if self.status is None else [status_row(self.status, size.width)]
+        return [] if self.status is None else [status_row(self.status, size.width, self.turn)]
 
 
-def status_row(status: RunStatus, width: int) -> list[TextRun]:
-    """Return the line in exactly ``width`` columns; the executor is dropped first, then pace and recording.
+def status_row(status: RunStatus, width: int, turn: int = 0) -> list[TextRun]:
+    """Return the line in exactly ``width`` columns; the executor is dropped first, then most of the steps.
 
-    The losses of the trace are dropped last.
+    Pace and recording follow; the losses of the trace are dropped last.
     """
     title = TextRun(f" {status.title}", _STRONG)
-    state = _state(status)
+    state = _state(status, turn)
     pace = TextRun(f"  {status.pace}", _PLAIN)
+    brief = TextRun(f"  {status.pace.removeprefix('virtual ')}", _PLAIN)
+    steps, step = _steps(status.steps), _steps(_about_current(status.steps))
     time = TextRun(f"t {timestamp(status.at)}", _STRONG)
     executor = TextRun(status.executor, _PLAIN)
     losses = _losses(status)
     recording = [*_export(status), *_recording(status)]
     whole = len(title.text) + 2
     for parts, least in (
-        ([state, pace, _GAP, time, _GAP, executor, _GAP, *recording, *losses], whole),
+        ([*steps, state, pace, _GAP, time, _GAP, executor, _GAP, *recording, *losses], whole),
+        ([*steps, state, pace, _GAP, time, _GAP, *recording, *losses], whole),
+        ([*step, state, pace, _GAP, time, _GAP, *recording, *losses], whole),
+        ([*step, state, brief, _GAP, time, _GAP, *recording, *losses], whole),
+        ([*step[:1], *step[-1:], state, brief, _GAP, time, _GAP, *recording, *losses], whole),
         ([state, pace, _GAP, time, _GAP, *recording, *losses], whole),
         ([state, _GAP, time, _GAP, *recording, *losses], _LEAST_TITLE),
         ([state, _GAP, time, _GAP, *losses], _LEAST_TITLE),
@@ -123,7 +151,7 @@ def status_row(status: RunStatus, width: int) -> list[TextRun]:
     return [TextRun(shown, _STRONG), *parts, TextRun(" ", _PLAIN)]
 
 
-def _state(status: RunStatus) -> TextRun:
+def _state(status: RunStatus, turn: int) -> TextRun:
     if status.back and status.state in (
         RunState.STARTING,
         RunState.LIVE,
@@ -133,11 +161,33 @@ def _state(status: RunStatus) -> TextRun:
     ):
         paused = ", paused" if status.state is RunState.PAUSED else ""
         return TextRun(f"◂ BACK {duration(status.back)}{paused}", _WARN)
+    if status.state is RunState.STARTING:
+        return TextRun(f"{_TURNING[turn % len(_TURNING)]} STARTING", _STRONG)
+    if status.state is RunState.LIVE and status.still is not None:
+        return TextRun(f"✗ STUCK {duration(status.still)}, nothing moves", _WARN)
     return _STATES[status.state]
 
 
+_TURNING = "◐◓◑◒"
+_STEP_INKS = {StepState.DONE: _PLAIN, StepState.CURRENT: _STRONG, StepState.OPEN: _FAINT}
+
+
+def _steps(steps: Sequence[Step]) -> list[TextRun]:
+    """The steps, each pointing to the next, and a gap."""
+    runs: list[TextRun] = []
+    for step in steps:
+        runs += [TextRun(" ▸ ", _FAINT)] if runs else []
+        runs.append(TextRun(step.text, _STEP_INKS[step.state]))
+    return [*runs, _GAP] if runs else []
+
+
+def _about_current(steps: Sequence[Step]) -> Sequence[Step]:
+    """The current step and the one after it; all are done without a current one."""
+    place = next((place for place, step in enumerate(steps) if step.state is StepState.CURRENT), len(steps))
+    return steps[place : place + 2]
+
+
 _STATES = {
-    RunState.STARTING: TextRun("○ STARTING", _FAINT),
     RunState.LIVE: TextRun("● LIVE", _STRONG),
     RunState.PAUSED: TextRun("‖ PAUSED", _WARN),
     RunState.SILENT: TextRun("✗ SILENT", _WARN),

@@ -1,16 +1,18 @@
 """The tabs of a layout that shows one pane at a time."""
 
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 from rich.cells import cell_len
 from textual.events import Click
-from textual.geometry import Size
+from textual.geometry import Offset, Size
 from textual.message import Message
 from textual.reactive import reactive
 
-from cbtui.keys.action import CHECKS, PANES
+from cbtui.keys.action import PANES
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.text.cells import fit
+from cbtui.widgets.jump import JumpTarget
 from cbtui.widgets.painted_widget import PaintedWidget, painted
 
 _LINE = Ink(Role.FAINT)
@@ -19,11 +21,12 @@ _SEPARATOR = " · "
 
 
 class Tabs(PaintedWidget):
-    """Shows the panes with their numbers, the current one in brackets."""
+    """Shows the panes with their numbers, the current one in brackets; of ``has_scene``, see ``title_of``."""
 
-    def __init__(self, panes: Sequence[str] = PANES) -> None:
+    def __init__(self, panes: Sequence[str], has_scene: bool) -> None:
         super().__init__()
         self._panes = panes
+        self._has_scene = has_scene
 
     current: reactive[str] = painted(PANES[0])
     note: reactive[str] = painted("")
@@ -48,15 +51,26 @@ class Tabs(PaintedWidget):
 
     def on_click(self, event: Click) -> None:
         """Tell which pane was clicked."""
-        start = 1
-        for pane, text in self._labels():
+        for start, pane, text in self._placed():
             if start <= event.x < start + len(text):
                 self.post_message(self.TabPicked(pane))
+
+    def jump_targets(self) -> Iterator[JumpTarget]:
+        """Yield the tabs."""
+        for start, pane, _ in self._placed():
+            yield JumpTarget(Offset(start, 0), partial(self.post_message, self.TabPicked(pane)))
+
+    def _placed(self) -> Iterator[tuple[int, str, str]]:
+        """The first column, the pane and the text of each tab."""
+        start = 1
+        for pane, text in self._labels():
+            yield start, pane, text
             start += len(text)
 
     def _labels(self) -> Iterator[tuple[str, str]]:
         for pane in self._panes:
-            yield pane, f"[{title_of(pane)}]" if pane == self.current else f" {title_of(pane)} "
+            title = title_of(pane, self._has_scene)
+            yield pane, f"[{title}]" if pane == self.current else f" {title} "
 
 
 def _shortened_note(note: str, room: int) -> str:
@@ -68,6 +82,7 @@ def _shortened_note(note: str, room: int) -> str:
     return f" {fit(text, min(cell_len(text), room), Charset.BRAILLE)} " if text and room > 0 else ""
 
 
-def title_of(pane: str) -> str:
-    """Return a pane's number and name."""
-    return f"{(*PANES, CHECKS).index(pane) + 1} {pane.capitalize()}"
+def title_of(pane: str, has_scene: bool = False) -> str:
+    """Return a pane's number and name; ``has_scene``: where the robot would be, there is a scene."""
+    number = PANES.index(pane) if pane in PANES else len(PANES)
+    return f"{number + 1} {'Scene' if has_scene and pane == 'robot' else pane.capitalize()}"

@@ -107,19 +107,6 @@ def ticks_on_time(timer: str, within: float) -> Check:
     return Check(f"{timer} is called on time", judge)
 
 
-def is_called_often(callback: str, at_least: int) -> Check:
-    """A callback is called ``at_least`` times in the run."""
-    expected = f"at least {counted(at_least, 'call')}"
-
-    def judge(run: Timeline) -> Verdict:
-        calls = calls_of(run, callback)
-        if not calls:
-            return _missing(callback, expected)
-        return Verdict(len(calls) >= at_least, expected, counted(len(calls), "call"), calls[-1].start)
-
-    return Check(f"{callback} is called", judge)
-
-
 def never_raises() -> Check:
     """No callback ends with an exception."""
     expected = "no exception"
@@ -132,6 +119,17 @@ def never_raises() -> Check:
         return Verdict(True, expected, "none")
 
     return Check("no callback raises", judge)
+
+
+def raises(callback: str) -> Check:
+    """A callback ends with an exception."""
+    expected = "an exception"
+
+    def judge(run: Timeline) -> Verdict:
+        spans = [span for span in spans_of(run, callback) if span.error]
+        return Verdict(bool(spans), expected, spans[0].error or "" if spans else "none")
+
+    return Check(f"{callback} raises", judge)
 
 
 def uses_threads(at_least: int) -> Check:

@@ -4,9 +4,11 @@ from collections.abc import Callable
 
 from lessons.checks.check import Check, Verdict
 from sim.diagnosis import RULES, Finding, Weight, diagnose
+from sim.trace.events import NoticeKind
 from sim.trace.timeline import Timeline
 
-_STUCK = ("self-made-deadlock", "needs-one-more-worker", "endless-wait")
+STUCK = ("self-made-deadlock", "needs-one-more-worker", "endless-wait")
+"""Ids of the rules on callbacks that wait for what can never come."""
 
 
 def problems(run: Timeline) -> tuple[Finding, ...]:
@@ -15,8 +17,27 @@ def problems(run: Timeline) -> tuple[Finding, ...]:
 
 
 def never_stuck() -> Check:
-    """No callback waits for something that can never come."""
-    return _without("nothing gets stuck", "no deadlock", lambda rule: rule in _STUCK)
+    """No callback waits for something that can never come, and no threads wait for each other's locks."""
+    without = _without("nothing gets stuck", "no deadlock", lambda rule: rule in STUCK)
+
+    def judge(run: Timeline) -> Verdict:
+        for notice in run.notices:
+            if notice.kind is NoticeKind.DEADLOCK:
+                return Verdict(False, "no deadlock", notice.problem or notice.text, notice.t)
+        return without.judge(run)
+
+    return Check(without.asks, judge)
+
+
+def gets_stuck() -> Check:
+    """What ``never_stuck`` says there is not: something waits for what can never come."""
+
+    def judge(run: Timeline) -> Verdict:
+        opposite = never_stuck().judge(run)
+        seen = "none" if opposite.passed else opposite.seen
+        return Verdict(not opposite.passed, "a deadlock", seen, opposite.at)
+
+    return Check("something gets stuck", judge)
 
 
 def no_problem(rule: str, asks: str = "") -> Check:

@@ -1,9 +1,10 @@
 """What checks and answers read off a run: callbacks by their names, their calls, and stretches of time."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 
-from sim.trace.events import EntityId, VelocityCommanded
+from sim.trace.events import EntityId
+from sim.trace.figures.summary import turns_among
 from sim.trace.model import Call, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
@@ -45,21 +46,13 @@ class Stretch:
     windows: Callable[[Timeline], list[Window]]
 
 
+WHOLE_RUN = Stretch("the run lasts", lambda run: [whole_run(run)])
+"""From a run's beginning to its end."""
+
+
 def rotations(run: Timeline) -> list[Window]:
     """When the robot was under a command to turn: from each such command to the first one not to."""
-    return list(_rotations(run))
-
-
-def _rotations(run: Timeline) -> Iterator[Window]:
-    begun: VelocityCommanded | None = None
-    for command in run.commands(whole_run(run)):
-        if begun is None and command.angular:
-            begun = command
-        elif begun is not None and not command.angular:
-            yield Window(begun.t, command.t)
-            begun = None
-    if begun is not None:
-        yield Window(begun.t, run.end)
+    return list(turns_among(run.commands(whole_run(run)), None, Window(0, run.end)))
 
 
 ROTATES = Stretch("the robot rotates", rotations)

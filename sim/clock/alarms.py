@@ -14,7 +14,7 @@ from sim.units import SECOND, wait_ns
 
 _signal = signal.signal
 _mask = signal.pthread_sigmask
-_taken = signal.sigtimedwait
+_take = signal.sigwait
 _pending = signal.sigpending
 _getsignal = signal.getsignal
 
@@ -133,8 +133,8 @@ class ProcessSignals:
                 if number in numbers:
                     self._pending.remove(number)
                     return number
-            found = _taken(numbers, 0)
-            return 0 if found is None else found.si_signo
+            waiting = numbers & _pending()
+            return _take(waiting) if waiting else 0
 
         number = self._outside.wait(look, timeout, what)
         return signal.Signals(number) if number else None

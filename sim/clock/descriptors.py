@@ -53,6 +53,14 @@ def _replace_polls(replacements: Replacements, outside: OutsideWork) -> None:
             seconds = None if timeout is None or timeout < 0 else timeout / 1e3
             return outside.wait(lambda: self.real.poll(0), seconds, "select.poll")
 
+    replacements.put(select, "select", select_)
+    selects: Any = select
+    kinds: Any = selectors
+    selects.poll = kinds.PollSelector._selector_cls = Poll
+    kinds.SelectSelector._select = staticmethod(select.select)
+    if not hasattr(select, "epoll"):  # Linux alone has it
+        return
+
     class Epoll(_Wrapped):
         """``select.epoll``."""
 
@@ -65,12 +73,7 @@ def _replace_polls(replacements: Replacements, outside: OutsideWork) -> None:
             seconds = None if timeout is None or timeout < 0 else timeout
             return outside.wait(lambda: self.real.poll(0, maxevents), seconds, "select.epoll")
 
-    replacements.put(select, "select", select_)
-    selects: Any = select
-    kinds: Any = selectors
-    selects.poll = kinds.PollSelector._selector_cls = Poll
     selects.epoll = kinds.EpollSelector._selector_cls = Epoll
-    kinds.SelectSelector._select = staticmethod(select.select)
 
 
 class _Wrapped:

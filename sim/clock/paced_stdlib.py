@@ -9,6 +9,7 @@ import queue
 import threading
 import time
 from collections.abc import Callable
+from threading import get_ident
 from types import TracebackType
 from typing import Any
 
@@ -42,22 +43,30 @@ class PacedLock:
     """``threading.Lock`` whose timeout is seconds of a paced clock."""
 
     _clock: PacedClock
-    __slots__ = ("__weakref__", "_lock", "locked", "release")
+    __slots__ = ("__weakref__", "_lock", "holder_ident", "locked", "release")
 
     def __init__(self) -> None:
         lock = _allocate_lock()
         self._lock = lock
         self.locked = lock.locked
         self.release = lock.release
+        self.holder_ident = 0
+        """The identifier of the thread that took it last, by ``with``; of its holder while it is locked."""
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock; False if it is not available at once (or within ``timeout`` seconds)."""
         if timeout <= 0 or not blocking:
-            return self._lock.acquire(blocking, timeout)
-        return _within(timeout, self._clock, lambda seconds: self._lock.acquire(timeout=seconds))
+            taken = self._lock.acquire(blocking, timeout)
+        else:
+            taken = _within(timeout, self._clock, lambda seconds: self._lock.acquire(timeout=seconds))
+        if taken:
+            self.holder_ident = 0  # it may be a signal, which another thread releases
+        return taken
 
     def __enter__(self) -> bool:
-        return self._lock.acquire()
+        self._lock.acquire()
+        self.holder_ident = get_ident()
+        return True
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
@@ -73,13 +82,26 @@ class PacedRLock(_RLock):  # type: ignore[misc]
     """``threading.RLock`` whose timeout is seconds of a paced clock."""
 
     _clock: PacedClock
+    holder_ident = 0
+    """The identifier of the thread that took it last; of its holder while it is locked."""
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock once more; False if it is not available at once (or within ``timeout`` seconds)."""
         take: Callable[..., bool] = super().acquire
         if timeout <= 0 or not blocking:
-            return take(blocking, timeout)
-        return _within(timeout, self._clock, lambda seconds: take(timeout=seconds))
+            taken = take(blocking, timeout)
+        else:
+            taken = _within(timeout, self._clock, lambda seconds: take(timeout=seconds))
+        if taken:
+            self.holder_ident = get_ident()
+        return taken
+
+    def __enter__(self) -> bool:
+        return self.acquire()
+
+    def _acquire_restore(self, state: object) -> None:
+        super()._acquire_restore(state)
+        self.holder_ident = get_ident()
 
 
 @waits_for_time

@@ -18,8 +18,10 @@ class Replacements:
         self._old: list[Any] = []
 
     def put(self, owner: Any, name: str, virtual: Callable[..., Any]) -> None:
-        """Have threads of the clock get ``virtual`` when they call ``owner.name``."""
-        real = getattr(owner, name)
+        """Have threads of the clock get ``virtual`` when they call ``owner.name``, if the system has it."""
+        real = getattr(owner, name, None)
+        if real is None:
+            return
         owns = self.clock.owns_current_thread
 
         @wraps(real)

@@ -24,6 +24,7 @@ from sim.clock.hashes import number_threads
 from sim.clock.imports import replace_imports
 from sim.clock.outside import start_outside
 from sim.clock.outside_work import OutsideWork
+from sim.clock.played import NO_ACCESSES
 from sim.clock.replacing import Replacements
 from sim.clock.virtual import VirtualClock
 from sim.clock.virtual_threads import VirtualAutoResetEvent, VirtualThread
@@ -56,11 +57,12 @@ class VirtualLock:
         self.holder: VirtualThread | None = None
         self.guards = False
         self.taken_at: tuple[CodeType, int] | None = None
+        self._clock.did(self)
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock; False if it is not available at once (or within ``timeout`` seconds)."""
         limit = None if timeout == -1 else self._limit(blocking, timeout)
-        self._clock.switch_point()
+        self._clock.switch_point({self: True} if self._clock.explores else NO_ACCESSES)
         if self._real.acquire(blocking=False):
             if self._clock.owns_current_thread():
                 self._note_taking(sys._getframe(1))
@@ -121,6 +123,7 @@ class VirtualLock:
         if not self._real.locked():
             raise RuntimeError("release unlocked lock")
         self.holder = None
+        self._clock.did(self)
         if not self._clock.owns_current_thread():
             self._real.release()
             if self._waiters:
@@ -138,7 +141,7 @@ class VirtualLock:
     def _pass_on(self) -> None:
         """Hand the held lock to a waiting thread, or wake one and let it try."""
         following = self._waiters[self._clock.choose(len(self._waiters))]
-        if self._clock.choose(2) == 0:
+        if self._clock.hands_over():
             self._waiters.remove(following)
             self._granted = self.holder = following
         else:
@@ -147,6 +150,7 @@ class VirtualLock:
 
     def _note_taking(self, frame: FrameType) -> None:
         """Record which thread has the lock; ``frame`` is the call that took it, below the library's own."""
+        self._clock.did(self)
         self.holder = self._clock.current
         code = frame.f_code
         self.guards = code is _ENTERS or code is _RLOCK_TAKES or code is _RLOCK_TAKES_AGAIN
@@ -154,6 +158,11 @@ class VirtualLock:
             frame = frame.f_back
             code = frame.f_code
         self.taken_at = code, frame.f_lasti
+
+    @property
+    def holder_ident(self) -> int:
+        """The identifier of the thread that alone can release it; 0 for none."""
+        return self.holder.ident if self.holder is not None and self.guards else 0
 
     def _is_owned(self) -> bool:
         """Whether the calling thread has it, as conditions ask; not a poll."""

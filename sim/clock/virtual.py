@@ -10,10 +10,11 @@ and one that runs is left at a switch point, in front of or behind a lock or a q
 
 import threading
 from collections import deque
-from collections.abc import Callable, Generator, Set
+from collections.abc import Callable, Generator, Hashable, Set
 from contextlib import contextmanager
 
 from sim.clock.outside import start_outside
+from sim.clock.played import NO_ACCESSES, Accesses
 from sim.clock.schedule import FirstCome, Schedule
 from sim.clock.virtual_threads import VirtualAutoResetEvent, VirtualThread
 from sim.clock.virtual_time import VirtualTime
@@ -31,14 +32,17 @@ class VirtualClock:
     """A deterministic clock and the scheduler of the threads that live on it.
 
     The thread that makes it becomes its main thread. Only threads started through the clock (or adopted
-    by it) may wait on it; any other thread reaches into the run with ``time.inject``.
+    by it) may wait on it; any other thread reaches into the run with ``time.inject``. Up to ``explored_from``
+    (nanoseconds) threads run first come, first served, from then on as the schedule says.
     """
 
     epoch = VIRTUAL_EPOCH
 
-    def __init__(self, speed: float | None = None, schedule: Schedule | None = None) -> None:
-        self._schedule = schedule or FirstCome()
-        self.explores = self._schedule.explores
+    def __init__(
+        self, speed: float | None = None, schedule: Schedule | None = None, explored_from: int = 0
+    ) -> None:
+        self.schedule = self._schedule = schedule or FirstCome()
+        self.explores = self.schedule.explores
         """Whether its schedule chooses among the orders that are possible."""
         self.turn = 0
         """How often the running thread has waited, or was left for another one."""
@@ -60,6 +64,9 @@ class VirtualClock:
         self.current.is_main = True
         self.current.ident = _get_ident()
         self._threads.add(self.current)
+        if explored_from:
+            self._schedule = FirstCome()
+            self.call_at(explored_from, self._explore)
 
     def now(self) -> int:
         """Virtual nanoseconds since the run began."""
@@ -99,6 +106,7 @@ class VirtualClock:
         virtual = VirtualThread(name)
         self._threads.add(virtual)
         self._ready.append(virtual)
+        self.did(virtual)
 
         def run() -> None:
             virtual.ident = _get_ident()
@@ -157,21 +165,32 @@ class VirtualClock:
             thread.waiting = False
             thread.woken = True
             self._ready.append(thread)
+            self.did(thread)
+
+    def did(self, what: Hashable) -> None:
+        """Tell the schedule that the running thread has done something with what others depend on."""
+        if self.explores and self.owns_current_thread():
+            self._schedule.did(self.current, what)
+
+    def hands_over(self) -> bool:
+        """Whether a released lock goes to a thread that waits for it, and is not left free."""
+        return self._schedule.hands_over()
 
     def choose(self, number: int) -> int:
         """Which of ``number`` equals that wait for something gets it, from 0: the oldest, unless explored."""
         return self._schedule.choose(number)
 
-    def switch_point(self) -> None:
+    def switch_point(self, accesses: Accesses = NO_ACCESSES) -> None:
         """Let another thread go first that can run, if the schedule wants it. Any thread may call this.
 
         Put it where a real machine could switch, and where the calling thread holds nothing that another one
-        would wait for outside this clock.
+        would wait for outside this clock. ``accesses`` is what the next step touches, if it is one of the
+        program's own.
         """
         if not self.explores or self.no_switching or not self.owns_current_thread():
             return
         me = self.current
-        if self._ready and not me.stays and self._schedule.leaves(me, self._ready):
+        if (self._ready or accesses) and not me.stays and self._schedule.leaves(me, self._ready, accesses):
             self._ready.append(me)
             self._hand_on(me)
 
@@ -200,6 +219,9 @@ class VirtualClock:
         """
         with self._without_switching():
             self.time.stand_in_moment()
+
+    def _explore(self) -> None:
+        self._schedule = self.schedule
 
     def _raise_interrupt(self, me: VirtualThread) -> None:
         me.interrupted = False
@@ -239,7 +261,7 @@ class VirtualClock:
     def _await_ready(self) -> None:
         while not self._ready:
             self.time.jump()
-            if self.explores:
+            if self._schedule.explores:
                 self.time.serve_equals()
 
     @contextmanager

@@ -1,6 +1,7 @@
 """Advice for callbacks that wait: a callback group of their own, more threads, or both."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import islice
 
 from sim.diagnosis.words import threads_for, who, with_threads
@@ -13,20 +14,39 @@ _LOOKED_AT = 100
 """Calls of a callback that are checked for a long one."""
 
 
-def cure_for_waits(waited: Sequence[EntityId], mover: EntityId, window: Window, timeline: Timeline) -> str:
-    """Advice for callbacks that waited in a window, as a clause; empty where neither would help.
+@dataclass(frozen=True, slots=True)
+class Remedy:
+    """Changes of a program without an edit: callbacks that get a group of their own, threads (0: as many)."""
+
+    own_groups: tuple[EntityId, ...] = ()
+    threads: int = 0
+
+    def words(self, timeline: Timeline) -> str:
+        """The changes as a clause; empty for none."""
+        advice = [f"give {who(each, timeline)} a callback group of its own" for each in self.own_groups]
+        if self.threads:
+            advice.append(f"spin with {with_threads(self.threads)}")
+        return ", and ".join(advice)
+
+
+NO_REMEDY = Remedy()
+
+
+def remedy_for_waits(
+    waited: Sequence[EntityId], mover: EntityId, window: Window, timeline: Timeline
+) -> Remedy:
+    """What helps callbacks that waited in a window; nothing where neither a group nor threads would.
 
     A group of its own for ``mover`` helps where another callback held the group; more threads help where no
     worker was free meanwhile, which with one thread is always so.
     """
     waits = [wait for each in waited for wait in _waits(each, window, timeline)]
-    advice = []
-    if any(wait.reason is Reason.GROUP_HELD for wait in waits):
-        advice.append(f"give {who(mover, timeline)} a callback group of its own")
     crowded = [wait for wait in waits if wait.workers_busy]
-    if _length(crowded, window) >= min(_LONG, _length(waits, window) / 2) > 0:
-        advice.append(f"spin with {with_threads(_threads_needed(crowded, window, timeline))}")
-    return ", and ".join(advice)
+    is_crowded = _length(crowded, window) >= min(_LONG, _length(waits, window) / 2) > 0
+    return Remedy(
+        (mover,) if any(wait.reason is Reason.GROUP_HELD for wait in waits) else (),
+        _threads_needed(crowded, window, timeline) if is_crowded else 0,
+    )
 
 
 def _waits(entity: EntityId, window: Window, timeline: Timeline) -> Iterator[Wait]:
@@ -38,10 +58,7 @@ def _waits(entity: EntityId, window: Window, timeline: Timeline) -> Iterator[Wai
 
 def _length(waits: Sequence[Wait], window: Window) -> Nanoseconds:
     """The total length of waits within a window."""
-    return sum(
-        (window.end if wait.end is None else min(wait.end, window.end)) - max(wait.start, window.start)
-        for wait in waits
-    )
+    return sum(min(wait.end_at(window.end), window.end) - max(wait.start, window.start) for wait in waits)
 
 
 def _threads_needed(crowded: Sequence[Wait], window: Window, timeline: Timeline) -> int:

@@ -61,13 +61,21 @@ class Diagnoses:
 
     def _ordered(self, found: Iterable[Finding], timeline: Timeline) -> tuple[Finding, ...]:
         """The findings that matter: problems before remarks, then by rule, the earliest first."""
-        weighed = [(each.rule.weigh(each, timeline), each) for each in found]
+        found = tuple(found)
+        stuck = frozenset[EntityId]().union(*(each.stuck for each in found if each.until >= timeline.end))
+        causes = [each for each in found if not (each.rule.is_effect and _is_due_to(stuck, each))]
+        weighed = [(each.rule.weigh(each, timeline), each) for each in causes]
         relevant = [(weight, each) for weight, each in weighed if weight is not None]
         relevant.sort(key=lambda pair: (pair[0] is Weight.REMARK, *self._rank(pair[1])))
         return tuple(each for _, each in relevant)
 
     def _rank(self, found: Finding) -> tuple[int, Nanoseconds, EntityId, str]:
         return self._rules.index(found.rule), found.at, found.subject, found.about
+
+
+def _is_due_to(stuck: frozenset[EntityId], found: Finding) -> bool:
+    """Whether a finding is what callbacks that can never go on bring about; of the whole run, it may be."""
+    return bool(stuck) and (not found.at or found.culprit in stuck or found.subject in stuck)
 
 
 def diagnose(timeline: Timeline) -> tuple[Finding, ...]:
@@ -77,10 +85,9 @@ def diagnose(timeline: Timeline) -> tuple[Finding, ...]:
 
 def _merge(into: dict[_Key, Finding], found: Finding) -> None:
     """Add an occurrence: the worst one gives the times; of equal ones, the earliest."""
-    key = (found.rule.id, found.subject, found.about)
-    known = into.get(key)
+    known = into.get(found.key)
     if known is None:
-        into[key] = found
+        into[found.key] = found
         return
     worst = found if (found.size, -found.at) > (known.size, -known.at) else known
-    into[key] = replace(worst, count=known.count + found.count)
+    into[found.key] = replace(worst, count=known.count + found.count)

@@ -1,6 +1,7 @@
 """The interface of a rule, its findings and their explanations."""
 
 from abc import ABC, abstractmethod
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
@@ -8,9 +9,10 @@ from pathlib import Path
 from typing import ClassVar
 
 import sim
+from sim.diagnosis.cures import NO_REMEDY, Remedy
 from sim.diagnosis.timeline_view import TimelineView
 from sim.trace.events import EntityId, ThreadId
-from sim.trace.model import EntityInfo, Nanoseconds
+from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 
@@ -38,7 +40,7 @@ class Finding:
     """What a rule found: one occurrence, or ``count`` of them with the times of the worst.
 
     ``subject`` is the affected callback, ``culprit`` the one to blame (0: none or unknown); ``about`` is the
-    topic, service or node in question. Occurrences of one rule, subject and ``about`` are one finding.
+    topic, service or node in question. Occurrences with the same ``key`` are one finding.
     ``size`` ranks them, the worst highest, in a unit of the rule; ``detail`` and ``thread`` are what the rule
     needs to explain it.
     """
@@ -53,6 +55,15 @@ class Finding:
     count: int = 1
     detail: str = ""
     thread: ThreadId = 0
+    stuck: frozenset[EntityId] = frozenset()
+    """The callbacks that can never go on."""
+    ring: tuple[str, ...] = ()
+    """Who waits for what, which waits for whom, back to the first: ``tick``, ``/add``, ``tick``."""
+
+    @property
+    def key(self) -> tuple[str, EntityId, str]:
+        """What occurrences of one finding have in common."""
+        return self.rule.id, self.culprit if self.rule.by_culprit else self.subject, self.about
 
     @property
     def lasted(self) -> Nanoseconds:
@@ -65,7 +76,7 @@ class Explanation:
     """A finding in words: ``what`` happened (a line without a full stop), ``why``, and what to do.
 
     ``place`` is the learner's code in question; None if it is unknown. ``for_ever``: callbacks wait that can
-    never go on.
+    never go on. ``remedy`` is the part of the cure that can be tried without an edit.
     """
 
     what: str
@@ -73,6 +84,7 @@ class Explanation:
     cure: str
     place: CodeLocation | None
     for_ever: bool = False
+    remedy: Remedy = NO_REMEDY
 
 
 class Rule(ABC):
@@ -82,6 +94,10 @@ class Rule(ABC):
     summary: ClassVar[str]
     """What the rule looks for, in a few words."""
     weight: ClassVar[Weight] = Weight.PROBLEM
+    by_culprit: ClassVar[bool] = False
+    """Whether all that one culprit does to others is one finding."""
+    is_effect: ClassVar[bool] = False
+    """Whether it finds what a callback that can never go on does to others and to itself."""
 
     @abstractmethod
     def check(self, view: TimelineView) -> Iterator[Finding]:
@@ -99,12 +115,29 @@ class Rule(ABC):
 _MODEL_FOLDER = str(Path(sim.__file__).parent)
 
 
+def is_models(entity: EntityInfo) -> bool:
+    """Whether an entity is the model's own, such as the timer of a rate."""
+    return entity.file.startswith(_MODEL_FOLDER)
+
+
 def place_of(entity: EntityId, timeline: Timeline) -> CodeLocation | None:
     """The code of an entity's callback; None if it is the model's own, such as a rate's timer."""
     known = timeline.entities.get(entity)
-    if known is None or not known.file or known.file.startswith(_MODEL_FOLDER):
+    if known is None or not known.file or is_models(known):
         return None
     return CodeLocation(known.file, known.first_line, known.last_line)
+
+
+def line_of(entity: EntityId, window: Window, timeline: Timeline) -> CodeLocation | None:
+    """The line at which a callback was longest in a window; all of its lines if that is unknown."""
+    lasted: Counter[tuple[str, int]] = Counter()
+    for each in timeline.positions_of(entity, window):
+        end = each.end_at(timeline.end)
+        lasted[each.file, each.line] += min(end, window.end) - max(each.start, window.start) + 1
+    if not lasted:
+        return place_of(entity, timeline)
+    ((file, line), _) = lasted.most_common(1)[0]
+    return CodeLocation(file, line, line)
 
 
 def entity_of(found: Finding, timeline: Timeline) -> EntityInfo:

@@ -9,7 +9,7 @@ from operator import attrgetter
 
 from sim.trace.events import EntityId, EntityKind, NodeId, ProcessId, Reason, ThreadId
 from sim.trace.figures.concurrency import Concurrency
-from sim.trace.model import Blocked, Call, EntityInfo, Moment, Nanoseconds, Span, Wait, Window
+from sim.trace.model import Blocked, Call, EntityInfo, Moment, Nanoseconds, Position, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 
@@ -25,7 +25,7 @@ class LongWait:
 
     def length(self, part: Wait) -> Nanoseconds:
         """The length of a part, in nanoseconds."""
-        return (self.until if part.end is None else part.end) - part.start
+        return part.end_at(self.until) - part.start
 
     def because(self, reason: Reason) -> tuple[Wait, ...]:
         """The parts with a reason that another callback caused."""
@@ -116,6 +116,12 @@ class TimelineView:
         return tuple(self._blocked_in(self.window))
 
     @cached_property
+    def positions(self) -> tuple[Position, ...]:
+        """Where callbacks are in their code at the end."""
+        found = (self.timeline.position_on(thread, self.end) for thread in self.now.running)
+        return tuple(each for each in found if each is not None)
+
+    @cached_property
     def nested_spinners(self) -> frozenset[EntityId]:
         """The callbacks that spun their own executor and may hang in that; rules on waits skip them."""
         return frozenset(each.entity for each in self.timeline.spin_clashes if each.entity)
@@ -135,7 +141,7 @@ class TimelineView:
         for since, series in groupby(waits, key=attrgetter("since")):
             parts = tuple(series)
             last = parts[-1]
-            until = self.end if last.end is None else last.end
+            until = last.end_at(self.end)
             if until > self.window.start:
                 yield LongWait(entity, since, until, last.end is None, parts)
 

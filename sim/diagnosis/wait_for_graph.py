@@ -1,9 +1,10 @@
 """The wait-for graph of callbacks, groups and threads at one moment, and its deadlocks.
 
-A callback that is blocked in ``Client.call``, or suspended in ``await``, needs a reply. The reply needs the
-service's callback, then the client, then a worker for the future's done-callback. Each of these can wait for
-other callbacks: those that hold its group, those that occupy the threads, or the service's callback, which
-may be blocked itself. A callback is stuck if all that it waits for are stuck.
+A callback that is blocked in ``Client.call``, or suspended in ``await``, needs a reply, and so does one that
+waits for the reply in a loop or for an event. The reply needs the service's callback, then the client, then a
+worker for the future's done-callback. ``Rate.sleep`` needs the rate's timer, and a lock its holder. Each of
+these can wait for other callbacks: those that hold its group, those that occupy the threads, or the service's
+callback, which may be blocked itself. A callback is stuck if all that it waits for are stuck.
 
 Source: the usual test of a wait-for graph in which a request for one of several equal resources waits for
 all their owners to be stuck (Holt, "Some Deadlock Properties of Computer Systems", 1972).
@@ -13,13 +14,20 @@ from bisect import bisect_left
 from collections.abc import Iterator
 from dataclasses import dataclass
 from operator import attrgetter
+from pathlib import Path
 from typing import TypeAlias
 
+from sim.diagnosis.rule import is_models
 from sim.diagnosis.timeline_view import pool_of
 from sim.diagnosis.words import group_of, who
-from sim.trace.events import CallId, EntityId, EntityKind, GroupKind, Reason, ThreadId
-from sim.trace.model import Call, Moment, Nanoseconds, Span, Window
+from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, Reason, ThreadId
+from sim.trace.model import Call, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.timeline import Timeline
+
+RATE = "the rate's timer"
+LOCK = "a lock"
+_SETTLES: Nanoseconds = 100_000_000
+"""How long a callback must have been at its line until that counts as a wait."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,15 +49,22 @@ Waiter: TypeAlias = OnThread | Suspended
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
-    """What a call waits for, as a clause: one of ``by`` would have to go on.
+    """What a callback waits for, as a clause: one of ``by`` would have to go on.
 
-    ``needs_worker``: a thread is missing.
+    ``wanted`` is the service, ``RATE`` or ``LOCK``; ``needs_worker``: a thread is missing; ``group`` is the
+    one that has to let it in, "" for none.
     """
 
-    service: str
+    wanted: str
     text: str
     by: tuple[Waiter, ...]
     needs_worker: bool = False
+    group: str = ""
+
+    @property
+    def steps(self) -> tuple[str, ...]:
+        """What lies between the callback and the one that keeps it waiting: ``/add``, ``group A``."""
+        return tuple(filter(None, (self.wanted, "a thread" if self.needs_worker else self.group)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +142,16 @@ class WaitForGraph:
                     OnThread(thread),
                     StuckCallback(OnThread(thread), blocked.entity, blocked.start, obstacle),
                 )
+        for thread, span in self._moment.running.items():
+            position = self._timeline.position_on(thread, self._at)
+            if thread in self._moment.blocked or position is None or self._at - position.start < _SETTLES:
+                continue
+            obstacle = self._obstacle_at(position, span)
+            if obstacle is not None:
+                yield (
+                    OnThread(thread),
+                    StuckCallback(OnThread(thread), span.entity, position.start, obstacle),
+                )
         for entity in self._suspended():
             calls = [call for call in self._outstanding() if call.caller == entity]
             obstacles = [self._obstacle(call, entity) for call in calls]
@@ -156,33 +181,66 @@ class WaitForGraph:
     def _is_answered(self, call: Call) -> bool:
         return call.replied is not None and call.replied <= self._at
 
+    def _obstacle_at(self, position: Position, span: Span) -> Obstacle | None:
+        """What a callback at a line waits for; None: nothing known, or nothing permanent."""
+        if position.holder:
+            holder = OnThread(position.holder)
+            me = self._name(OnThread(position.thread))
+            return Obstacle(LOCK, f"{me} wants the lock that {self._name(holder)} keeps", (holder,))
+        if position.call == "Rate.sleep":
+            node = self._timeline.entities[span.entity].node
+            for entity in self._moment.waiting:
+                known = self._timeline.entities[entity]
+                if known.kind is EntityKind.TIMER and known.node == node and is_models(known):
+                    return self._admission_obstacle(entity, RATE, RATE)
+        if position.doing is Doing.WAITS or position.loop[0]:
+            pending = (call for call in self._outstanding() if call.caller == span.entity)
+            for call in pending:
+                if call.sent >= span.start:
+                    return self._obstacle(call, span.entity)
+        return None
+
     # what a reply waits for
 
     def _obstacle(self, call: Call, caller: EntityId) -> Obstacle | None:
         """What the reply of a call waits for; None: nothing known, or nothing permanent."""
-        owner = self._queued_at.get(call.id)
+        owner = self._queued_at.get(call.id, self._waiting_action(call))
         if owner is not None:
             return self._queue_obstacle(owner, call)
         if not self._is_answered(call):
             return self._service_obstacle(call)
         return self._future_obstacle(call, caller)
 
+    def _waiting_action(self, call: Call) -> EntityId | None:
+        """The action server or client that a request or reply waits for; their queues are not traced."""
+        action, _, of_action = call.service.partition("/_action/")
+        for entity in self._moment.waiting if of_action else ():
+            known = self._timeline.entities[entity]
+            if known.kind is EntityKind.WAITABLE and known.name == action and not known.callback:
+                return entity
+        return None
+
     def _queue_obstacle(self, owner: EntityId, call: Call) -> Obstacle | None:
         """The request or reply is in a queue."""
+        needs = f"the reply of {call.service}" if self._is_answered(call) else call.service
+        return self._admission_obstacle(owner, call.service, needs)
+
+    def _admission_obstacle(self, owner: EntityId, wanted: str, needs: str) -> Obstacle | None:
+        """A ready callback, or the reply to a client, waits for its group or for a thread."""
         wait = self._moment.waiting.get(owner)
         if wait is None:
             return None
         known = self._timeline.entities[owner]
-        needs = f"the reply of {call.service}" if self._is_answered(call) else call.service
         if wait.reason is Reason.GROUP_HELD:
             group = self._timeline.groups.get(known.group)
             if group is None or group.kind is not GroupKind.EXCLUSIVE:
                 return None
             by = tuple(waiter for each in self._moment.holders[known.group] for waiter in self._waiters(each))
-            text = f"{needs} waits for {group_of(owner, self._timeline)}, which {self._names(by)} holds"
-            return Obstacle(call.service, text, by) if by else None
-        if wait.reason is Reason.NO_FREE_WORKER and wait.holder:
-            return self._worker_obstacle(self._pool(wait.holder), call.service, needs)
+            name = group_of(owner, self._timeline)
+            text = f"{needs} waits for {name}, which {self._names(by)} holds"
+            return Obstacle(wanted, text, by, group=name) if by else None
+        if wait.reason in (Reason.NO_FREE_WORKER, Reason.EVENT_QUEUE) and wait.holder:
+            return self._worker_obstacle(self._pool(wait.holder), wanted, needs)
         return None
 
     def _service_obstacle(self, call: Call) -> Obstacle | None:
@@ -214,12 +272,13 @@ class WaitForGraph:
                         return self._worker_obstacle(pool, call.service, f"the reply of {call.service}")
         return None
 
-    def _worker_obstacle(self, pool: tuple[Waiter, ...], service: str, needs: str) -> Obstacle | None:
+    def _worker_obstacle(self, pool: tuple[Waiter, ...], wanted: str, needs: str) -> Obstacle | None:
         if len(pool) == 1:
             text = f"{needs} needs the only thread, which {self._names(pool)} keeps"
         else:
-            text = f"{needs} needs a thread, and all {len(pool)} stand still in call(): {self._names(pool)}"
-        return Obstacle(service, text, pool, needs_worker=True) if pool else None
+            every = "both" if len(pool) == 2 else f"all {len(pool)}"
+            text = f"{needs} needs a thread, and {every} stand still: {self._names(pool)}"
+        return Obstacle(wanted, text, pool, needs_worker=True) if pool else None
 
     # threads and queues
 
@@ -252,7 +311,11 @@ class WaitForGraph:
         if isinstance(waiter, Suspended):
             return who(waiter.entity, self._timeline)
         span = self._moment.running.get(waiter.thread)
-        return "another callback" if span is None else who(span.entity, self._timeline)
+        if span is None:
+            return "another callback"
+        position = self._timeline.position_on(waiter.thread, self._at)
+        line = "" if position is None else f" ({Path(position.file).name}:{position.line})"
+        return f"{who(span.entity, self._timeline)}{line}"
 
     def _queue_owners(self) -> Iterator[tuple[CallId, EntityId]]:
         """Each queued request or reply, and the entity whose queue has it."""

@@ -36,6 +36,12 @@ class RunUntil(msgspec.Struct, frozen=True, tag="run_until"):
     moment: int
 
 
+class Choose(msgspec.Struct, frozen=True, tag="choose"):
+    """Have the option with this index, from 0, go on where the run asks who is to."""
+
+    option: int
+
+
 class CallService(msgspec.Struct, frozen=True, tag="call"):
     """Call a SetBool service from outside, as ``ros2 service call`` would; None: the program's first."""
 
@@ -85,7 +91,7 @@ class Stop(msgspec.Struct, frozen=True, tag="stop"):
     """End the run."""
 
 
-PaceCommand: TypeAlias = Pause | Resume | SetSpeed | Step | RunUntil
+PaceCommand: TypeAlias = Pause | Resume | SetSpeed | Step | RunUntil | Choose
 
 InputCommand: TypeAlias = (
     CallService | RunLine | InterruptLine | TerminalInput | ResetWorld | KeepContents | Stop

@@ -21,7 +21,9 @@ from sim.clock.schedule import schedule_of
 from sim.clock.stdlib import live_on
 from sim.engine.batches import Batches
 from sim.engine.callback_overrides import overrides_of
+from sim.engine.callback_positions import CallbackPositions
 from sim.engine.command_loop import CommandLoop
+from sim.engine.exploration.start import explore
 from sim.engine.failures.crash_dump import enable_crash_dump, exit_unless_renewed
 from sim.engine.failures.failure import breakdown, is_learners
 from sim.engine.failures.tracebacks import leave_out_own_frames
@@ -36,6 +38,7 @@ from sim.engine.programs.ros2_lines import Lines
 from sim.engine.programs.set_up_programs import run_programs
 from sim.engine.programs.starting import ProgramStarter
 from sim.engine.programs.workspace_imports import use_workspace
+from sim.engine.release import profile_of
 from sim.engine.requests import Requests
 from sim.engine.robot import provide_robot
 from sim.engine.setup import RunSetup
@@ -64,6 +67,10 @@ if TYPE_CHECKING:
 _leave = os._exit
 
 
+_PERIODS_A_LOOK = 5
+"""Periods of the outbox, of 10 ms each, to one look at the threads' frames on the real clock."""
+
+
 class Engine:
     """One run of one set-up. ``pipe`` carries events out and commands in."""
 
@@ -73,7 +80,7 @@ class Engine:
         self._crash_dump = crash_dump
         self._pid = os.getpid()
         clock = (
-            VirtualClock(setup.speed, schedule_of(setup.seed))
+            VirtualClock(setup.speed, schedule_of(setup.seed), setup.explored_from)
             if setup.clock == "virtual"
             else PacedClock(setup.speed or 1.0)
         )
@@ -93,8 +100,14 @@ class Engine:
         control: VirtualControl | RealControl = (
             RealControl(clock, record) if isinstance(clock, PacedClock) else VirtualControl(clock, record)
         )
+        self._control = control
         self._probe = Probe(clock, control.record, self._contents)
-        self._host = Host(clock, self._probe, threads=setup.threads, overrides=overrides_of(setup))
+        self._positions = CallbackPositions(self._probe, clock, record)
+        self._periods = 0
+        profile = profile_of(setup, lambda text: record(Notice(0, Severity.ERROR, text)))
+        self._host = Host(
+            clock, self._probe, threads=setup.threads, overrides=overrides_of(setup), profile=profile
+        )
         self._endless = None if virtual is None else EndlessWaits(virtual, self._host, record)
         self._descriptors = Descriptors(lambda text, error: record(Printed(clock.now(), text, error)))
         self._programs = ProgramSupervisor(self._host, record)
@@ -144,7 +157,7 @@ class Engine:
         """Do all that comes before the first line of a program."""
         setup, clock, record = self._setup, self._clock, self._outbox.record
         self._outbox.start()
-        record(RunStarted(0, setup.title, setup.clock, clock.epoch))
+        record(RunStarted(0, setup.title, setup.clock, clock.epoch, str(self._host.profile)))
         self._commands.start()
         self._shutdown.start()
         redirect_output(clock, record)
@@ -169,7 +182,7 @@ class Engine:
             self._live_on(clock)
         elif isinstance(clock, PacedClock):
             follow(clock)
-            HungCallbacks(clock, record).start()
+            HungCallbacks(clock, record, self._positions.callback_on).start()
         self._terminal.put_in_place()
         self._commands.schedule(setup)
         self._batches.guard(
@@ -188,11 +201,15 @@ class Engine:
         clock.on_lock_wait = self._endless.begins
         end_computation = _ignore if is_watched else partial(self._shutdown.end_computation, clock)
         be_back_in = _ignore if is_watched else partial(exit_unless_renewed, self._crash_dump)
-        Watchdog(clock, record, end_computation, be_back_in).start()
+        Watchdog(clock, record, self._positions.callback_on, end_computation, be_back_in).start()
         clock.time.on_recess = StandstillDetector(
             clock, record, _ignore if is_watched else self._shutdown.fail
         ).look
         live_on(clock, Repeatability(clock, record).lose)
+        if clock.explores:
+            asked = explore(clock, self._host, record)
+            if asked is not None and isinstance(self._control, VirtualControl):
+                self._control.choose = asked.choose
 
     def _end(self, outcome: ProgramOutcome) -> NoReturn:
         """End as CPython does once a script has, and leave."""
@@ -208,11 +225,15 @@ class Engine:
     def _look_at_waits(self) -> int | None:
         assert self._endless is not None
         self._endless.look()
+        self._positions.look()
         return None if self._shutdown.has_begun else self._host.explain_waits()
 
     def _look_at_waits_of_real_time(self) -> None:
         if not isinstance(self._clock, VirtualClock) and not self._shutdown.has_begun:
             self._host.explain_waits()
+            self._periods += 1
+            if self._periods % _PERIODS_A_LOOK == 0:
+                self._positions.look()
 
     def _make_room(self) -> None:
         self._outbox.flush()

@@ -34,15 +34,12 @@ def _start_at_once(setup: RunSetup, host: Host, record: Callable[[AnyEvent], Non
     from sim.robot.model_port import start_robot
     from sim.robot.world import World
 
-    world = World()
+    world = World(physics=setup.physics)
     start_robot(host, record, lambda: world, setup.sensor_rate)
 
 
 def _start_when_used(
-    setup: RunSetup,
-    host: Host,
-    record: Callable[[AnyEvent], None],
-    unavailable: Callable[[str], None],
+    setup: RunSetup, host: Host, record: Callable[[AnyEvent], None], unavailable: Callable[[str], None]
 ) -> None:
     from sim.robot.bullet import WorldUnavailable
     from sim.robot.names import NAMES
@@ -51,7 +48,7 @@ def _start_when_used(
         from sim.robot.world import World
 
         try:
-            return World()
+            return World(physics=setup.physics)
         except WorldUnavailable as error:
             unavailable(str(error))
             raise

@@ -4,6 +4,9 @@ from enum import StrEnum
 
 import msgspec
 
+from sim.clock.schedule import Seed
+from sim.robot.physics import PhysicsChoice as PhysicsChoice  # noqa: PLC0414 - handed on to the console
+
 
 class RobotUse(StrEnum):
     """When the lessons' robot is there."""
@@ -127,11 +130,16 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     without programs ends with its lines. ``inputs``, in the order of their
     moments, need the virtual clock. ``groups`` and ``periods`` change the programs' callbacks, the later of
     two changes of one callback counts. ``sensor_rate`` (Hz) is that of the robot's odometry and scans, None
-    leaves the usual one. With ``contents`` the trace has what published messages hold. ``seed`` chooses,
+    leaves the usual one;
+    ``physics`` None is PyBullet if it is installed, else numpy. With ``contents``
+    the trace has what published messages hold. ``seed`` chooses,
     on the virtual clock, among the orders in which a machine could run threads; None and 0 are first come,
-    first served. Tracebacks are without the frames of the model, unless they are to be ``whole_tracebacks``.
+    first served; up to ``explored_from`` (nanoseconds) they run so in any case. Tracebacks are without the
+    frames of the model, unless they are to be ``whole_tracebacks``.
     With ``real`` the programs run on real rclpy, in processes of their own, and on the real clock.
-    ``seal`` is the key that its trace is sealed with (``sim.trace.integrity.sealing``), b"" for none.
+    ``distro`` is the release of rclpy that the model is like, as ``sim.profiles`` spells it, "" for what
+    its programs ask for, or the usual one. ``seal`` is the key that its trace is sealed with
+    (``sim.trace.integrity.sealing``), b"" for none.
     """
 
     title: str
@@ -149,10 +157,13 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     packages: tuple[str, ...] = ()
     robot: RobotUse = RobotUse.ALWAYS
     sensor_rate: float | None = None
+    physics: PhysicsChoice | None = None
     groups: tuple[GroupChange, ...] = ()
     periods: tuple[PeriodChange, ...] = ()
     contents: bool = False
-    seed: int | None = None
+    seed: Seed | None = None
+    explored_from: int = 0
     whole_tracebacks: bool = False
     real: RealRos | None = None
+    distro: str = ""
     seal: bytes = b""

@@ -10,6 +10,7 @@ from functools import partial
 from typing import NoReturn
 
 from sim.clock import RunClock, VirtualClock
+from sim.engine.failures.failure import Failure
 from sim.engine.outbox import Outbox
 from sim.engine.programs.ending import GRACE, VIRTUAL_GRACE, flush_files_soon
 from sim.engine.programs.program import STOPPED, ProgramOutcome, threads_left_by
@@ -39,6 +40,7 @@ class Cause:
     reason: str
     failed: bool
     error: str = ""
+    failure: Failure | None = None
     time_was_up: bool = False
 
 
@@ -92,8 +94,8 @@ class RunShutdown:
         """End the run because it has lasted as long as it was to."""
         failures = self._programs.failures
         sentence = "; ".join(["its time was up", *(each.sentence for each in failures[:1])])
-        error = failures[0].error if failures else ""
-        self.request(Cause(sentence, bool(failures), error, time_was_up=True))
+        first = failures[0] if failures else ProgramOutcome(sentence, failed=False)
+        self.request(Cause(sentence, bool(failures), first.error, first.failure, time_was_up=True))
 
     def request(self, cause: Cause) -> None:
         """Have the program end as by Ctrl-C, and the run with it; by force if that takes too long."""
@@ -128,7 +130,7 @@ class RunShutdown:
 
     def finish(self, outcome: ProgramOutcome) -> NoReturn:
         """Leave once the program has ended; it may have failed after it was told to end."""
-        cause = Cause(outcome.sentence, outcome.failed, outcome.error)
+        cause = Cause(outcome.sentence, outcome.failed, outcome.error, outcome.failure)
         if not self.conclude(cause) and outcome.failed:
             self._tell(Severity.ERROR, outcome.sentence)
         finish_lines()
@@ -154,7 +156,10 @@ class RunShutdown:
                 _real_sleep(GRACE)  # another thread is at it
         self._descriptors.finish()
         cause = self._cause or Cause(STOPPED, failed=False)
-        last = RunEnded(self._clock.now(), cause.reason, cause.failed, cause.time_was_up, cause.error)
+        found = cause.failure or Failure("", 0, "")
+        place = found.file, found.line
+        told = (cause.reason, cause.failed, cause.time_was_up, cause.error, place, found.what, found.advice)
+        last = RunEnded(self._clock.now(), *told)
         self._outbox.close(last)
         self._starter.close()
         _leave(0)

@@ -45,6 +45,8 @@ class VirtualControl:
         self._sink = sink
         self._wanted: Wanted | None = None
         self._goal = ""
+        self.choose: Callable[[int], None] = _ignore
+        """Takes the answer where the run asks which thread is to go on."""
         clock.time.pace.on_halt = self._note_halt
 
     def record(self, event: AnyEvent) -> None:
@@ -80,6 +82,8 @@ class VirtualControl:
             case commands.Step():
                 clock.time.step()
                 wanted = is_decision
+            case commands.Choose(option=option):
+                self.choose(option)
             case commands.RunUntil(moment=moment):
                 if moment <= clock.now():
                     self._sink(_too_late(clock.now(), moment))
@@ -112,6 +116,9 @@ class RealControl:
         match command:
             case commands.SetSpeed(speed=speed):
                 self._change_speed(speed)
+                return
+            case commands.Choose():
+                self._say("on the real clock the machine chooses who goes on; use the virtual clock")
                 return
             case commands.Step():
                 self._say("the real clock cannot go step by step: threads run at once; use the virtual clock")
@@ -159,6 +166,7 @@ _KINDS = {
     commands.SetSpeed: CommandKind.SPEED,
     commands.Step: CommandKind.STEP,
     commands.RunUntil: CommandKind.RUN_UNTIL,
+    commands.Choose: CommandKind.CHOOSE,
 }
 
 
@@ -178,6 +186,8 @@ def in_words(command: PaceCommand) -> str:
             return "step"
         case commands.SetSpeed(speed=speed):
             return "speed max" if speed is None else f"speed x{speed:g}"
+        case commands.Choose(option=option):
+            return f"choose {option + 1}"
         case commands.RunUntil(moment=moment):
             return f"run until {moment / 1e9:.9g} s"
 
@@ -185,3 +195,7 @@ def in_words(command: PaceCommand) -> str:
 def _too_late(now: int, moment: int) -> Notice:
     text = f"the run has come to {timestamp(now)}, so it cannot go on until {moment / 1e9:.9g} s"
     return Notice(now, Severity.WARN, text)
+
+
+def _ignore(_option: int) -> None:
+    """Stand in where a run asks nobody."""

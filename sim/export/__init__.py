@@ -1,14 +1,6 @@
 """Exports a run for other programs: trace viewers, spreadsheets, documents.
 
-``TraceExporter`` (to a ``PerfettoFile`` or ``ChromeFile``) and ``CallTable`` take batches of events, in
-constant memory; pictures and reports are made from a timeline.
+``trace_exporter`` (to a file of ``perfetto`` or ``chrome``) and ``csv`` take batches of events, in constant
+memory; ``html``, ``markdown`` and ``svg`` are made from a timeline. Nothing is imported here: formats bring
+libraries of their own, and most programs need none of them.
 """
-
-from sim.export.chrome import ChromeFile
-from sim.export.csv import CallTable
-from sim.export.markdown import report
-from sim.export.perfetto import PerfettoFile
-from sim.export.svg import svg
-from sim.export.trace_exporter import TraceExporter
-
-__all__ = ["CallTable", "ChromeFile", "TraceExporter", "PerfettoFile", "report", "svg"]

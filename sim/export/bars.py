@@ -58,7 +58,7 @@ def bars(intervals: Iterable[IntervalT], scale: PixelScale, end: Nanoseconds) ->
     running: list[Nanoseconds | None] = []
     drawn: list[float] = []
     for interval in intervals:
-        until = end if interval.end is None else interval.end
+        until = interval.end_at(end)
         level = _free_level(running, interval.start)
         running[level] = until
         if level == len(drawn):

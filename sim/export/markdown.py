@@ -9,6 +9,7 @@ from sim.export.texts import markdown as plain
 from sim.export.texts import seconds
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind
+from sim.trace.figures.chains_text import told_chain
 from sim.trace.figures.statistics import CallbackStatistics, Distribution, Statistics, ages_used, statistics
 from sim.trace.figures.summary import CallbackFigures, Summary, summarise
 from sim.trace.figures.summary_text import robot_line, service_line
@@ -39,8 +40,8 @@ _HEADS = (
 )
 
 
-def report(timeline: Timeline, picture: str | None = None) -> str:
-    """The report on a timeline; ``picture`` is the link to its picture.
+def report(timeline: Timeline, picture: str | None = None, chains: Sequence[Sequence[str]] = ()) -> str:
+    """The report on a timeline; ``picture`` is the link to its picture, ``chains`` are topics to follow.
 
     Text from the learner's program is shown literally.
     """
@@ -52,11 +53,17 @@ def report(timeline: Timeline, picture: str | None = None) -> str:
         _data(summary, figures, timeline),
         _waits(summary, timeline),
         _threads(timeline, summary, figures),
+        _chains(timeline, chains),
         _calls_and_robot(summary),
         _words(timeline),
         _picture(picture),
     )
     return "\n".join(line for part in parts for line in part)
+
+
+def _chains(timeline: Timeline, chains: Sequence[Sequence[str]]) -> Iterator[str]:
+    for names in chains:
+        yield from ("## Chain", "", "```text", told_chain(timeline, names).rstrip(), "```", "")
 
 
 def _setup(timeline: Timeline, summary: Summary) -> Iterator[str]:
@@ -94,7 +101,7 @@ def _diagnosis(timeline: Timeline) -> Iterator[str]:
     yield ""
     findings = diagnose(timeline)
     if not findings:
-        yield "Nothing to complain about."
+        yield "No problems found."
     for found in findings:
         told = found.rule.explain(found, timeline)
         weight = found.rule.weigh(found, timeline) or found.rule.weight
@@ -170,7 +177,7 @@ def _reasons(each: CallbackFigures, timeline: Timeline) -> Iterator[Sequence[str
     longest: defaultdict[str, Nanoseconds] = defaultdict(int)
     for wait in timeline.waits_of(each.entity.id, Window(0, timeline.end + 1)):
         why = why_waiting(wait, timeline)
-        length = (timeline.end if wait.end is None else wait.end) - wait.start
+        length = wait.end_at(timeline.end) - wait.start
         total[why] += length
         longest[why] = max(longest[why], length)
     for why in sorted(total, key=lambda why: -total[why]):

@@ -10,6 +10,7 @@ from sim.export.svg_elements import Box
 from sim.export.texts import seconds, xml
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import GroupKind, Reason
+from sim.trace.figures.chains import ChainStep
 from sim.trace.model import EntityInfo, GroupInfo, Nanoseconds, Span, ThreadInfo, Wait, Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
@@ -25,8 +26,16 @@ _LOSS_EVERY = 6.0
 _LEVELS = 4
 
 
-def svg(timeline: Timeline, window: Window, width: int = 1100, row_height: int = 22) -> str:
+def svg(
+    timeline: Timeline,
+    window: Window,
+    width: int = 1100,
+    row_height: int = 22,
+    path: Sequence[ChainStep] = (),
+) -> str:
     """The picture as the text of an SVG file, ``width`` pixels wide and as high as its rows need.
+
+    The steps of ``path`` are framed.
 
     Raises:
         ValueError: the window has no length, or the picture would be too narrow or too wide.
@@ -35,11 +44,14 @@ def svg(timeline: Timeline, window: Window, width: int = 1100, row_height: int =
         raise ValueError("the picture's end must come after its start")
     if not NARROWEST <= width <= WIDEST or not 12 <= row_height <= 200:
         raise ValueError(f"a picture is {NARROWEST} to {WIDEST} pixels wide, its rows 12 to 200 high")
-    return "\n".join(_Picture(timeline, window, width, row_height).lines()) + "\n"
+    return "\n".join(_Picture(timeline, window, width, row_height, path).lines()) + "\n"
 
 
 class _Picture:
-    def __init__(self, timeline: Timeline, window: Window, width: int, row_height: int) -> None:
+    def __init__(
+        self, timeline: Timeline, window: Window, width: int, row_height: int, path: Sequence[ChainStep]
+    ) -> None:
+        self._path = path
         self._timeline = timeline
         self._window = window
         self._width = width
@@ -134,6 +146,11 @@ class _Picture:
             box = Box(bar.left, y + height / 5, bar.right - bar.left, height * 3 / 5)
             took = self._took(bar.interval)
             yield from self._call(bar, box, (f"runs {took}", took))
+        for step in self._path:
+            if step.entity == entity.id and step.end > self._window.start and step.start < self._window.end:
+                x = self._scale.x(max(step.start, self._window.start))
+                end = self._scale.x(min(step.end, self._window.end))
+                yield draw.outline(Box(x, y, end - x, height), f"{duration(step.length)}: {step.words}")
         for x, lost in losses(self._timeline, entity, self._scale, _LOSS_EVERY):
             yield (
                 f'<path d="M{x - 3:.2f},{y:.2f} h6 l-3,5 z" fill="{draw.WARN}">'
@@ -162,7 +179,7 @@ class _Picture:
             yield draw.words(box.x + 4, box.y + box.height / 2 + 4, text)
 
     def _took(self, interval: Span | Wait) -> str:
-        end = self._timeline.end if interval.end is None else interval.end
+        end = interval.end_at(self._timeline.end)
         return duration(end - interval.start)
 
     def _names(self, bar: Bar[Span]) -> tuple[str, ...]:
@@ -219,6 +236,8 @@ class _Picture:
         loss = f'<path d="M6,3 h6 l-3,5 z" fill="{draw.WARN}"/>'
         entries.append((loss, "message dropped"))
         entries.append((draw.words(9, 10, "✗", draw.WARN, "middle", "bold"), "raised an exception"))
+        if self._path:
+            entries.append((draw.outline(Box(0, 0, 18, 11), ""), "critical path of a chain"))
         return self._flowing(entries, y)
 
     def _flowing(self, entries: Sequence[tuple[str, str]], y: float) -> tuple[list[str], float]:

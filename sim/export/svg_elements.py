@@ -29,9 +29,11 @@ _TEXTURES = (
 )
 _RISING = "M-1,1 l2,-2 M0,7 l7,-7 M6,8 l2,-2"
 _FALLING = "M-1,6 l2,2 M0,0 l7,7 M6,-1 l2,2"
+_LEVEL = "M0,3.5 h7"
 _HATCHES = {
     Reason.GROUP_HELD: ("group-held", _RISING),
     Reason.NO_FREE_WORKER: ("no-free-worker", _FALLING),
+    Reason.EVENT_QUEUE: ("event-queue", _LEVEL),
     Reason.NOBODY_SPINS: ("nobody-spins", f"{_RISING} {_FALLING}"),
 }
 
@@ -79,6 +81,12 @@ def hatched(box: Box, reason: Reason, about: str) -> str:
         f'<rect {_place(box)} fill="url(#{name})" stroke="{FAINT}" stroke-width="0.6" '
         f'stroke-dasharray="3 2"><title>{xml(about)}</title></rect>'
     )
+
+
+def outline(box: Box, about: str) -> str:
+    """A frame around a stretch of a lane."""
+    shape = f'<rect {_place(box)} fill="none" stroke="{WARN}" stroke-width="1.6">'
+    return f"{shape}<title>{xml(about)}</title></rect>"
 
 
 def ground(box: Box) -> str:

@@ -11,7 +11,7 @@ from sim.interfaces.definition_text import definition
 from sim.interfaces.finder import InterfaceFinder, interface_module
 from sim.interfaces.interface_definition import DefinitionError, Kind, UnknownInterfaceError
 from sim.interfaces.known import action, add_definitions, message, message_of_type, names, packages, service
-from sim.interfaces.listing import interface_names, interface_text, kinds_sentence, prototype
+from sim.interfaces.listing import interface_text, kinds_sentence
 from sim.interfaces.workspace import find_definition_folders
 
 __all__ = [
@@ -29,14 +29,12 @@ __all__ = [
     "find_definition_folders",
     "from_cdr",
     "interface_module",
-    "interface_names",
     "interface_text",
     "kinds_sentence",
     "message",
     "message_of_type",
     "names",
     "packages",
-    "prototype",
     "service",
     "to_cdr",
     "type_name",

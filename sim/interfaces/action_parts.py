@@ -37,10 +37,7 @@ class ActionDefinition:
     @property
     def get_result(self) -> tuple[Definition, Definition]:
         """Request and response of the service that waits for the result."""
-        response: Fielddefs = [
-            ("status", (Nodetype.BASE, ("int8", 0))),
-            ("result", self._named(self.result)),
-        ]
+        response: Fielddefs = [("status", (Nodetype.BASE, ("int8", 0))), ("result", self._named(self.result))]
         return self._structure("GetResult_Request", [_GOAL_ID]), self._structure(
             "GetResult_Response", response
         )

@@ -10,14 +10,7 @@ from attrs import evolve
 
 from sim.interfaces.base import Interface, Message
 from sim.interfaces.elements import check_of, message_element, plain_element
-from sim.interfaces.field_types import (
-    Array,
-    BoundedSequence,
-    FieldType,
-    NamespacedType,
-    UnboundedSequence,
-    element_type,
-)
+from sim.interfaces.field_types import FieldType, NamespacedType, SequenceType, element_type
 from sim.interfaces.interface_definition import Definition, DefinitionError, UnknownInterfaceError
 from sim.interfaces.literals import constant_values, default_value
 from sim.interfaces.sequences import Handling, handling_of
@@ -141,7 +134,7 @@ def _copier(cls: type[Message], handlings: Mapping[str, Handling], puts: _Puts) 
 def _handling(field: str, of: FieldType, parts: Mapping[NamespacedType, type[Message]]) -> Handling:
     inner = element_type(of)
     element = message_element(parts[inner]) if isinstance(inner, NamespacedType) else plain_element(inner)
-    if isinstance(of, Array | BoundedSequence | UnboundedSequence):
+    if isinstance(of, SequenceType):
         return handling_of(field, of, element)
     return Handling(check_of(field, element), element.make, element.copy)
 
@@ -150,5 +143,5 @@ def _with_declared_default(definition: Definition, field: str, of: FieldType, ha
     if field not in definition.defaults:
         return handling
     value = default_value(definition, field, of, handling.check)
-    copied = isinstance(of, Array | BoundedSequence | UnboundedSequence)
+    copied = isinstance(of, SequenceType)
     return evolve(handling, make=(lambda: handling.copy(value)) if copied else (lambda: value))

@@ -26,7 +26,7 @@ from sim.interfaces.field_types import (
     NamespacedType,
     SequenceType,
 )
-from sim.interfaces.sequences import typecode
+from sim.interfaces.sequences import TYPECODES, typecode
 
 if TYPE_CHECKING:
     from sim.interfaces.base import Interface, Message
@@ -37,20 +37,7 @@ _Write: TypeAlias = Callable[[Any, bytearray], None]
 
 _LITTLE_ENDIAN = b"\x00\x01\x00\x00"
 """The header that tells the byte order; alignments count from behind it."""
-_FORMATS = {
-    "boolean": "?",
-    "octet": "1s",
-    "int8": "b",
-    "uint8": "B",
-    "int16": "h",
-    "uint16": "H",
-    "int32": "i",
-    "uint32": "I",
-    "int64": "q",
-    "uint64": "Q",
-    "float": "f",
-    "double": "d",
-}
+_FORMATS = {"boolean": "?", "octet": "1s", **TYPECODES}
 _PADDINGS = {size: tuple(bytes(-place % size) for place in range(8)) for size in (1, 2, 4, 8)}
 """What fills up to the next multiple of a size, by the rest modulo 8 of the place before."""
 

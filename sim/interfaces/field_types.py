@@ -172,4 +172,4 @@ FieldType: TypeAlias = ElementType | SequenceType
 
 def element_type(of: FieldType) -> ElementType:
     """Return the type of the values in a sequence; of any other type, the type itself."""
-    return of.value_type if isinstance(of, Array | BoundedSequence | UnboundedSequence) else of
+    return of.value_type if isinstance(of, SequenceType) else of

@@ -89,27 +89,21 @@ class DefinitionSource(Protocol):
 
     def packages(self) -> frozenset[str]:
         """Return the names of all packages it knows."""
-        ...
 
     def names(self, package: str, kind: Kind) -> tuple[str, ...]:
         """Return the sorted names of a package's interfaces of one kind; empty for an unknown package."""
-        ...
 
     def message(self, package: str, name: str) -> Definition:
         """Return a message listed by ``names``; `DefinitionError` if its text is wrong."""
-        ...
 
     def text(self, package: str, kind: Kind, name: str) -> str:
         """Return the definition of an interface listed by ``names``, as its author wrote it."""
-        ...
 
     def service(self, package: str, name: str) -> tuple[Definition, Definition]:
         """Return request and response of a service listed by ``names``; `DefinitionError` as above."""
-        ...
 
     def action(self, package: str, name: str) -> tuple[Definition, Definition, Definition]:
         """Return goal, result and feedback of an action listed by ``names``; errors as above."""
-        ...
 
 
 def owner_of(name: str) -> str:

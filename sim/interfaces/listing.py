@@ -6,22 +6,11 @@ from collections.abc import Iterator
 from typing import get_args
 
 from sim.interfaces.interface_definition import Kind, UnknownInterfaceError
-from sim.interfaces.known import action, message, names, packages, service, text
+from sim.interfaces.known import names, text
 from sim.interfaces.notation import is_primitive, line_of, type_text
 
 _KINDS: tuple[Kind, ...] = get_args(Kind)
 _PLURALS = {"msg": "messages", "srv": "services", "action": "actions"}
-
-
-def interface_names(kind: Kind | None = None) -> list[str]:
-    """Return the full names, such as ``std_msgs/msg/Int32``, of all interfaces or those of one kind."""
-    kinds = _KINDS if kind is None else (kind,)
-    return sorted(
-        f"{package}/{each}/{name}"
-        for package in packages()
-        for each in kinds
-        for name in names(package, each)
-    )
 
 
 def interface_text(type_name: str) -> str:
@@ -34,32 +23,14 @@ def interface_text(type_name: str) -> str:
         UnknownInterfaceError: the name has another form than ``std_msgs/msg/Int32``, or is unknown.
         DefinitionError: the file cannot be read.
     """
-    package, kind, name = split_type_name(type_name)
+    package, kind, name = _parts_of(type_name)
     lines: list[str] = []
     for line in text(package, kind, name).splitlines():
         lines += (line.rstrip(), *_nested(line, package, depth=1))
     return "".join(f"{line}\n" for line in lines)
 
 
-def prototype(type_name: str) -> str:
-    """Return what ``ros2 interface proto`` prints: the default values as YAML, in quotes.
-
-    Of a service it is the request, of an action the goal.
-
-    Raises:
-        UnknownInterfaceError, DefinitionError: as `interface_text`.
-    """
-    from sim.interfaces.rosidl_runtime_py.convert import message_to_yaml
-
-    package, kind, name = split_type_name(type_name)
-    if kind == "msg":
-        cls = message(package, name)
-    else:
-        cls = service(package, name).Request if kind == "srv" else action(package, name).Goal
-    return f'"{message_to_yaml(cls())}"\n'
-
-
-def split_type_name(type_name: str) -> tuple[str, Kind, str]:
+def _parts_of(type_name: str) -> tuple[str, Kind, str]:
     """Return package, kind and name of ``std_msgs/msg/Int32``.
 
     Raises:

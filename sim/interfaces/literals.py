@@ -7,15 +7,7 @@ from typing import Any
 from rosbags.interfaces import Nodetype
 
 from sim.interfaces.elements import Check, check_of, plain_element
-from sim.interfaces.field_types import (
-    Array,
-    BasicType,
-    BoundedSequence,
-    ElementType,
-    FieldType,
-    NamespacedType,
-    UnboundedSequence,
-)
+from sim.interfaces.field_types import BasicType, ElementType, FieldType, NamespacedType, SequenceType
 from sim.interfaces.interface_definition import Definition, DefinitionError, field_type
 
 
@@ -28,7 +20,7 @@ def constant_values(definition: Definition) -> dict[str, Any]:
     values = {}
     for name, typename, literal in definition.constants:
         of = field_type((Nodetype.BASE, (typename, 0)))
-        assert not isinstance(of, NamespacedType | Array | BoundedSequence | UnboundedSequence)
+        assert not isinstance(of, NamespacedType | SequenceType)
         values[name] = _fitted(definition, name, literal, of, check_of(name, plain_element(of)))
     return values
 
@@ -44,7 +36,7 @@ def default_value(definition: Definition, field: str, of: FieldType, check: Chec
 
 def _fitted(definition: Definition, name: str, literal: object, of: FieldType, check: Check) -> Any:
     try:
-        if not isinstance(of, Array | BoundedSequence | UnboundedSequence):
+        if not isinstance(of, SequenceType):
             return check(_converted(literal, of))
         items = literal if isinstance(literal, list) else [literal]
         return check([_converted(item, of.value_type) for item in items])

@@ -24,7 +24,7 @@ from sim.interfaces.field_types import (
     SequenceType,
 )
 
-_TYPECODES = {
+TYPECODES = {
     "float": "f",
     "double": "d",
     "int8": "b",
@@ -36,6 +36,7 @@ _TYPECODES = {
     "int64": "q",
     "uint64": "Q",
 }
+"""The letters by which ``array`` and ``struct`` know the types of numbers."""
 
 
 @frozen
@@ -51,7 +52,7 @@ class Handling:
 
 def typecode(of: SequenceType) -> str | None:
     """Return the ``array.array`` type code of a sequence of numbers; ``None`` for other sequences."""
-    return _TYPECODES.get(of.value_type.typename) if isinstance(of.value_type, BasicType) else None
+    return TYPECODES.get(of.value_type.typename) if isinstance(of.value_type, BasicType) else None
 
 
 def handling_of(field: str, of: SequenceType, element: Element) -> Handling:

@@ -5,11 +5,4 @@ from sim.launch.errors import LaunchError
 from sim.launch.machine import Machine, ProcessSpec, RunningProcess
 from sim.launch.run import LaunchRun
 
-__all__ = [
-    "LaunchError",
-    "LaunchRun",
-    "Machine",
-    "ProcessSpec",
-    "RunningProcess",
-    "describe_arguments",
-]
+__all__ = ["LaunchError", "LaunchRun", "Machine", "ProcessSpec", "RunningProcess", "describe_arguments"]

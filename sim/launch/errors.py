@@ -55,4 +55,16 @@ class LaunchFailure(RuntimeError):  # noqa: N818 -- base of exceptions whose nam
     """An action or substitution that cannot do what it is asked; the text is a sentence of its own."""
 
 
+COMPILED = ": components are compiled from C++"
+
+
+def unsupported(name: str, why: str) -> type:
+    """A class by that name of which nobody can make one: NotImplementedError tells why."""
+
+    def refuse(*_: object, **__: object) -> None:
+        raise NotImplementedError(f"{name} is not supported{why}")
+
+    return type(name, (), {"__init__": refuse})
+
+
 _CLEAR = (LaunchFailure, PackageError, NotImplementedError, ImportError)

@@ -1,4 +1,4 @@
-"""Makes ``import launch``, ``launch_ros`` and ``ament_index_python`` mean this model, in this process."""
+"""Makes ``import launch``, ``launch_ros``, ``ament_index_python`` and their kin mean this model."""
 
 import importlib
 import sys
@@ -27,6 +27,10 @@ _MODULES = (
     "launch_ros.descriptions",
     "launch_ros.parameter_descriptions",
     "launch_ros.substitutions",
+    "launch_xml",
+    "launch_xml.launch_description_sources",
+    "launch_yaml",
+    "launch_yaml.launch_description_sources",
 )
 
 

@@ -25,11 +25,15 @@ def load_description(path: Path) -> LaunchDescription:
     """
     from sim.launch.importing import install
     from sim.launch.launch.launch_description import LaunchDescription
+    from sim.launch.launch.launch_description_sources import LaunchDescriptionSource
 
     install()
+    LaunchDescriptionSource.read = load_description
     file = path.absolute()
-    if file.suffix != ".py":
-        raise LaunchError(f"{file.name}: launch files in XML and YAML are not supported; write it in Python")
+    if file.suffix in {".xml", ".yaml", ".yml"}:
+        from sim.launch.frontend import actions_in
+
+        return LaunchDescription(actions_in(file, _source(file)))
     generate = vars(_run(file)).get(_GENERATE)
     if not callable(generate):
         raise LaunchError(f"{file.name}: it defines no function {_GENERATE}()")
@@ -46,15 +50,18 @@ def load_description(path: Path) -> LaunchDescription:
     return description
 
 
-def _run(file: Path) -> ModuleType:
+def _source(file: Path) -> bytes:
     try:
-        source = read_bytes(file, MOST_OF_A_PROGRAM)
+        return read_bytes(file, MOST_OF_A_PROGRAM)
     except OSError as error:
         raise LaunchError(f"{file}: {error.strerror}") from None
+
+
+def _run(file: Path) -> ModuleType:
     module = ModuleType("launch_file")
     module.__file__ = str(file)
     try:
-        exec(compile(source, str(file), "exec", dont_inherit=True), vars(module))
+        exec(compile(_source(file), str(file), "exec", dont_inherit=True), vars(module))
     except Exception as error:
         raise explained(error, file) from error
     return module

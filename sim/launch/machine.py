@@ -47,19 +47,15 @@ class RunningProcess(Protocol):
     @property
     def number(self) -> int:
         """What stands for its process id."""
-        ...
 
     def interrupt(self) -> None:
         """Have it end as Ctrl-C would."""
-        ...
 
     def terminate(self) -> None:
         """Have it end as SIGTERM would."""
-        ...
 
     def kill(self) -> None:
         """End it whatever it does, as SIGKILL would."""
-        ...
 
 
 class Machine(Protocol):
@@ -71,16 +67,12 @@ class Machine(Protocol):
 
     def start_process(self, spec: ProcessSpec, on_exit: OnExit) -> RunningProcess:
         """Start a program."""
-        ...
 
     def run_line(self, label: str, words: Sequence[str], on_exit: OnExit) -> RunningProcess:
         """Start a ``ros2 …`` line; ``label`` names it in the log."""
-        ...
 
     def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:
         """Call ``action`` that many seconds from now."""
-        ...
 
     def say(self, text: str, severity: str = "INFO", logger: str = "launch") -> None:
         """Show a line of the launch's own log, printed as ``[INFO] [launch]: text``."""
-        ...

@@ -31,9 +31,14 @@ def is_library(frame: FrameType) -> bool:
     return "site-packages" in Path(frame.f_code.co_filename).parts
 
 
+def own_frame(frame: FrameType | None) -> FrameType | None:
+    """The innermost frame of the learner's own from a frame on."""
+    return next(filter(is_own, outwards(frame)), None)
+
+
 def place_of(frame: FrameType | None) -> str:
     """The innermost line of the learner's own from a frame on, as ``node.py:12, in tick``; "" for none."""
-    own = next(filter(is_own, outwards(frame)), None)
+    own = own_frame(frame)
     return (
         "" if own is None else f"{Path(own.f_code.co_filename).name}:{own.f_lineno}, in {own.f_code.co_name}"
     )
@@ -56,3 +61,15 @@ def call_into_ros() -> tuple[str, str, int]:
 def place_of_caller() -> str:
     """Where the learner's own code called from, on the calling thread; "" where it did not."""
     return place_of(sys._getframe(1))
+
+
+def raised_at(error: BaseException) -> tuple[str, int]:
+    """File and line of the innermost frame of the learner's own code, else of the innermost frame."""
+    found = ("", 0)
+    trace = error.__traceback__
+    while trace is not None:
+        file = trace.tb_frame.f_code.co_filename
+        if is_own(trace.tb_frame) or not found[0]:
+            found = (file, trace.tb_lineno)
+        trace = trace.tb_next
+    return found

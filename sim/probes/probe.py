@@ -4,17 +4,15 @@ It gives out the ids, and knows per thread which callback runs there. Every meth
 host's lock held or touches nothing shared, and does no more than append to the sink.
 """
 
-import inspect
 import threading
 from collections.abc import Callable
-from functools import partial
 from itertools import count
-from traceback import walk_tb
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sim.error_text import error_line
 from sim.marks import sends_responses
-from sim.probes.own_code import call_into_ros, is_own, place_of_caller
+from sim.probes.callbacks import callback_name, written_at
+from sim.probes.own_code import call_into_ros, place_of_caller, raised_at
 from sim.probes.traced import MessageContents, TracedEntity
 from sim.trace import events
 from sim.trace.events import (
@@ -31,11 +29,24 @@ if TYPE_CHECKING:
 
 
 class _Here(threading.local):
-    """What runs on the calling thread."""
+    """What runs on the calling thread. ``everywhere`` gets what runs on each thread, by its identifier."""
 
     thread = 0
     entity = 0
     executor = 0
+    begun = 0
+    """Callbacks that began or went on on this thread."""
+
+    def __init__(self, everywhere: dict[int, dict[str, int]]) -> None:
+        everywhere[threading.get_ident()] = self.__dict__
+
+
+class RunningCallback(NamedTuple):
+    """What runs on a thread; ``begun`` distinguishes it from later calls there."""
+
+    entity: int
+    thread: int
+    begun: int
 
 
 class Probe:
@@ -52,7 +63,8 @@ class Probe:
         self._now = clock.now
         self._sink = sink
         self._contents = contents
-        self._here = _Here()
+        self._everywhere: dict[int, dict[str, int]] = {}
+        self._here = _Here(self._everywhere)
         self._threads = count(1)
         self._nodes = count(1)
         self._groups = count(1)
@@ -92,7 +104,7 @@ class Probe:
         now = self._now()
         group = self._group_id(now, entity)
         entity.trace_id = next(self._entities)
-        name, file, first, last = _written_at(entity.shown_callback())
+        name, file, first, last = written_at(entity.shown_callback())
         self._sink(
             events.EntityAppeared(
                 now,
@@ -157,6 +169,7 @@ class Probe:
         """A callback begins on the calling thread; returns what ran there until now."""
         here = self._here
         outer, here.entity = here.entity, entity.trace_id
+        here.begun += 1
         if entity.traced:
             thread = here.thread or self.thread()
             self._sink(CallbackStarted(self._now(), entity.trace_id, thread, message, age, depth))
@@ -172,6 +185,14 @@ class Probe:
     def callback_here(self) -> int:
         """The entity whose callback runs on the calling thread; 0 for none."""
         return self._here.entity
+
+    def running(self) -> dict[int, RunningCallback]:
+        """The callbacks that run now, by the identifier of their thread; any thread may call this."""
+        return {
+            ident: RunningCallback(here["entity"], here.get("thread", 0), here.get("begun", 0))
+            for ident, here in list(self._everywhere.items())
+            if here.get("entity") and here.get("thread")
+        }
 
     def many_made(self, number: int, kind: str) -> None:
         """A callback on the calling thread has given a node so many of a kind."""
@@ -191,6 +212,16 @@ class Probe:
         )
         self._sink(events.Notice(self._now(), Severity.WARN, text))
 
+    def parameter_overruled(self, name: str) -> None:
+        """A parameter callback on the calling thread sets a parameter that is being set."""
+        problem = f"a parameter callback sets '{name}' while that is being set ({place_of_caller()})"
+        advice = "return the value from a pre-set callback, or refuse what was asked for"
+        text = f"{problem}: what was asked for is stored last; {advice}"
+        entity, kind = self._here.entity, events.NoticeKind.OVERRULED
+        self._sink(
+            events.Notice(self._now(), Severity.WARN, text, entity, kind=kind, problem=problem, advice=advice)
+        )
+
     def spin_clashed(self, node: int = 0) -> None:
         """The calling thread asked to spin what is being spun; ``node`` was taken from who spins it."""
         self._sink(events.SpinClashed(self._now(), self._here.entity, node, *call_into_ros()))
@@ -204,13 +235,14 @@ class Probe:
     def callback_resumed(self, entity: TracedEntity) -> int:
         """A coroutine callback goes on on the calling thread; returns what ran there until now."""
         outer, self._here.entity = self._here.entity, entity.trace_id
+        self._here.begun += 1
         if entity.traced:
             self._sink(events.CallbackResumed(self._now(), entity.trace_id, self.thread()))
         return outer
 
     def callback_failed(self, entity: TracedEntity, error: BaseException) -> None:
         """A callback raised."""
-        file, line = _raised_at(error)
+        file, line = raised_at(error)
         self._sink(
             events.CallbackFailed(
                 self._now(),
@@ -345,45 +377,6 @@ def _forget(_event: AnyEvent) -> None:
     """Take an event that nobody wants."""
 
 
-def callback_name(callback: Callable[..., Any]) -> str:
-    """The name under which a callback is on the trace."""
-    inner = _innermost(callback)
-    return str(getattr(inner, "__name__", type(inner).__name__))
-
-
-def _innermost(callback: Callable[..., Any]) -> Callable[..., Any]:
-    while isinstance(callback, partial):
-        callback = callback.func
-    unwrapped: Callable[..., Any] = inspect.unwrap(callback)
-    return unwrapped
-
-
-def _written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int]:
-    """Name, file and first and last line of a callback; empty for one without source of its own."""
-    if callback is None:
-        return "", "", 0, 0
-    inner = _innermost(callback)
-    name = callback_name(callback)
-    code = getattr(inner, "__code__", None) or getattr(type(inner).__call__, "__code__", None)
-    if code is None:
-        return name, "", 0, 0
-    lines = [line for _, _, line in code.co_lines() if line is not None]
-    return name, code.co_filename, code.co_firstlineno, max(lines, default=code.co_firstlineno)
-
-
 def _is_missing_response(error: BaseException) -> bool:
     """Tell whether an exception was raised as a service's callback had returned no response."""
-    frames = [frame for frame, _ in walk_tb(error.__traceback__)]
-    return isinstance(error, TypeError) and frames != [] and frames[-1] in sends_responses
-
-
-def _raised_at(error: BaseException) -> tuple[str, int]:
-    """File and line of the innermost frame of the learner's own code, else of the innermost frame."""
-    found = ("", 0)
-    trace = error.__traceback__
-    while trace is not None:
-        file = trace.tb_frame.f_code.co_filename
-        if is_own(trace.tb_frame) or not found[0]:
-            found = (file, trace.tb_lineno)
-        trace = trace.tb_next
-    return found
+    return isinstance(error, TypeError) and sends_responses.raised(error)

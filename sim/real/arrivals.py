@@ -3,7 +3,8 @@
 rclpy tells what was sent, and what was taken; that something lies in a queue shows while a callback waits.
 So what an entity that waits has in its queue are the last messages of its topic that it has not taken. Those
 that do not fit, and those that it passes over, are lost: what one publisher sends comes in order. What was
-sent before the first that it takes of a publisher was sent before the two had found each other.
+sent before the first that it takes of a publisher was sent before the two had found each other, if they ever
+do.
 """
 
 from collections import defaultdict, deque
@@ -40,6 +41,17 @@ class _Queue:
     heard: set[int] = field(default_factory=set)
     """The senders of which something was taken: they have found it."""
 
+    def is_reached_by(self, sending: Sending) -> bool:
+        """Whether a message comes to lie in it, as far as is known."""
+        return not self.heard or sending.sender in self.heard
+
+    def hears(self, sender: int) -> None:
+        """Something of a sender was taken. Before the first, it was not known whose messages lie in it."""
+        if not self.heard:
+            others = {each.number for each in self.untaken if each.sender != sender}
+            self.told = [number for number in self.told if number not in others]
+        self.heard.add(sender)
+
 
 class Arrivals:
     """Follows the queues of subscriptions, services and clients."""
@@ -70,7 +82,7 @@ class Arrivals:
         """Something was sent to a topic or service."""
         for queue in self._readers[name]:
             queue.untaken.append(sending)
-            if queue.waits:
+            if queue.waits and queue.is_reached_by(sending):
                 yield from self._arrived(t, queue, sending.number)
 
     def called(self, service: str, call: int) -> None:
@@ -103,7 +115,7 @@ class Arrivals:
             oldest = next(iter(self._pending[self._names[entity]]), 0)
             yield from self._arrived(t, queue, oldest)
             return
-        for sending in list(queue.untaken)[-queue.depth :]:
+        for sending in list(filter(queue.is_reached_by, queue.untaken))[-queue.depth :]:
             if sending.number not in queue.told:
                 yield from self._arrived(t, queue, sending.number)
         if not queue.told:  # by somebody whom no probe watches
@@ -128,7 +140,7 @@ class Arrivals:
                 lost: list[AnyEvent] = []
                 if queue.kind is EntityKind.SUBSCRIPTION:
                     lost = [event for each in passed for event in self._passed(t, queue, each)]
-                    queue.heard.add(sending.sender)
+                    queue.hears(sending.sender)
                 else:
                     queue.handled[sent] = sending.number
                     if len(queue.handled) > _REMEMBERED:

@@ -126,12 +126,12 @@ class RunRobot:
         self,
         use: RobotUse,
         sensor_rate: float | None,
+        physics: str | None,
         selector: BaseSelector,
         environment: Mapping[str, str],
         take: Callable[[Iterable[ProbeLine]], None],
     ) -> None:
-        rate = [] if sensor_rate is None else [str(sensor_rate)]
-        command = [sys.executable, "-m", "sim.real.robot", *rate]
+        command = [sys.executable, "-m", "sim.real.robot", str(sensor_rate or ""), physics or ""]
         self._process = Companion(selector, command, environment, self._told)
         self._take = take
         self._use = use

@@ -138,7 +138,9 @@ class RealEngine:
             lines = probed, launched.folders, launched
         self._lines = Ros2Lines(self._selector, *lines[:2], self._take, self._record, lines[2])
         self._caller = ServiceCaller(self._selector, self._python, graph, self._take)
-        self._robot = RunRobot(setup.robot, setup.sensor_rate, self._selector, graph, self._translation.take)
+        self._robot = RunRobot(
+            setup.robot, setup.sensor_rate, setup.physics, self._selector, graph, self._translation.take
+        )
         self._cause: Outcome | None = None
         self._time_was_up = False
         self._given_up_at: int | None = None

@@ -1,4 +1,6 @@
-"""The lessons' robot as a real ROS 2 node: ``python -m sim.real.robot [RATE]``, or ``cbtui robot``.
+"""The lessons' robot as a real ROS 2 node: ``python -m sim.real.robot RATE PHYSICS``, or ``cbtui robot``.
+
+"" is the usual rate or physics.
 
 As a part of a run it tells on standard output what it publishes and where it is, as a probe tells what a
 program does. Its time is the machine's monotonic clock.
@@ -18,6 +20,7 @@ from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sim.real import telling
 from sim.real.wire import ProbeLine
 from sim.robot.driver import Driver
+from sim.robot.physics import PhysicsChoice
 from sim.robot.world import World
 from sim.trace.events import AnyEvent
 
@@ -96,13 +99,15 @@ def transforms() -> type | None:
     return found
 
 
-def drive(tell: Tell, rate: float | None, transforms: type | None) -> None:
+def drive(
+    tell: Tell, rate: float | None, transforms: type | None, physics: PhysicsChoice | None = None
+) -> None:
     """Drive until Ctrl-C; ``rate`` (Hz) is that of the sensors, None the usual one."""
     rclpy.init()
     port = RealPort(tell, transforms)
     driver = Driver(port, rate)
     driver.offer()
-    driver.begin(World())
+    driver.begin(World(physics=physics))
     executor = SingleThreadedExecutor()
     executor.add_node(port.node)
     try:
@@ -112,4 +117,5 @@ def drive(tell: Tell, rate: float | None, transforms: type | None) -> None:
 
 
 if __name__ == "__main__":
-    drive(telling.tell, float(sys.argv[1]) if len(sys.argv) > 1 else None, None)
+    rate, physics = sys.argv[1:]
+    drive(telling.tell, float(rate) if rate else None, None, PhysicsChoice(physics) if physics else None)

@@ -7,7 +7,9 @@ from itertools import count
 import msgspec
 
 from sim.real.arrivals import Arrivals, Sending
+from sim.real.sampled_positions import position_of
 from sim.real.wire import (
+    At,
     Called,
     Hello,
     Interrupted,
@@ -123,6 +125,8 @@ class Translation:
                 service, call = arrivals.replied(line.entity, line.sent)
                 if call:
                     yield from self._replied(t, call, service, response)
+            case At():
+                yield position_of(line, t)
             case EntityReady():
                 yield from arrivals.ready(t, line.entity)
             case WaitStarted(since=since):

@@ -84,6 +84,22 @@ class Taken(msgspec.Struct, frozen=True, array_like=True, tag="taken"):
     """Nanoseconds since then."""
 
 
+class At(msgspec.Struct, frozen=True, array_like=True, tag="at"):
+    """Where a running callback is in the program's own code."""
+
+    t: int
+    entity: int
+    thread: int
+    frames: tuple[tuple[str, str, int], ...]
+    """File, function and line, from the callback inwards."""
+    instruction: tuple[int, int, int, int]
+    """First and last line, first and last column in bytes, of what the innermost does; zeros if not known."""
+    module: str
+    """Module of the function that the innermost has called; "" if it has called none in Python."""
+    function: str
+    """That function's qualified name."""
+
+
 class Replied(msgspec.Struct, frozen=True, array_like=True, tag="replied"):
     """A service sent the reply to a request."""
 
@@ -130,7 +146,7 @@ class Interrupted(msgspec.Struct, frozen=True, array_like=True, tag="interrupt")
     line: int
 
 
-_Own: TypeAlias = Hello | Sent | Called | Taken | Replied | Uncaught | Left | ProgramWanted | Interrupted
+_Own: TypeAlias = Hello | Sent | Called | Taken | At | Replied | Uncaught | Left | ProgramWanted | Interrupted
 
 ProbeLine: TypeAlias = _Own | AnyEvent
 

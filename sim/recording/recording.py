@@ -284,9 +284,7 @@ class Recording:
         return "; ".join(troubles) or None
 
 
-_OUTLINED = frozenset(
-    {Opcode.HEADER, Opcode.SCHEMA, Opcode.CHANNEL, Opcode.METADATA, Opcode.ATTACHMENT},
-)
+_OUTLINED = frozenset({Opcode.HEADER, Opcode.SCHEMA, Opcode.CHANNEL, Opcode.METADATA, Opcode.ATTACHMENT})
 _UNREADABLE = (
     *(struct.error, OverflowError, ValueError, McapError, MemoryError),
     *(batch.BatchError, batch.NewerFormatError),

@@ -56,9 +56,8 @@ def _import_bullet() -> Any:
         return importlib.import_module("pybullet")
     except ImportError as missing:
         raise WorldUnavailable(
-            f"The robot's world needs PyBullet, which this Python cannot import ({missing}): install it with "
-            f"`{sys.executable} -m pip install pybullet`; Python 3.11 has a ready-made wheel, "
-            "and `cbtui doctor` says more."
+            f"PyBullet cannot be imported by this Python ({missing}): `cbtui doctor` says how to install it; "
+            "--physics numpy moves the robot without it, and the map shows it."
         ) from missing
 
 

@@ -6,6 +6,12 @@ from typing import NamedTuple
 WHEEL_RADIUS = 0.033
 WHEEL_SEPARATION = 0.160
 
+STEP_RATE = 240
+"""Steps a second of the physics."""
+
+MOTOR_TORQUE = 0.02
+"""Newton metres of each wheel: full speed within 0.2 s, and too weak to lift the robot against a wall."""
+
 MAX_LINEAR = 0.22
 """Fastest a TurtleBot3 Burger drives, in m/s, by its data sheet."""
 
@@ -38,8 +44,7 @@ def is_drivable(wanted: Velocity) -> bool:
 def clamped(wanted: Velocity) -> Velocity:
     """Return the nearest velocity within the robot's limits, each component for itself."""
     return Velocity(
-        max(-MAX_LINEAR, min(MAX_LINEAR, wanted.linear)),
-        max(-MAX_ANGULAR, min(MAX_ANGULAR, wanted.angular)),
+        max(-MAX_LINEAR, min(MAX_LINEAR, wanted.linear)), max(-MAX_ANGULAR, min(MAX_ANGULAR, wanted.angular))
     )
 
 

@@ -46,10 +46,7 @@ class ModelPort:
 
 
 def start_robot(
-    host: Host,
-    record: Callable[[AnyEvent], None],
-    world: Callable[[], World],
-    rate: float | None = None,
+    host: Host, record: Callable[[AnyEvent], None], world: Callable[[], World], rate: float | None = None
 ) -> None:
     """Have a robot driven until the host's time ends.
 

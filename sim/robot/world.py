@@ -1,4 +1,4 @@
-"""The headless robot world: PyBullet stepped at 240 Hz on somebody else's clock."""
+"""The headless robot world: physics stepped at 240 Hz on somebody else's clock."""
 
 import math
 
@@ -8,29 +8,19 @@ from numpy.typing import NDArray
 from sim.units import SECOND
 
 from .arena import ARENA, Arena, Pose
-from .bullet import BulletClient, silence
-from .drive import STANDSTILL, Velocity, WheelPair, clamped, is_drivable, wheel_speeds
+from .drive import MOTOR_TORQUE, STANDSTILL, STEP_RATE, Velocity, clamped, is_drivable, wheel_speeds
 from .lidar import Lidar
-from .scene import build
-
-STEP_RATE = 240
-
-_GRAVITY = 9.81
-_MOTOR_TORQUE = 0.02
-"""Newton metres of each wheel: full speed within 0.2 s, and too weak to lift the robot against a wall."""
+from .physics import PhysicsChoice, build
 
 _GEAR_DRAG = 0.01
 """Newton metres with which the gear of a motor without power holds its wheel back."""
-
-_SOFTNESS = 1e-9
-"""A trace of give in every constraint; without it the direct solver meets singular matrices and gives up."""
 
 _STEPS_PER_SAMPLE = 12
 """Steps between two looks at the pose for the counters; fixed, so that nobody's asking changes them."""
 
 
 class World:
-    """A room, a sphere and a robot, in a PyBullet client of their own.
+    """A room, a sphere and a robot.
 
     The robot is driven by its wheels' motors and the friction under them, never put anywhere but by
     `reset`. The same calls at the same times give the same bits. Times are integer nanoseconds since
@@ -39,31 +29,20 @@ class World:
     ``commanded`` is the body velocity that the motors aim at: clamped, and zero while they are off.
     """
 
-    def __init__(self, arena: Arena = ARENA) -> None:
-        """Build the world, in silence, the robot at the start and at rest.
+    def __init__(self, arena: Arena = ARENA, physics: PhysicsChoice | None = None) -> None:
+        """Build the world, in silence, the robot at the start and at rest; ``physics`` None is the usual one.
 
         Raises:
             WorldUnavailable: PyBullet cannot be used here; the text says what to do.
         """
-        client = self._client = BulletClient()
-        with silence():
-            client.setGravity(0, 0, -_GRAVITY)
-            client.setTimeStep(1 / STEP_RATE)
-            # The direct solver is exact where the iterative one lets a standing robot creep.
-            client.setPhysicsEngineParameter(
-                deterministicOverlappingPairs=1,
-                constraintSolverType=client.CONSTRAINT_SOLVER_LCP_DANTZIG,
-                globalCFM=_SOFTNESS,
-            )
-            self._scene = build(client, arena)
-            inertial_frame = client.getDynamicsInfo(self._scene.robot, -1)[3:5]
-            self._base_in_inertial = client.invertTransform(*inertial_frame)
-            self._lidar = Lidar(arena)
-            self.motors_on = True
-            self._turn_wheels(STANDSTILL)
-            for _ in range(STEP_RATE):
-                client.stepSimulation()
-            self._start: int = client.saveState()
+        self._physics = build(arena, physics)
+        self.pose = self._physics.pose
+        self.velocity = self._physics.velocity
+        self.wheel_angles = self._physics.wheel_angles
+        self.touching = self._physics.touching
+        self._lidar = Lidar(arena)
+        self.motors_on = True
+        self._turn_wheels(STANDSTILL)
         self._steps = 0
         self._turned = 0.0
         self._travelled = 0.0
@@ -108,7 +87,7 @@ class World:
 
         Step k is due at k / 240 s, rounded to the nanosecond.
         """
-        step = self._client.stepSimulation
+        step = self._physics.step
         due = _steps_due(time_ns)
         while self._steps < due:
             sample = self._steps - self._steps % _STEPS_PER_SAMPLE + _STEPS_PER_SAMPLE
@@ -119,29 +98,6 @@ class World:
             if until == sample:
                 self._sample()
 
-    def pose(self) -> Pose:
-        """Return where the robot's base is and where it heads."""
-        client = self._client
-        inertial = client.getBasePositionAndOrientation(self._scene.robot)
-        (x, y, _), orientation = client.multiplyTransforms(*inertial, *self._base_in_inertial)
-        return Pose(x, y, client.getEulerFromQuaternion(orientation)[2])
-
-    def velocity(self) -> Velocity:
-        """Return the real velocity of the body: along its heading, and about its axis."""
-        (x, y, _), (_, _, angular) = self._client.getBaseVelocity(self._scene.robot)
-        yaw = self.pose().yaw
-        return Velocity(x * math.cos(yaw) + y * math.sin(yaw), angular)
-
-    def wheel_angles(self) -> WheelPair:
-        """Return how far each wheel has turned since the start or the last reset, in rad."""
-        left, right = self._client.getJointStates(self._scene.robot, self._scene.wheels)
-        return WheelPair(left[0], right[0])
-
-    def touching(self) -> bool:
-        """Tell whether the robot touches anything but the floor at the last step."""
-        contacts = self._client.getContactPoints(bodyA=self._scene.robot)
-        return any(contact[2] != self._scene.floor for contact in contacts)
-
     def scan(self) -> NDArray[np.float32]:
         """Return what the lidar measures now, in metres, shape (720,); see `Lidar.scan`."""
         return self._lidar.scan(self.pose())
@@ -149,24 +105,18 @@ class World:
     def reset(self) -> None:
         """Put the robot back to the start, at rest and without a command; time and counters go on."""
         self._sample()
-        self._client.restoreState(self._start)
+        self._physics.reset()
         self._sampled = self.pose()
         self._turn_wheels(STANDSTILL)
 
     def close(self) -> None:
-        """Give PyBullet's client back; the world is of no use afterwards. Closing again does nothing."""
-        self._client.close()
+        """Give back what the physics holds; the world is of no use afterwards. Closing again does nothing."""
+        self._physics.close()
 
     def _turn_wheels(self, body: Velocity) -> None:
         self.commanded = body
-        torque = _MOTOR_TORQUE if self.motors_on else _GEAR_DRAG
-        self._client.setJointMotorControlArray(
-            self._scene.robot,
-            self._scene.wheels,
-            self._client.VELOCITY_CONTROL,
-            targetVelocities=wheel_speeds(body),
-            forces=(torque, torque),
-        )
+        torque = MOTOR_TORQUE if self.motors_on else _GEAR_DRAG
+        self._physics.turn_wheels(wheel_speeds(body), torque)
 
     def _sample(self) -> None:
         now = self.pose()

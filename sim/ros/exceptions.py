@@ -28,9 +28,7 @@ class NameValidationException(Exception):
     """A name breaks ROS 2's rules; tells the rule and points at the place."""
 
     def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:
-        super().__init__(
-            f"Invalid {name_type}: {error_msg}:\n  '{name}'\n   {' ' * invalid_index}^",
-        )
+        super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{name}'\n   {' ' * invalid_index}^")
         self.name_type = name_type
         self.name = name
         self.error_msg = error_msg

@@ -18,11 +18,21 @@ from sim.interfaces.finder import InterfaceFinder
 if TYPE_CHECKING:
     from importlib.abc import Loader
 
-_HOMES = {
+
+def _folders(package: str) -> list[str]:
+    """The packages in a package, by name."""
+    spec = find_spec(package)
+    return [
+        each.name for each in pkgutil.iter_modules(None if spec is None else spec.submodule_search_locations)
+    ]
+
+
+HOMES = {
     "rclpy": "sim.ros",
     "rosidl_runtime_py": "sim.interfaces",
     "sensor_msgs_py": "sim.interfaces",
     "test_msgs.message_fixtures": "sim.interfaces",
+    **dict.fromkeys(_folders("sim.ros_packages"), "sim.ros_packages"),
 }
 """Packages and modules as programs name them, and the package of the model that has them."""
 
@@ -50,9 +60,9 @@ def _load_face() -> None:
 
 def _home_of(name: str) -> str | None:
     """The name in the model of a module that a program imports; None for what is not the model's."""
-    roots = (root for root in _HOMES if name == root or name.startswith(f"{root}."))
+    roots = (root for root in HOMES if name == root or name.startswith(f"{root}."))
     root = next(roots, None)
-    return None if root is None else f"{_HOMES[root]}.{name}"
+    return None if root is None else f"{HOMES[root]}.{name}"
 
 
 class _ModelFinder:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
 from sim.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException
@@ -22,6 +22,11 @@ def is_hidden(name: str) -> bool:
 def without_hidden(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
     """The names that a list shows."""
     return [(name, types) for name, types in found if include_hidden or not is_hidden(name)]
+
+
+def shown(found: NamesAndTypes, with_types: bool) -> Iterator[str]:
+    """The lines of a list: names, with their types if these are asked for."""
+    return (f"{name} [{', '.join(types)}]" if with_types else name for name, types in found)
 
 
 def full_topic_name(session: ShellSession, topic: str) -> str:

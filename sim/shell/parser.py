@@ -53,6 +53,10 @@ class LineParser(argparse.ArgumentParser):
         if completer is not None:
             self.completers[action] = completer
 
+    def flag(self, *names: str, **options: Any) -> None:
+        """Add an option without a value."""
+        self.add_argument(*names, action="store_true", **options)
+
     def print_help(self, file: object = None) -> NoReturn:
         """Raise HelpAsked."""
         raise HelpAsked(self.format_help())

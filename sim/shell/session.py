@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from sim.ros.node.node import Node
@@ -73,6 +73,14 @@ class ShellSession:
         """Write text, and a line end, to stdout."""
         for line in text.split("\n"):
             self.tools.say(line, error=False)
+
+    def say_each(self, lines: Iterable[str], count: bool = False) -> None:
+        """Write texts line by line; with ``count`` only how many there are."""
+        every = list(lines)
+        if count:
+            self.say(str(len(every)))
+        elif every:
+            self.say("\n".join(every))
 
     def complain(self, text: str) -> None:
         """Write text, and a line end, to stderr."""

@@ -16,7 +16,6 @@ class Running(Protocol):
 
     def interrupt(self) -> None:
         """End them as Ctrl-C would. Any thread may call it, as often as wanted; it does not wait."""
-        ...
 
 
 class Tools(Protocol):
@@ -24,28 +23,22 @@ class Tools(Protocol):
 
     def say(self, text: str, error: bool) -> None:
         """Take a line of output; ``error``: it belongs on stderr."""
-        ...
 
     def ended(self, status: int) -> None:
         """Take the exit status, once, after all else; a line that the end of the run cuts off has none."""
-        ...
 
     def packages(self) -> Packages:
         """The packages at hand."""
-        ...
 
     def start_executable(
         self, package: str, executable: str, arguments: Sequence[str], on_exit: OnExit
     ) -> Running:
         """Start a program that the packages know, as a node's process of its own."""
-        ...
 
     def launch(
         self, package: str | None, launch_file: str, arguments: Sequence[str], on_exit: OnExit
     ) -> Running:
         """Start a launch file, of a package or (None) by its path, with ``name:=value`` arguments."""
-        ...
 
     def describe_launch(self, package: str | None, launch_file: str) -> str:
         """What ``ros2 launch --show-args`` prints of a launch file."""
-        ...

@@ -1,9 +1,11 @@
 """Entities and waits described in words."""
 
-from sim.trace.events import EntityId, Reason
-from sim.trace.model import Wait
+from sim.trace.events import Doing, EntityId, Reason
+from sim.trace.model import Position, Wait
 from sim.trace.participants import Participants
 from sim.trace.timeline import Timeline
+
+_SINGLE_THREADED = ("SingleThreadedExecutor", "EventsExecutor")
 
 
 def why_waiting(wait: Wait, timeline: Timeline | Participants) -> str:
@@ -16,6 +18,18 @@ def why_waiting(wait: Wait, timeline: Timeline | Participants) -> str:
     return f"{what} held by {name_of(wait.holder, timeline)}"
 
 
+def doing_of(position: Position) -> str:
+    """What a callback does at its line: ``sleeps``, ``waits for a lock``, ``waits in Client.call()``."""
+    match position.doing:
+        case Doing.COMPUTES | Doing.SLEEPS:
+            return position.doing.value
+        case Doing.READS:
+            return "waits for the keyboard"
+        case Doing.WAITS if position.call == "Lock.acquire":
+            return "waits for a lock"
+    return f"{'waits ' if position.doing is Doing.WAITS else ''}in {position.call}()"
+
+
 def name_of(entity: EntityId, timeline: Timeline | Participants) -> str:
     """The name of an entity in a sentence."""
     known = timeline.entities.get(entity)
@@ -25,6 +39,6 @@ def name_of(entity: EntityId, timeline: Timeline | Participants) -> str:
 def executor_label(timeline: Timeline) -> str:
     """Return the run's executors as code would make them: ``MultiThreadedExecutor(4)``."""
     return " + ".join(
-        executor.kind if executor.kind == "SingleThreadedExecutor" else f"{executor.kind}({executor.threads})"
+        executor.kind if executor.kind in _SINGLE_THREADED else f"{executor.kind}({executor.threads})"
         for executor in timeline.executors.values()
     )

@@ -74,7 +74,7 @@ class Spans(Intervals):
     def span(self, row: RowId) -> Span:
         """One span, as a value."""
         start, end, entity, thread, message, age, failure, _ = self.table.row(row)
-        return Span(start, end_or_none(end), entity, thread, message, age, *self._failures[failure])
+        return Span(start, end_or_none(end), entity, thread, message, age, *self._failures[failure], row)
 
 
 class ThreadSpans(Lane):
@@ -188,6 +188,10 @@ class Execution:
 
     # queries
 
+    def has_nested(self, thread: ThreadId) -> bool:
+        """Whether a span on a thread ever began inside another one."""
+        return len(self._threads[thread].layers) > 1
+
     def on(self, thread: ThreadId, window: Window) -> Sequence[Span]:
         """Spans of a thread."""
         return self._made(self._threads[thread], window)
@@ -211,6 +215,16 @@ class Execution:
         """The innermost call that a thread runs at ``at``."""
         rows = self._threads[thread].covering(at)
         return self._spans.span(rows[-1]) if rows else None
+
+    def running(self, entity: EntityId) -> RowId | None:
+        """The span that an entity runs now, the latest of several."""
+        stacks = (lane.stack for lane in self._threads.values() if lane.stack)
+        found = (row for stack in stacks for row in stack if self._spans.entity(row) == entity)
+        return max(found, default=None)
+
+    def span(self, row: RowId) -> Span:
+        """A span by its number."""
+        return self._spans.span(row)
 
     def holders(self, at: Nanoseconds) -> set[EntityId]:
         """The entities with a running or suspended call at ``at``."""

@@ -6,6 +6,7 @@ from typing import TypeAlias
 
 from sim.trace.events import (
     CallId,
+    Doing,
     EntityId,
     EntityKind,
     ExecutorId,
@@ -86,8 +87,9 @@ class EntityInfo:
 
     @property
     def label(self) -> str:
-        """A short name: the last part of its topic or service, else its callback."""
-        return self.name.rsplit("/", 1)[-1] or self.callback
+        """A short name: the last part of its topic or service, else its callback; a goal's callback."""
+        by_callback = self.callback if self.kind is EntityKind.WAITABLE else ""
+        return by_callback or self.name.rsplit("/", 1)[-1] or self.callback
 
     @property
     def spoken_name(self) -> str:
@@ -100,8 +102,19 @@ class EntityInfo:
         return self.callback or self.name or self.kind.value
 
 
+class Lasting:
+    """Something that lasts until ``end``, which is None while it does."""
+
+    __slots__ = ()
+    end: Nanoseconds | None
+
+    def end_at(self, now: Nanoseconds) -> Nanoseconds:
+        """The end; ``now`` while it lasts."""
+        return now if self.end is None else self.end
+
+
 @dataclass(slots=True)
-class Span:
+class Span(Lasting):
     """One call of a callback on a thread; ``end`` is None while it runs."""
 
     start: Nanoseconds
@@ -116,14 +129,12 @@ class Span:
     """The class of that exception; "" if not known."""
     no_response: bool = False
     """Whether that exception stands for a service's callback that returned no response."""
-
-    def end_at(self, now: Nanoseconds) -> Nanoseconds:
-        """The end; ``now`` for a running call."""
-        return now if self.end is None else self.end
+    number: int = field(default=-1, compare=False)
+    """Its place among the spans of the run, in the order in which they were begun."""
 
 
 @dataclass(slots=True)
-class Wait:
+class Wait(Lasting):
     """An interval in which a ready callback did not run, for one reason; ``end`` is None while it lasts.
 
     ``since`` is when the callback became ready: a series of waits with changing reasons has one ``since``.
@@ -139,7 +150,7 @@ class Wait:
 
 
 @dataclass(slots=True)
-class Blocked:
+class Blocked(Lasting):
     """An interval in which ``Client.call`` blocked a thread; ``end`` is None while it lasts.
 
     ``entity`` is the calling callback (0: none), ``service`` the one that was called.
@@ -154,12 +165,63 @@ class Blocked:
 
 
 @dataclass(frozen=True, slots=True)
+class Frame:
+    """A line of the program's own on a thread's stack."""
+
+    file: str
+    function: str
+    line: int
+
+
+@dataclass(frozen=True, slots=True)
+class Position(Lasting):
+    """An interval in which a callback was at one line; ``end`` is None while it is there.
+
+    ``frames`` lead from the callback to that line; ``call`` is the function in which it sleeps or waits, ""
+    for none; ``loop`` is the file and line of the ``while`` around it, ("", 0) for none.
+    """
+
+    start: Nanoseconds
+    end: Nanoseconds | None
+    thread: ThreadId
+    entity: EntityId
+    doing: Doing
+    call: str
+    frames: tuple[Frame, ...]
+    loop: tuple[str, int] = ("", 0)
+    holder: ThreadId = 0
+    """The thread whose callback has the lock that it waits for; 0 for none."""
+
+    @property
+    def file(self) -> str:
+        """The file of the innermost line."""
+        return self.frames[-1].file
+
+    @property
+    def line(self) -> int:
+        """The innermost line."""
+        return self.frames[-1].line
+
+
+@dataclass(frozen=True, slots=True)
 class Publication:
     """The publication of a message: its node (0: the robot) and callback (0: none)."""
 
     at: Nanoseconds
     node: NodeId
     entity: EntityId
+
+
+@dataclass(frozen=True, slots=True)
+class Sending:
+    """A message of a topic, or a request of a service, and the call that sent it (None: no callback's).
+
+    Of two calls of one callback that run at the same time the one that began later is taken to be the sender.
+    """
+
+    at: Nanoseconds
+    id: MessageId | CallId
+    sender: Span | None
 
 
 @dataclass(frozen=True, slots=True)

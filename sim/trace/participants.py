@@ -1,5 +1,7 @@
 """The participants of a run: programs, threads, executors, nodes, callback groups and entities."""
 
+import msgspec
+
 from sim.trace.events import (
     EntityAppeared,
     EntityId,
@@ -71,19 +73,7 @@ class Participants:
 
     def add_entity(self, event: EntityAppeared) -> EntityInfo:
         """Add an entity."""
-        entity = EntityInfo(
-            event.entity,
-            event.node,
-            event.group,
-            event.kind,
-            event.name,
-            event.callback,
-            event.file,
-            event.first_line,
-            event.last_line,
-            event.depth,
-            event.period,
-        )
+        entity = EntityInfo(*msgspec.structs.astuple(event)[1:])
         self.entities[event.entity] = entity
         self._members.setdefault(event.group, []).append(entity)
         return entity

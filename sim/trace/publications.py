@@ -23,22 +23,17 @@ class Publications:
         if self._latest is None or event.message > self._latest:
             self._latest = event.message
             self._table.append(row)
-        elif self._place_of(event.message) is None:
+        elif self._table.find(event.message) is None:
             self._table.add(row)
 
     def time_of(self, message: MessageId) -> Nanoseconds | None:
         """When a message was published; None if it is unknown."""
-        place = self._place_of(message)
+        place = self._table.find(message)
         return None if place is None else self._table.cell(place, _TIME)
 
     def of(self, message: MessageId) -> Publication | None:
         """The publication of a message; None if it is unknown."""
-        place = self._place_of(message)
+        place = self._table.find(message)
         if place is None:
             return None
         return Publication(*(self._table.cell(place, column) for column in (_TIME, _NODE, _ENTITY)))
-
-    def _place_of(self, message: MessageId) -> int | None:
-        place = self._table.before(message)
-        known = place < len(self._table) and self._table.cell(place, 0) == message
-        return place if known else None

@@ -112,7 +112,5 @@ class QueueHistory:
         return place
 
     def _has_left(self, message: MessageId, arrived: Nanoseconds, at: Nanoseconds) -> bool:
-        place = self._left_early.until(message) - 1
-        if place < 0 or self._left_early.cell(place, 0) != message:
-            return False
-        return arrived <= self._left_early.cell(place, 1) <= at
+        place = self._left_early.find(message)
+        return place is not None and arrived <= self._left_early.cell(place, 1) <= at

@@ -13,9 +13,11 @@ from sim.trace.events import AnyEvent, EntityId, EntityKind
 from sim.trace.execution import Execution
 from sim.trace.model import AxisMark, Nanoseconds, Queue
 from sim.trace.participants import Participants
+from sim.trace.positions import Positions
 from sim.trace.publications import Publications
 from sim.trace.queues import OriginTime, QueueHistory
 from sim.trace.scans import Scans
+from sim.trace.sendings import Sendings
 from sim.trace.service_calls import ServiceCalls
 from sim.trace.storage.history import History
 from sim.trace.storage.spill_file import SpillFile
@@ -49,10 +51,12 @@ class RunStores:
         self.execution = Execution(spill)
         self.waiting = Waiting(spill)
         self.blocking = Blocking(spill)
+        self.positions = Positions(spill)
         self.queues: defaultdict[EntityId, QueueHistory] = defaultdict(lambda: QueueHistory(spill))
         self.dropped_at = Table(spill, 1)
         self.publications = Publications(spill)
         self.calls = ServiceCalls(spill)
+        self.sendings = Sendings(spill)
         self.marks: History[AxisMark] = History(attrgetter("at"), AxisMark, spill)
         self.logs: History[ev.Logged | ev.Printed] = History(attrgetter("t"), ev.Logged | ev.Printed, spill)
         self.asked: History[ev.KeyboardAsked] = History(attrgetter("t"), ev.KeyboardAsked, spill)
@@ -63,6 +67,8 @@ class RunStores:
         self.robot: History[ev.RobotMoved] = History(attrgetter("t"), ev.RobotMoved, spill)
         self.velocities: History[ev.VelocityCommanded] = History(attrgetter("t"), ev.VelocityCommanded, spill)
         self.scans = Scans(spill)
+        self.choices: list[ev.ThreadChosen] = []
+        self.conflicts: list[ev.AccessesConflicted] = []
         self._handlers: dict[type, Callable[[Any], object]] = self._make_handlers()
 
     def extend(self, events: Iterable[AnyEvent]) -> None:
@@ -110,11 +116,12 @@ class RunStores:
             ev.WaitEnded: self._wait_ended,
             ev.CallbackStarted: self._callback_started,
             ev.CallbackEnded: self._callback_ended,
+            ev.CallbackAt: self._callback_at,
             ev.CallbackSuspended: self._callback_suspended,
             ev.CallbackResumed: self._callback_resumed,
             ev.SpinClashed: self.spin_clashes.add,
             ev.CallbackFailed: self._callback_failed,
-            ev.Published: self.publications.add,
+            ev.Published: self._published,
             ev.QosMismatched: self.mismatches.add,
             ev.ServiceCalled: self._service_called,
             ev.ServiceReplied: self._service_replied,
@@ -122,6 +129,8 @@ class RunStores:
             ev.CallBlocked: self.blocking.start,
             ev.CallUnblocked: self.blocking.finish,
             ev.Logged: self.logs.add,
+            ev.ThreadChosen: self.choices.append,
+            ev.AccessesConflicted: self.conflicts.append,
             ev.Printed: self._printed,
             ev.ArenaShown: partial(setattr, self, "arena"),
             ev.RobotMoved: self.robot.add,
@@ -170,10 +179,15 @@ class RunStores:
 
     def _callback_ended(self, event: ev.CallbackEnded) -> None:
         self.execution.finish(event)
+        self.positions.finish(event.thread, event.t)
         self.active.note(event.entity, event.t)
+
+    def _callback_at(self, event: ev.CallbackAt) -> None:
+        self.positions.start(event, self.execution.innermost(event.thread, event.t))
 
     def _callback_suspended(self, event: ev.CallbackSuspended) -> None:
         self.execution.suspend(event)
+        self.positions.finish(event.thread, event.t)
         self.active.note(event.entity, event.t)
 
     def _callback_resumed(self, event: ev.CallbackResumed) -> None:
@@ -186,8 +200,16 @@ class RunStores:
         who = entity.spoken_name if entity else "a callback"
         self.marks.add(AxisMark(event.t, "error", f"{who} raised {event.error}"))
 
+    def _published(self, event: ev.Published) -> None:
+        self.publications.add(event)
+        self.sendings.add(event.topic, event.t, event.message, self._sender(event.entity))
+
+    def _sender(self, entity: EntityId) -> int | None:
+        return self.execution.running(entity) if entity else None
+
     def _service_called(self, event: ev.ServiceCalled) -> None:
         self.calls.send(event)
+        self.sendings.add(event.service, event.t, event.call, self._sender(event.entity))
         self.marks.add(AxisMark(event.t, "call", f"{event.service} {event.request}"))
 
     def _service_replied(self, event: ev.ServiceReplied) -> None:

@@ -61,7 +61,5 @@ class Scans:
         return next((scan for scan in reversed(same_time) if scan.message == message), None)
 
     def _time_of(self, message: MessageId) -> Nanoseconds | None:
-        place = self._times.until(message) - 1
-        if place >= 0 and self._times.cell(place, 0) == message:
-            return self._times.cell(place, 1)
-        return None
+        place = self._times.find(message)
+        return None if place is None else self._times.cell(place, 1)

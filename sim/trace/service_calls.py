@@ -73,10 +73,8 @@ class ServiceCalls(Intervals):
 
     def sent_at(self, call: CallId) -> Nanoseconds | None:
         """When a request was sent; None if it is unknown."""
-        place = self._numbered.until(call) - 1
-        if place < 0 or self._numbered.cell(place, 0) != call:
-            return None
-        return self.started_at(self._numbered.cell(place, 1))
+        place = self._numbered.find(call)
+        return None if place is None else self.started_at(self._numbered.cell(place, 1))
 
     def within(self, window: Window) -> Sequence[Call]:
         """The calls that were pending at some time in the window, in order of sending."""

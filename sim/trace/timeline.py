@@ -4,16 +4,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
 from sim.trace import events as ev
 from sim.trace.ending import UntilEnding
-from sim.trace.events import (
-    AnyEvent,
-    EntityId,
-    ExecutorId,
-    GroupId,
-    MessageId,
-    NodeId,
-    ProcessId,
-    ThreadId,
-)
+from sim.trace.events import AnyEvent, EntityId, ExecutorId, GroupId, MessageId, NodeId, ProcessId, ThreadId
 from sim.trace.lazy import LazyMapping
 from sim.trace.model import (
     AxisMark,
@@ -24,8 +15,10 @@ from sim.trace.model import (
     GroupInfo,
     Moment,
     Nanoseconds,
+    Position,
     Publication,
     Queue,
+    Sending,
     Span,
     ThreadInfo,
     Wait,
@@ -81,6 +74,10 @@ class Timeline:
         """
         self.notices: Sequence[ev.Notice] = run.notices
         """The engine's notices, in order."""
+        self.choices: Sequence[ev.ThreadChosen] = run.choices
+        """The choices among threads of a schedule that is played, in order."""
+        self.conflicts: Sequence[ev.AccessesConflicted] = run.conflicts
+        """The accesses to shared data that nothing kept apart, in order."""
         self.mismatches: Sequence[ev.QosMismatched] = run.mismatches
         """The incompatible publishers and subscriptions, in order."""
         self.spin_clashes: Sequence[ev.SpinClashed] = run.spin_clashes
@@ -161,6 +158,26 @@ class Timeline:
         """Intervals in which ``Client.call`` blocked a thread, in order of start."""
         return self._run.blocking.on(thread, window)
 
+    def positions_of(self, entity: EntityId, window: Window) -> Sequence[Position]:
+        """Where an entity's callback was in its code, in order of start."""
+        return self._run.positions.of(entity, window)
+
+    def positions_on(self, thread: ThreadId, window: Window) -> Sequence[Position]:
+        """Where the callbacks on a thread were in their code, in order of start."""
+        return self._run.positions.on(thread, window)
+
+    def has_positions(self, thread: ThreadId) -> bool:
+        """Whether it is known of any callback on a thread where it was in its code."""
+        return thread in self._run.positions.threads
+
+    def has_nested(self, thread: ThreadId) -> bool:
+        """Whether a callback on a thread ever ran inside another one."""
+        return self._run.execution.has_nested(thread)
+
+    def position_on(self, thread: ThreadId, at: Nanoseconds) -> Position | None:
+        """Where the callback on a thread is at ``at``; None if that is unknown or none runs."""
+        return self._run.positions.at(thread, at)
+
     def drops_of(self, entity: EntityId, window: Window) -> int:
         """The number of messages that an entity's queue lost in the window."""
         return self._run.queues[entity].lost_in(window)
@@ -221,6 +238,15 @@ class Timeline:
         asked = (*self.entities, NOBODY) if entity is None else (entity,)
         times = (time for each in asked for time in self._events_beside(each, at, step))
         return min(times, default=None) if step > 0 else max(times, default=None)
+
+    @property
+    def names_sent(self) -> Collection[str]:
+        """The topics and services on which something was sent, in order of the first messages."""
+        return self._run.sendings.names
+
+    def sent_on(self, name: str) -> Sequence[Sending]:
+        """The messages of a topic, or the requests of a service, in order."""
+        return self._run.sendings.on(name, self._run.execution.span)
 
     # calls, texts and the robot
 

@@ -7,7 +7,12 @@ from io import TextIOWrapper
 from tempfile import TemporaryFile
 from typing import IO, Protocol
 
-from sim.export import CallTable, ChromeFile, PerfettoFile, TraceExporter, report, svg
+from sim.export.chrome import ChromeFile
+from sim.export.csv import CallTable
+from sim.export.markdown import report
+from sim.export.perfetto import PerfettoFile
+from sim.export.svg import svg
+from sim.export.trace_exporter import TraceExporter
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,

@@ -28,7 +28,7 @@ from tests.benchmarks import (
     terminal,
     virtual,
 )
-from tests.benchmarks.scenes import MakeExecutor, Scene, multi, pinned, single
+from tests.benchmarks.scenes import MakeExecutor, Scene, events, multi, pinned, single
 
 NUMBER: Any = message("std_msgs", "Int32")(data=7)
 ODOMETRY: Any = message("nav_msgs", "Odometry")()
@@ -140,6 +140,7 @@ FIGURES = (
     *_both_ways("four timers and groups", scenes.four_timers, 4, 250, _ANY, _PINNED),
     _u("publish to callback, single", scenes.subscriptions(1), single, 250, "1800-2100"),
     _u("publish to callback, multi 4", scenes.subscriptions(1), multi(4), 250, ""),
+    _u("publish to callback, events", scenes.subscriptions(1), events, 250, "1100-1600"),
     _u("ten subscriptions, a delivery, single", scenes.subscriptions(10), single, 150, "600-740"),
     _u("ten subscriptions, a delivery, multi 4", scenes.subscriptions(10), multi(4), 150, ""),
     _u("service round trip, single", scenes.calls_in_a_row, single, 700, "4700"),

@@ -15,6 +15,7 @@ from sim.ros.context.context import Context
 from sim.ros.middleware.host import Host
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.scheduling.events_executor import EventsExecutor
 from sim.ros.scheduling.executors import (
     Executor,
     ExternalShutdownException,
@@ -31,6 +32,11 @@ Scene: TypeAlias = Callable[[MakeExecutor, int], float]
 def single(context: Context) -> Executor:
     """A SingleThreadedExecutor."""
     return SingleThreadedExecutor(context=context)
+
+
+def events(context: Context) -> Executor:
+    """An EventsExecutor."""
+    return EventsExecutor(context=context)
 
 
 def multi(threads: int) -> MakeExecutor:

@@ -94,7 +94,7 @@ def events(seconds: int) -> Iterator[AnyEvent]:
     """The lesson's events, again and again with times and numbers that go on."""
     first = run_lesson(_LESSON, min(seconds, _ROUND), 2.0).events
     repeated = [event for event in first if not isinstance(event, _ONCE)]
-    step = 1 + max(getattr(event, name, 0) for event in first for name in _NUMBERS)
+    step = 1 + max(number for event in first for number in _numbers(event).values())
     yield from (event for event in first if not isinstance(event, ev.RunEnded))
     for number in range(1, seconds // _ROUND):
         for event in repeated:
@@ -102,9 +102,13 @@ def events(seconds: int) -> Iterator[AnyEvent]:
 
 
 def _moved(event: AnyEvent, by: Nanoseconds, step: int) -> AnyEvent:
-    changes: dict[str, Any] = {
-        name: getattr(event, name) + step for name in _NUMBERS if getattr(event, name, 0)
-    }
+    changes: dict[str, Any] = {name: number + step for name, number in _numbers(event).items() if number}
     if isinstance(event, ev.WaitStarted):
         changes["since"] = event.since + by
     return replace(event, t=event.t + by, **changes)
+
+
+def _numbers(event: AnyEvent) -> dict[str, int]:
+    """The numbers of messages and calls in an event; a field of that name may be a function's name, too."""
+    found = {name: getattr(event, name, 0) for name in _NUMBERS}
+    return {name: number for name, number in found.items() if isinstance(number, int)}

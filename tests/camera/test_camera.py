@@ -145,8 +145,8 @@ def test_without_pybullet_a_sentence_says_what_to_do(take: Take) -> None:
     taken = take(without_pybullet)
     taken.camera.want(shot())
     why = taken.losses.get(timeout=PATIENCE)
-    assert "needs PyBullet" in why
-    assert "pip install pybullet" in why
+    assert "PyBullet cannot be imported" in why
+    assert "cbtui doctor" in why
 
 
 def test_a_world_that_cannot_be_drawn_is_told_of_and_the_terminal_hears_nothing(

@@ -274,6 +274,7 @@ def _sleep_for(seconds: float) -> None:
 
 @_waits_out
 def _sleep_until_behind(seconds: float) -> None:
+    _node()  # which begins the context
     clock, end = Clock(clock_type=ClockType.STEADY_TIME), time.monotonic() + seconds
     while time.monotonic() < end:
         clock.sleep_until(Time(seconds=end, clock_type=ClockType.STEADY_TIME))

@@ -61,3 +61,20 @@ class Mine(Node):
         with self.two, self.one:
             pass
 """
+
+LOST_UPDATE = """
+import threading
+import time
+n = 0
+
+def add():
+    global n
+    m = n
+    n = m + 1
+
+def main():
+    for _ in range(2):
+        threading.Thread(target=add).start()
+    time.sleep(1)
+    assert n == 2, n
+"""

@@ -8,6 +8,22 @@ import pytest
 from cbtui import cli
 
 
+def test_a_new_node_runs_well_and_is_never_written_over(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "mine.py"
+    assert cli.main(["new", str(file)]) == 0
+    assert f"See it run: cbtui open {file}\n" in capsys.readouterr().out
+    assert cli.main(["run", str(file), "--clock", "virtual", "--for", "5", "--call", "2"]) == 0
+    told = capsys.readouterr().out
+    assert "longest waits: none" in told
+    assert "answered after 2.0 s" in told
+    file.write_text("mine\n")
+    assert cli.main(["new", str(file)]) == 1
+    assert file.read_text() == "mine\n"
+    assert cli.main(["new", str(tmp_path / "mine.txt")]) == 1
+
+
 def test_a_new_lesson_is_right_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "more" / "two-belts"
     assert cli.main(["new-lesson", str(folder)]) == 0

@@ -9,14 +9,20 @@ import pytest
 
 from cbtui import cli
 from lessons.catalogue import lessons
+from lessons.puzzles import puzzles_of
 from sim.engine.setup import RunSetup
 from tests.support.commands import cbtui
 
 
 def test_list_names_every_lesson_in_order(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["list"]) == 0
-    ids = [line.split()[1] for line in capsys.readouterr().out.splitlines()]
-    assert ids == [lesson.id for lesson in lessons()]
+    lines = capsys.readouterr().out.splitlines()
+    assert {line for line in lines if not line.startswith(" ")} == {lesson.unit for lesson in lessons()}
+    told = [line.split() for line in lines if line.startswith(" ")]
+    ids = [words[1] if words[0].isdecimal() else words[0] for words in told]
+    assert ids == [
+        name for lesson in lessons() for name in (lesson.id, *(puzzle.id for puzzle in puzzles_of(lesson.id)))
+    ]
     assert ids[:3] == ["single-thread", "shared-group", "split-groups"]
 
 

@@ -30,7 +30,7 @@ def test_a_lesson_can_be_compared_with_itself_with_other_threads() -> None:
     assert text.startswith(
         "run A  reentrant-2-threads, 2 threads\nrun B  reentrant-2-threads, 1 thread\n0 to 8 s\n"
     )
-    assert figures(text, "timer_callback", "calls") == ["7", "3", "-4 fewer"]
+    assert figures(text, "timer_callback", "calls") == ["7", "3", "4 fewer"]
     assert "  run B waits: no free worker" in text.splitlines()
 
 

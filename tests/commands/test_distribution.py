@@ -34,9 +34,18 @@ def _files(folders: Iterable[str]) -> set[str]:
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
-    with zipfile.ZipFile(_built_wheel(tmp_path_factory.mktemp("wheel"))) as file:
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return _built_wheel(tmp_path_factory.mktemp("wheel"))
+
+
+@pytest.fixture(scope="module")
+def wheel(built: Path) -> set[str]:
+    with zipfile.ZipFile(built) as file:
         return set(file.namelist())
+
+
+def test_the_wheel_is_small(built: Path) -> None:
+    assert built.stat().st_size < 2_000_000
 
 
 def test_the_wheel_has_every_file_of_the_program_and_nothing_else(wheel: set[str]) -> None:

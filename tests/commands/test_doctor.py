@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 from packaging.requirements import Requirement
 
-from cbtui import cli
+from cbtui import __main__, cli
 from cbtui.doctor import engines, extras
 from cbtui.doctor.engines import engine
 from cbtui.doctor.examination import Examination, Sign, fault, note, well
 from cbtui.doctor.extras import browser, editor, ros
 from cbtui.doctor.files import configuration, folders, lessons_found, progress
-from cbtui.doctor.packages import bullet, dependencies, python
+from cbtui.doctor.packages import dependencies, physics, python, system
 from cbtui.doctor.probes import ProbeProcess, ProbeResult
 from cbtui.doctor.requirements import requirements
 from cbtui.doctor.terminal import TerminalFacts, screen
@@ -36,13 +36,14 @@ def _doctor(*arguments: str, **environment: str) -> subprocess.CompletedProcess[
     )
 
 
+@pytest.mark.slow
 def test_a_machine_that_has_everything_is_well_and_nothing_is_changed_on_it(tmp_path: Path) -> None:
     done = _doctor(LC_ALL="C.UTF-8")
     assert done.returncode == 0, done.stdout
     assert done.stderr == ""
     assert not [line for line in done.stdout.splitlines() if line.startswith("✗")]
     subjects = [line[2:15].strip() for line in done.stdout.splitlines()]
-    assert {"Python", "packages", "PyBullet", "engine", "lessons", "terminal", "config"} < {*subjects}
+    assert {"Python", "packages", "physics", "engine", "lessons", "terminal", "config"} < {*subjects}
     assert list(tmp_path.iterdir()) == []
 
 
@@ -102,27 +103,24 @@ def test_a_package_that_is_missing_or_too_old_is_told_with_the_command_that_mend
 
 
 def test_what_cbtui_says_that_it_needs_is_looked_at() -> None:
-    assert {"textual", "pybullet", "numpy"} < {each.name for each in requirements()}
+    assert {"textual", "msgspec", "numpy"} < {each.name for each in requirements()}
     assert "ruff" not in {each.name for each in requirements()}
 
 
 @pytest.mark.parametrize(
-    ("running", "machine", "older_does", "is_built"),
+    ("outcome", "installed", "sign", "said"),
     [
-        ((3, 11), "linux-x86_64", False, False),
-        ((3, 13), "linux-x86_64", True, True),
-        ((3, 11), "linux-aarch64", False, True),
-        ((3, 13), "macosx-14.0-arm64", False, True),
+        (ProbeResult("", "", 0, ""), True, Sign.WELL, "PyBullet moves the robot"),
+        (ProbeResult("", "", 0, ""), False, Sign.NOTE, "the numpy model moves the robot"),
+        (ProbeResult("", "broken\n", 1, ""), True, Sign.FAULT, "builds no world (broken)"),
     ],
 )
-def test_where_pybullet_has_no_wheel_one_is_told_how_it_is_built_or_spared(
-    running: tuple[int, int], machine: str, older_does: bool, is_built: bool
+def test_the_physics_that_moves_the_robot_is_told(
+    outcome: ProbeResult, installed: bool, sign: Sign, said: str
 ) -> None:
-    found = bullet(_Ended(ProbeResult("", "No module named 'pybullet'\n", 1, "")), running, machine)
-    assert "No module named 'pybullet'" in found.what
-    assert ("use Python 3.11" in found.remedy) is older_does
-    assert ("C++ compiler" in found.remedy) is is_built
-    assert "pip install" in found.remedy
+    found = physics(_Ended(outcome), installed=installed)
+    assert found.sign is sign
+    assert said in found.what
 
 
 def test_where_there_is_no_pip_as_in_an_environment_of_uvs_uv_is_to_install(
@@ -131,6 +129,29 @@ def test_where_there_is_no_pip_as_in_an_environment_of_uvs_uv_is_to_install(
     assert install_command("rich>=13") == f"{sys.executable} -m pip install 'rich>=13'"
     monkeypatch.setattr("cbtui.text.installing.find_spec", lambda _: None)
     assert install_command("rich>=13") == f"uv pip install --python {sys.executable} 'rich>=13'"
+
+
+@pytest.mark.parametrize(
+    ("platform", "release", "sign", "said"),
+    [
+        ("linux", "6.8.0-45-generic", Sign.WELL, "Linux 6.8.0-45-generic"),
+        ("linux", "5.15.153.1-microsoft-standard-WSL2", Sign.WELL, "in WSL"),
+        ("darwin", "24.1.0", Sign.NOTE, "untested"),
+        ("win32", "10", Sign.FAULT, "no run starts"),
+    ],
+)
+def test_the_system_is_told_and_whether_runs_are_known_to_work_there(
+    platform: str, release: str, sign: Sign, said: str
+) -> None:
+    found = system(platform, release)
+    assert found.sign is sign
+    assert said in found.what
+
+
+def test_on_windows_every_command_ends_with_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "platform", "win32")
+    with pytest.raises(SystemExit, match="use WSL"):
+        __main__.command()
 
 
 def test_an_old_python_is_at_fault() -> None:
@@ -304,6 +325,7 @@ def test_doctor_says_which_real_ros_there_is(tmp_path: Path, monkeypatch: pytest
     (tmp_path / "rclpy").mkdir()
     (tmp_path / "rclpy" / "__init__.py").write_text("raise RuntimeError('this is the real one')\n")
     monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.delitem(sys.modules, "rclpy", raising=False)  # other tests may have imported a real one
     [found] = ros({"ROS_DISTRO": "jazzy"})
     assert found.sign is Sign.WELL
     assert str(tmp_path / "rclpy") in found.what

@@ -71,6 +71,9 @@ def test_every_lesson_is_an_executable_with_its_own_node_word_for_word(
         assert executable.path.read_bytes() == lesson.node_path.read_bytes()
         assert executable.function == "main"
         assert executable.path.is_relative_to(ejected)
+        if lesson.solution_path is not None:
+            solution = package.executable(f"{lesson.id.replace('-', '_')}_solution")
+            assert solution.path.read_bytes() == lesson.solution_path.read_bytes()
 
 
 @pytest.mark.parametrize("unit", UNITS, ids=lambda unit: unit.package)
@@ -154,6 +157,7 @@ def test_an_ejected_launch_file_runs_in_the_console_as_it_is(ejected: Path) -> N
     assert "DummyServer Started with threads=2" in done.stderr
 
 
+@pytest.mark.slow
 def test_ros2_lines_typed_in_the_ejected_folder_find_its_programs(ejected: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "cbtui", "ros2", "pkg", "executables", "unit5_pkg"]
     done = subprocess.run(

@@ -176,17 +176,22 @@ def test_check_prints_each_check_and_ends_with_1_until_all_pass(
         "    expected at least 15 calls a second; saw 0 calls in 10 s, at 4.000 s",
     ]
     assert "1 of 5 checks passed" in lines
-    assert "  ! scan_callback waited 20.0 s: group A was held by timer_callback" in lines
+    assert "  ! odom_callback and scan_callback waited up to 20.0 s: group A was held by" in lines
     assert all(len(line) <= 79 for line in lines)
     assert not Progress().of("split-groups").passed
 
 
 def test_check_ends_with_0_when_all_pass_and_remembers_that(
-    here: Path, capsys: pytest.CaptureFixture[str]
+    here: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     (here / "my_own.py").write_text(SOLUTION)
     assert cli.main(["check", "split-groups", "my_own.py"]) == 0
-    assert capsys.readouterr().out.splitlines()[-1] == "5 of 5 checks passed"
+    told = capsys.readouterr()
+    assert told.out.splitlines()[-1] == "5 of 5 checks passed"
+    shown = [line.removeprefix("\033[K") for line in told.err.split("\r")]
+    assert shown[:2] == ["", "my_own.py runs: 0.0 s of 30 s"]
+    assert shown[-2:] == ["my_own.py runs: 30.0 s of 30 s", ""]
     assert Progress().of("split-groups").passed
 
 
@@ -196,7 +201,7 @@ def test_reset_forgets_a_lesson_and_leaves_its_file(here: Path, capsys: pytest.C
     capsys.readouterr()
     assert [cli.main(["reset", "split-groups"]) for _ in range(2)] == [0, 0]
     said = capsys.readouterr().out
-    assert said == "split-groups begins anew.\nsplit-groups had not been begun.\n"
+    assert said == "split-groups starts afresh.\nsplit-groups had not been started.\n"
     assert not Progress().of("split-groups").passed
     assert (here / "split_groups.py").exists()
 

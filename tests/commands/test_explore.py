@@ -8,17 +8,19 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from cbtui import cli
 from cbtui.commands import explore as command
 from cbtui.runs.judged import exploring
-from cbtui.runs.judged.exploration_text import exploration_text
+from cbtui.runs.judged.exploration_text import Shrunk, exploration_text
 from cbtui.runs.judged.exploring import Exploration, ScheduleFailure, ScheduleResult
+from cbtui.runs.judged.shards import Shard
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
-from tests.commands.exploring_files import CHECK_THEN_ACT, IN_ONE_GROUP, LOCK_ORDER
+from tests.commands.exploring_files import CHECK_THEN_ACT, IN_ONE_GROUP, LOCK_ORDER, LOST_UPDATE
 from tests.support.processes import descendants, wait_until_gone
 
 
@@ -33,18 +35,21 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / "mine.py"
 
 
-def test_an_order_that_fails_is_found_and_its_seed_shows_it_again(file: Path) -> None:
-    file.write_text(CHECK_THEN_ACT)
-    explored = cbtui("explore", str(file), "--schedules", "8", "--for", "0.3")
+def test_an_order_that_fails_is_found_and_the_simplest_that_does_is_told_and_run_again(file: Path) -> None:
+    file.write_text(LOST_UPDATE)
+    explored = cbtui("explore", str(file), "--schedules", "8", "--for", "2")
     assert explored.returncode == 1
     assert explored.stderr == ""
-    assert re.match(r"mine.py: 8 schedules, \d outcomes, \d+ schedules? failed\n", explored.stdout)
-    assert " raised AssertionError\n      mine.py:" in explored.stdout
-    assert "taken twice" in explored.stdout
+    assert re.match(r"mine.py: 8 schedules, 2 outcomes, \d+ schedules? failed\n", explored.stdout)
     assert "✓" in explored.stdout
+    _, _, simplest = explored.stdout.partition("The simplest order found, run to prove it: seed moves:1=1\n")
+    told = " ".join(simplest.split())
+    assert told.startswith("mine.py:15: the program raised AssertionError: 1 1. 0.000 s Thread-1 (add) ")
+    assert "conflict: n: mine.py:8 reads it, then" in told
     command = next(line for line in explored.stdout.splitlines() if "cbtui run" in line)
+    assert command.endswith(" --seed moves:1=1")
     again = cbtui(*shlex.split(command)[1:])
-    assert "AssertionError: taken twice" in again.stdout + again.stderr
+    assert "AssertionError: 1" in again.stdout + again.stderr
 
 
 @pytest.mark.slow
@@ -126,6 +131,16 @@ def test_what_cannot_be_explored_is_refused_in_a_line(
     assert sentence in said
 
 
+@pytest.mark.parametrize("name", ["pos:x", "nobody:3", "moves:a", "moves:1=-1", "ask:", "pos:"])
+def test_a_schedule_that_does_not_exist_is_refused(
+    name: str, file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file.write_text(IN_ONE_GROUP)
+    with pytest.raises(SystemExit):
+        cli.main(["run", str(file), "--seed", name])
+    assert "--seed" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("command", ["run", "open"])
 def test_the_real_clock_takes_no_seed(command: str, file: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file.write_text(IN_ONE_GROUP)
@@ -192,10 +207,16 @@ def test_outcomes_that_failed_come_first_each_with_its_first_seed() -> None:
     )
 
 
+def test_it_is_told_how_many_schedules_were_tried_in_vain_for_a_simpler_order() -> None:
+    text = exploration_text("mine.py", {6: DEADLOCK}, ["cbtui run mine.py"], shrunk=Shrunk(50, "", None))
+    assert "\nNo simpler order that fails was found in 50 further schedules.\n" in text
+    assert text.endswith("  cbtui run mine.py --seed 6\n")
+
+
 class _Results(Exploration):
     """An exploration whose runs are over already."""
 
-    def results(self, seeds, processes=None):  # type: ignore[no-untyped-def]
+    def results(self, seeds: Any, processes: int | None = None) -> Any:
         yield from {2: DEADLOCK, 1: WELL}.items()
 
 
@@ -207,9 +228,36 @@ def test_a_terminal_is_told_how_far_it_has_come(
 ) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
     found: dict[int, ScheduleResult] = {}
-    command._explore(FINISHED, range(1, 3), found)
+    assert not command._interrupted(FINISHED.results(range(1, 3)), found, "of 2 ")
     assert found == {1: WELL, 2: DEADLOCK}
-    assert capsys.readouterr().err == ("\r1 of 2 schedules, 1 failed \r2 of 2 schedules, 1 failed \r\033[K")
+    shown = [line.removeprefix("\033[K") for line in capsys.readouterr().err.split("\r")]
+    assert shown == ["", "1 of 2 schedules, 1 failed", "2 of 2 schedules, 1 failed", ""]
+
+
+def test_every_order_within_a_bound_is_run_and_the_simplest_that_fails_is_told(
+    file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # Two threads that read and write: AABB, BBAA; ABBA, BAAB, of which one stop is enough to lose an update.
+    file.write_text(LOST_UPDATE)
+    assert cli.main(["explore", str(file), "--preemptions", "0"]) == 0
+    assert "without preemptions: 2 schedules, all run\n" in capsys.readouterr().out
+    assert cli.main(["explore", str(file), "--preemptions", "1"]) == 1
+    said = " ".join(capsys.readouterr().out.split())
+    assert "mine.py: with at most 1 preemption: 4 schedules, all run" in said
+    assert "such as seed moves:1=1" in said
+    assert "1. 0.000 s Thread-1 (add) (mine.py:9, in add) stops; Thread-2 (add) goes on" in said
+    assert "conflict: n: mine.py:8 reads it, then mine.py:9 writes it, then mine.py:9 writes it" in said
+    assert "cbtui run " in said
+    assert "--seed moves:1=1" in said
+    assert cli.main(["explore", str(file), "--preemptions", "1", "--schedules", "3"]) == 1
+    assert "with at most 1 preemption: stopped after 3 schedules" in capsys.readouterr().out
+
+
+def test_moves_are_played_again(file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file.write_text(LOST_UPDATE)
+    assert cli.main(["run", str(file), "--for", "2", "--seed", "moves:1=1"]) == 1
+    assert "AssertionError: 1" in "".join(capsys.readouterr())
+    assert cli.main(["run", str(file), "--for", "2", "--seed", "moves:"]) == 0
 
 
 class _Interrupted(_Results):
@@ -229,3 +277,69 @@ def test_what_was_tried_until_ctrl_c_is_told(
     said = capsys.readouterr()
     assert said.err == "cbtui: interrupted: 1 of 9 schedules were tried\n"
     assert said.out.startswith("mine.py: 1 schedule, 1 outcome, 1 schedule failed\n")
+
+
+def test_two_shards_and_their_merge_tell_what_one_exploration_does(
+    file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(command, "_shrunk", lambda *_: None)
+    file.write_text(CHECK_THEN_ACT)
+    words = ["explore", str(file), "--schedules", "6", "--for", "0.3"]
+    parts = [str(tmp_path / name) for name in ("one.json", "two.json")]
+    for number, part in enumerate(parts, start=1):
+        cli.main([*words, "--shard", f"{number}/2", "--save", part])
+        assert "mine.py: 3 schedules" in capsys.readouterr().out
+    code = cli.main(words)
+    whole = capsys.readouterr().out
+    assert cli.main(["explore", "--merge", *parts]) == code
+    assert capsys.readouterr().out == whole
+    assert cli.main(["explore", "--merge", parts[0]]) == 1
+    assert "3 of 6 schedules are in none of these files" in capsys.readouterr().err
+
+
+def test_a_search_is_cut_in_two_and_only_both_parts_prove_it(
+    file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file.write_text(LOST_UPDATE)
+    words = ["explore", str(file), "--preemptions", "1"]
+    parts = [str(tmp_path / name) for name in ("one.json", "two.json")]
+    for number, part in enumerate(parts, start=1):
+        cli.main([*words, "--shard", f"{number}/2", "--save", part])
+        assert f"mine.py: part {number} of 2: " in capsys.readouterr().out
+    assert cli.main(words) == 1
+    whole = capsys.readouterr().out
+    assert cli.main(["explore", "--merge", *parts]) == 1
+    merged = capsys.readouterr()
+    assert "with at most 1 preemption: 4 schedules, all run" in merged.out
+    assert merged.out == whole
+    assert merged.err == ""
+    assert cli.main(["explore", "--merge", parts[0]]) == 1
+    merged = capsys.readouterr()
+    assert "stopped after" in merged.out
+    assert merged.err == "cbtui: part 2 of 2, run to its end, is in none of these files\n"
+
+
+def test_files_that_do_not_belong_together_are_not_merged(
+    file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    one, other = tmp_path / "one.json", tmp_path / "other.json"
+    for path, schedules in ((one, 2), (other, 3)):
+        Shard(
+            program="mine.py", replays=(), first=1, schedules=schedules, strategy="pos", results={}
+        ).write_to(path)
+    for merge, sentence in (
+        ([one, other], "is of another exploration than"),
+        ([one, tmp_path / "none.json"], "cannot be read: No such file or directory"),
+        ([file.with_suffix(".txt")], "is no part of an exploration"),
+    ):
+        file.with_suffix(".txt").write_text("{}")
+        with pytest.raises(SystemExit):
+            cli.main(["explore", "--merge", *map(str, merge)])
+        assert sentence in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("words", ["0/2", "3/2", "2", "a/b"])
+def test_a_part_that_does_not_exist_is_refused(words: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        cli.main(["explore", "mine.py", "--shard", words])
+    assert "--shard" in capsys.readouterr().err

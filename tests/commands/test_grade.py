@@ -3,6 +3,7 @@
 import csv
 import io
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 
@@ -34,9 +35,27 @@ def rows(text: str) -> list[dict[str, str]]:
 
 
 def test_every_learner_has_a_row_whatever_the_one_before_did(
-    school: Path, capsys: pytest.CaptureFixture[str]
+    school: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert cli.main(["grade", str(school), "--csv"]) == 1
+    junit = tmp_path / "results.xml"
+    assert cli.main(["grade", str(school), "--csv", "--junit", str(junit)]) == 1
+    no_lesson, suite = ElementTree.parse(junit).getroot()
+    assert [suite.get(name) for name in ("name", "tests", "failures", "errors")] == [
+        "split-groups",
+        "11",
+        "4",
+        "1",
+    ]
+    assert [case.get("classname") for case in no_lesson] == ["no lesson.cyd", "no lesson.eve"]
+    assert suite[0].attrib == {
+        "classname": "split-groups.ann",
+        "name": "/odom keeps coming while the robot rotates",
+    }
+    failures = {str(case.get("name")): failure.get("message") for case in suite for failure in case}
+    assert failures["the robot makes 1 turn"] == (
+        "the robot makes 1 turn; expected 1 turn; saw 2 turns, at 14.000 s"
+    )
+    assert failures["problem"] == "split_groups.py:28: expected ':'"
     table = rows(capsys.readouterr().out)
     assert list(table[0]) == [
         "learner",
@@ -76,7 +95,12 @@ def test_with_a_lesson_named_a_file_may_be_called_anything(
     table = {row["learner"]: row for row in rows(out.read_text())}
     assert table["eve"]["problem"].startswith("eve.py ended its whole process")
     assert table["dan"]["passed"] == "1"
-    assert "5/5  ann  split-groups" in capsys.readouterr().out.splitlines()
+    printed = capsys.readouterr().out.splitlines()
+    assert "5/5  ann  split-groups" in printed
+    assert printed[-5:-3] == [
+        "Missed most:",
+        "  1 of 2  split-groups: /odom keeps coming while the robot rotates",
+    ]
 
 
 @pytest.mark.slow

@@ -25,6 +25,7 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_recorded_run_holds_its_events_set_up_and_topics(recorded: Path) -> None:
     recording = read(recorded)
     setup = setup_of(recording.about)
@@ -45,6 +46,7 @@ def test_info_tells_what_is_in_a_recording(recorded: Path, capsys: pytest.Captur
     told = capsys.readouterr()
     labels = {line.split()[0]: line for line in told.out.splitlines()}
     assert labels["run"] == "run        exclusive-2-threads, virtual clock"
+    assert labels["like"] == "like       rclpy of jazzy@7.1.9"
     assert labels["program"].endswith("node.py, with its source")
     assert labels["lasts"] == "lasts      5.000 s; its time was up"
     assert told.err == ""

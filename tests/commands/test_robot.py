@@ -28,7 +28,6 @@ def moved(x: float, *, motors: bool = True, front: float = 1.5) -> RobotMoved:
     ("missing", "said"),
     [
         ("rclpy", "the robot needs a rclpy in cbtui's own Python: "),
-        ("pybullet", "the robot needs PyBullet, which moves it; cbtui doctor tells how to get it"),
     ],
 )
 def test_what_it_lacks_is_told_in_a_sentence(

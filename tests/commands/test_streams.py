@@ -30,6 +30,7 @@ def _shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("closed", first_daily("<&- >&- 2>&-", "<&-", ">&-", "2>&-"))
 def test_streams_that_are_closed_are_as_if_nobody_read_them(closed: str, tmp_path: Path) -> None:
     events = tmp_path / "events"
@@ -88,6 +89,7 @@ def test_where_not_even_complaints_can_be_written_the_exit_code_tells() -> None:
     assert _shell(f"{_CBTUI} list >/dev/full 2>&1").returncode == 1
 
 
+@pytest.mark.slow
 def test_a_reader_who_has_read_enough_is_no_trouble(tmp_path: Path) -> None:
     for command in ("keys", "--help", "--version", f"eject {tmp_path}"):
         done = _shell(f"({_CBTUI} {command}; echo $? >&2) | true")

@@ -56,6 +56,7 @@ class Typist:
         return self.process.wait(1)
 
 
+@pytest.mark.slow
 def test_keys_drive_a_teleop_program_and_ctrl_c_is_one_of_them(tmp_path: Path) -> None:
     typist = Typist(tmp_path, TELEOP)
     typist.sees("CTRL-C quits")
@@ -77,6 +78,7 @@ def test_a_line_is_asked_for_at_once_and_ctrl_c_ends_the_run(tmp_path: Path) -> 
     assert typist.leaves() == 128 + signal.SIGINT
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", first_daily("kill", "ctrl-c twice"))
 def test_the_terminal_is_left_as_it_was(tmp_path: Path, ending: str) -> None:
     typist = Typist(tmp_path, "import sys, tty\ntty.setraw(0)\nwhile True:\n    print(sys.stdin.read(1))\n")

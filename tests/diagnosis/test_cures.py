@@ -85,7 +85,7 @@ def check_cures(setup: RunSetup, expected: set[Cure]) -> None:
             cure = cure_in(text)
             if cure is not None:
                 offers.setdefault(cure, set()).add(complaint)
-    assert offers.keys() == expected
+    assert offers.keys() == expected, offers
     for cure, ended in offers.items():
         left = complaints(run_to_end(tried(setup, cure)).timeline)
         assert not ended & left.keys(), cure

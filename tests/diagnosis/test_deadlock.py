@@ -46,8 +46,10 @@ def test_caller_and_client_in_one_exclusive_group_are_a_deadlock() -> None:
     assert run.problems() == {("self-made-deadlock", "caller_0")}
     found = run.one("self-made-deadlock")
     assert (found.at, found.until) == (ns(1.0), run.timeline.end)
+    assert found.ring == ("caller_0", "/outside", "group A", "caller_0")
     assert run.explained("self-made-deadlock").what == (
-        "caller_0 waits for /outside for ever: the reply of /outside waits for group A, which caller_0 holds"
+        "deadlock: caller_0 waits for /outside for ever; "
+        "the reply of /outside waits for group A, which caller_0 holds"
     )
 
 
@@ -65,7 +67,7 @@ def test_as_many_calls_as_threads_need_one_thread_more(count: int, kind: Group) 
     run = callers(count, count, kind)
     assert {rule for rule, _ in run.problems()} == {"needs-one-more-worker"}
     told = run.explained("needs-one-more-worker")
-    assert f"all {count} stand still in call()" in told.what
+    assert f"{'both' if count == 2 else f'all {count}'} stand still: " in told.what
     assert f"num_threads={count + 1}" in told.cure
 
 
@@ -79,7 +81,7 @@ def test_a_deadlock_that_a_timeout_ended_is_told_as_over() -> None:
     assert ("self-made-deadlock", "caller_0") in run.problems()
     found = run.one("self-made-deadlock")
     assert (found.at, found.until) == (ns(1.0), ns(3.0))
-    assert run.explained("self-made-deadlock").what.startswith("caller_0 waited in vain for /outside:")
+    assert run.explained("self-made-deadlock").what.startswith("caller_0 waited in vain for /outside;")
 
 
 def test_a_long_answer_is_no_deadlock() -> None:
@@ -118,8 +120,11 @@ def test_services_that_call_each_other_in_a_circle_are_spelt_out() -> None:
     run = diagnosed(program)
     assert run.problems() == {("self-made-deadlock", "serve_a")}
     what = run.explained("self-made-deadlock").what
-    assert what.startswith("serve_a waits for /b and /a for ever: /b is answered by serve_b; /a waits for ")
+    assert what.startswith(
+        "deadlock: serve_a waits for /b for ever; /b is answered by serve_b; /a waits for "
+    )
     assert what.endswith("which serve_a holds")
+    assert run.one("self-made-deadlock").ring[:4] == ("serve_a", "/b", "serve_b", "/a")
 
 
 def test_a_service_in_the_callers_group_is_a_deadlock() -> None:

@@ -129,13 +129,15 @@ def test_the_list_has_a_sign_a_reason_a_cure_and_a_place_for_each_finding() -> N
     lines = findings_text(diagnose(timeline), timeline).splitlines()
     assert lines[0] == "Diagnosis"
     begin = next(place for place, line in enumerate(lines) if "scan_callback waited" in line)
-    assert lines[begin : begin + 7] == [
-        "  ! scan_callback waited 20.0 s: group A was held by timer_callback.",
+    assert lines[begin : begin + 9] == [
+        "  ! odom_callback and scan_callback waited up to 20.0 s: group A was held by",
+        "    timer_callback.",
         "    A mutually exclusive group lets one callback in at a time, however many",
         "    threads are free.",
-        "    → give scan_callback a callback group of its own, and spin with",
-        "      MultiThreadedExecutor(num_threads=2).",
-        "      node.py:120, at 4.006 s",
+        "    → give timer_callback a callback group of its own, and spin with",
+        "      MultiThreadedExecutor(num_threads=2); or let timer_callback return",
+        "      sooner.",
+        "      node.py:120, at 4.003 s",
         "  ! timer_callback decided on data at least 10.0 s old: newer messages waited",
     ]
     assert any(line.startswith("  · timer_callback took 10.0 s") for line in lines)

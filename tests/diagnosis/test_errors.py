@@ -40,6 +40,14 @@ def test_an_exception_that_no_later_callback_brings_out_is_swallowed() -> None:
     assert told.what == "fails raised ValueError: no scan, and spin() has not raised it"
 
 
+def test_an_exception_that_comes_when_the_program_ends_is_told_with_what_main_should_wait_for() -> None:
+    events = [each for each in raising(2, ticks_on=False).trace.events if not isinstance(each, RunEnded)]
+    ended = RunEnded(max(each.t for each in events), "the program returned", failed=False)
+    told = Diagnosed(Trace([*events, ended])).explained("exception-swallowed")
+    assert told.why.endswith("spin() had returned or was about to")
+    assert told.cure.startswith("catch exceptions in fails and log them; let main() wait for fails")
+
+
 def test_an_exception_that_a_later_callback_brings_out_is_well() -> None:
     assert raising(2, ticks_on=True).problems() == set()
 

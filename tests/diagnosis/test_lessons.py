@@ -7,9 +7,7 @@ from tests.support.daily import first_row_daily
 from tests.support.engine_runs import run_lesson
 
 GROUP_HELD = {
-    ("long-callback-among-sensors", "timer_callback"),
     ("group-starvation", "odom_callback"),
-    ("group-starvation", "scan_callback"),
     ("stale-data", "timer_callback"),
     ("dropped-messages", "odom_callback"),
     ("dropped-messages", "scan_callback"),

@@ -93,11 +93,12 @@ def test_a_program_that_ended_neither_waits_nor_loses_messages(tmp_path: Path) -
 def test_a_deadlock_is_told_with_the_line_of_its_callback(tmp_path: Path) -> None:
     run = run_program(tmp_path, CALLER)
     assert problems(run) == [
-        "self-made-deadlock: tick waits for /own for ever: /own waits for group A, which tick holds"
+        "self-made-deadlock: deadlock: tick waits for /own for ever; "
+        "/own waits for group A, which tick (node.py:17) holds"
     ]
     timeline = run.timeline
     (found,) = diagnose(timeline)
-    assert str(found.rule.explain(found, timeline).place) == "node.py:16"
+    assert str(found.rule.explain(found, timeline).place) == "node.py:17"
 
 
 @pytest.mark.parametrize(
@@ -107,13 +108,13 @@ def test_a_deadlock_is_told_with_the_line_of_its_callback(tmp_path: Path) -> Non
             CALLER,
             [
                 "Diagnosis",
-                "  ! tick waits for /own for ever: /own waits for group A, which tick holds.",
+                "  ! deadlock: tick waits for /own for ever; /own waits for group A, which tick",
+                "    (node.py:17) holds.",
                 "    The reply is brought by the executor, and needs a group that lets it in and",
                 "    a thread.",
-                "    → use call_async() and return from tick, or give client and service of /own",
-                "      callback groups of their own, and spin with",
-                "      MultiThreadedExecutor(num_threads=2).",
-                "      node.py:16, at 1.000 s",
+                "    → use call_async() and return from tick, or give tick a callback group of",
+                "      its own, and spin with MultiThreadedExecutor(num_threads=2).",
+                "      node.py:17, at 1.000 s",
             ],
         ),
         (TALKER, []),

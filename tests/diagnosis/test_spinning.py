@@ -126,7 +126,8 @@ def lines_printed(run: Run) -> list[str]:
 
 def test_a_traceback_has_the_learners_lines_alone(tmp_path: Path) -> None:
     run = run_program(tmp_path, program("rclpy.spin_until_future_complete(self, future)"))
-    assert lines_printed(run) == [
+    underlines = " ~^"  # of some calls, from 3.13 on
+    assert [line for line in lines_printed(run) if line.strip(underlines)] == [
         "Traceback (most recent call last):",
         f'  File "{tmp_path}/node.py", line 27, in <module>',
         "    rclpy.spin(caller)",

@@ -5,6 +5,7 @@ import pytest
 import sim.ros.rclpy as rclpy
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from sim.ros.scheduling.events_executor import EventsExecutor
 from sim.ros.scheduling.executors import SingleThreadedExecutor
 from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, once, spin
 from tests.support.builder import ns
@@ -83,6 +84,25 @@ def test_groups_of_their_own_and_two_threads_are_well() -> None:
 
 
 @pytest.mark.parametrize("same_group", [True, False])
+def test_in_an_event_queue_no_group_of_its_own_helps(same_group: bool) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def quick() -> None: ...
+
+        first = MutuallyExclusiveCallbackGroup()
+        once(node, 1.0, lambda: simulation.sleep(3.0), first)
+        once(node, 1.1, quick, first if same_group else MutuallyExclusiveCallbackGroup())
+        rclpy.spin(node, EventsExecutor())
+
+    run = diagnosed(program)
+    assert run.problems() == {("behind-others", "quick")}
+    told = run.explained("behind-others")
+    assert told.what == "quick waited 2.9 s: the EventsExecutor was running <lambda>"
+    assert "group" not in told.cure
+
+
+@pytest.mark.parametrize("same_group", [True, False])
 def test_short_waits_are_no_problem(same_group: bool) -> None:
     run = slow_and_quick(same_group=same_group, threads=None, length=0.5)
     assert run.problems() == set()
@@ -136,7 +156,7 @@ def test_a_node_that_nobody_ever_spins_is_told() -> None:
     run = diagnosed(program)
     assert run.problems() == {("node-never-spins", "tick")}
     told = run.explained("node-never-spins").what
-    assert told == "tick of /forgotten is ready for 4.0 s and does not run: nobody ever spun its node"
+    assert told == "tick of /forgotten has been ready for 4.0 s and does not run: nobody ever spun its node"
 
 
 def test_a_node_whose_executor_is_made_and_never_spun_is_told_so() -> None:

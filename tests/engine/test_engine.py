@@ -63,7 +63,7 @@ def test_a_robot_that_cannot_be_there_from_the_beginning_is_told_of_with_what_to
     run = run_program(tmp_path, "", robot=True)
     assert run.loss is None
     assert run.ending.failed
-    assert run.ending.reason.startswith("The robot's world needs PyBullet, which this Python cannot import")
+    assert run.ending.reason.startswith("PyBullet cannot be imported by this Python")
 
 
 def test_an_error_of_the_engines_own_is_told_with_its_place(tmp_path: Path) -> None:

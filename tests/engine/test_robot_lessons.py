@@ -85,7 +85,7 @@ def test_split_groups_keep_the_sensors_running_while_the_robot_rotates() -> None
 
 
 @pytest.mark.parametrize(
-    ("lesson", "turns", "radians"), [("single-thread", 1, 4.0), ("split-groups", 1, 2.0)]
+    ("lesson", "turns", "radians"), [("single-thread", 2, 4.0), ("split-groups", 1, 2.0)]
 )
 def test_the_robot_turns_as_far_as_its_node_sleeps(lesson: str, turns: int, radians: float) -> None:
     robot = summarise(run_lesson(lesson, 60).timeline).robot

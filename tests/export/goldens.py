@@ -6,7 +6,10 @@ Look at what changed before keeping it, at the picture too.
 from io import StringIO
 from pathlib import Path
 
-from sim.export import CallTable, ChromeFile, report, svg
+from sim.export.chrome import ChromeFile
+from sim.export.csv import CallTable
+from sim.export.markdown import report
+from sim.export.svg import svg
 from sim.trace.model import Window
 from tests.export.examples import small_run, timeline_of
 from tests.export.reading import written

@@ -9,7 +9,9 @@ from typing import Any
 
 import perfetto.protos.perfetto.trace.perfetto_trace_pb2 as pb
 
-from sim.export import ChromeFile, PerfettoFile, TraceExporter
+from sim.export.chrome import ChromeFile
+from sim.export.perfetto import PerfettoFile
+from sim.export.trace_exporter import TraceExporter
 from sim.trace.events import AnyEvent
 
 

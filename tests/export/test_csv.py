@@ -7,7 +7,7 @@ from io import StringIO
 import pytest
 from hypothesis import given
 
-from sim.export import CallTable
+from sim.export.csv import CallTable
 from sim.export.texts import cell, seconds
 from sim.trace.events import AnyEvent
 from sim.trace.model import Span, Window

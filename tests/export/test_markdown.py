@@ -2,7 +2,7 @@
 
 import re
 
-from sim.export import report
+from sim.export.markdown import report
 from sim.export.texts import markdown
 from tests.export.examples import small_run, timeline_of
 from tests.support.runs import Run, shared_group_run
@@ -30,10 +30,10 @@ def test_a_report_has_set_up_statistics_waits_notices_and_picture() -> None:
 
 def test_a_report_tells_what_went_wrong_where_and_what_to_do() -> None:
     text = report(timeline_of(shared_group_run().events))
-    assert "- **Problem** (node.py:120, at 4.006 s): scan_callback waited 20.0 s: group A was held by" in text
-    assert "What to do: give scan_callback a callback group of its own" in text
+    assert "at 4.003 s): odom_callback and scan_callback waited up to 20.0 s: group A was" in text
+    assert "What to do: give timer_callback a callback group of its own" in text
     assert "- **Remark** (node.py:120, at 4.000 s): timer_callback took 10.0 s" in text
-    assert "Nothing to complain about." in report(timeline_of([]))
+    assert "No problems found." in report(timeline_of([]))
 
 
 def test_every_table_has_as_many_cells_in_each_line() -> None:

@@ -8,7 +8,10 @@ from typing import IO, Any, cast
 
 import pytest
 
-from sim.export import CallTable, ChromeFile, PerfettoFile, TraceExporter
+from sim.export.chrome import ChromeFile
+from sim.export.csv import CallTable
+from sim.export.perfetto import PerfettoFile
+from sim.export.trace_exporter import TraceExporter
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -60,6 +63,7 @@ def peak(make: Callable[[IO[bytes]], TraceExporter | CallTable], seconds: int) -
     return most
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "make",
     first_daily(

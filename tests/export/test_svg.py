@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.export import svg
 from sim.export.bars import ticks
+from sim.export.svg import svg
 from sim.trace.events import AnyEvent, Reason
+from sim.trace.figures.chains import ChainStep, StepKind
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.export.examples import small_run, timeline_of
@@ -105,3 +106,15 @@ def test_ticks_are_round_even_and_few(start: int, length: int, most: int) -> Non
     assert len(found) <= most + 1
     assert all(start <= t <= start + length for t in found)
     assert len({after - before for before, after in pairwise(found)}) <= 1
+
+
+def test_the_critical_path_of_a_chain_is_framed() -> None:
+    timeline = timeline_of(shared_group_run().events)
+    entity = next(each for each in timeline.entities.values() if each.callback)
+    inside = ChainStep(StepKind.WAITS, "scan", ns(3), ns(4), "no free worker", entity.id)
+    outside = ChainStep(StepKind.RUNS, "scan", ns(20), ns(21), "", entity.id)
+    picture = ElementTree.fromstring(svg(timeline, Window(ns(2), ns(12)), path=[inside, outside]))
+    framed = [each for each in picture.iter(f"{SPACE}rect") if each.get("fill") == "none"]
+    assert [each.findtext(f"{SPACE}title") for each in framed] == ["1.0 s: scan waits, no free worker", ""]
+    assert "critical path of a chain" in texts(picture)
+    assert "critical path of a chain" not in texts(drawn(timeline, 2, 12))

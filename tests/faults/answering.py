@@ -26,7 +26,7 @@ from tests.soak.results import Entry, record
 FILE = Path(__file__).with_name("answers.toml")
 PART = "answering"
 _KEY = "?"
-_SHOWN = (rb"\bKeys\b", rb"\bGuide\b")
+_SHOWN = (rb"\bSigns and keys\b", rb"\bGuide\b")
 """What is drawn when the help opens, and when it closes."""
 _PAUSES = 0.05, 0.30
 """Seconds between what a key did and the next, so that keys fall anywhere between two frames."""

@@ -152,7 +152,7 @@ def test_a_callback_that_waits_for_ever_on_the_real_clock_is_told_of_with_its_pl
         run.until(lambda _: run.notices != [])
         (notice,) = run.notices
         line = FIRST + fault.count("\n")
-        assert notice.startswith(f"tick has not come back for 3 s (node.py:{line}, in fault): it computes")
+        assert notice.startswith(f"tick has not come back for 1.5 s (node.py:{line}, in fault): it computes")
         assert _notices_of_the_end(run) == []
 
 

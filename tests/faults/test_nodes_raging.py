@@ -11,10 +11,9 @@ from cbtui.runs.live.live_run import LiveRun, RunState
 from sim.recording import read
 from tests.faults.support import ANSWERED, FIRST, console_on, node_with, provoked, still_here
 from tests.recording.files import timeline_of
+from tests.support.daily import first_slow
 from tests.support.engine_runs import SECOND
 from tests.support.pictures import text_of
-
-pytestmark = pytest.mark.slow
 
 CROWD = 2500
 """Entities of which each would cost a little of every frame."""
@@ -71,7 +70,13 @@ def begun(live: LiveRun) -> bool:
     return bool(live.timeline.entities)
 
 
-@pytest.mark.parametrize("name", FAULTS)
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.bulk if place % 2 else pytest.mark.slow)
+        for place, name in enumerate(FAULTS)
+    ],
+)
 async def test_the_console_answers_while_a_node_rages_and_runs_it_again(folder: Path, name: str) -> None:
     fault, clock, entities, notice = FAULTS[name]
     async with console_on(node_with(folder, fault, again=True), clock) as console:
@@ -86,6 +91,7 @@ async def test_the_console_answers_while_a_node_rages_and_runs_it_again(folder: 
     assert read(path).damage is None
 
 
+@pytest.mark.slow
 def test_a_hundred_megabytes_are_all_in_the_log(folder: Path) -> None:
     with provoked(node_with(folder, HUNDRED_MB)) as run:
         run.until(still_here)
@@ -93,14 +99,17 @@ def test_a_hundred_megabytes_are_all_in_the_log(folder: Path) -> None:
         assert max(map(len, run.printed)) == 4096
 
 
+@pytest.mark.slow
 async def test_a_loop_without_end_on_the_real_clock_is_told_on_screen_with_its_place(folder: Path) -> None:
     async with console_on(node_with(folder, "while True: pass")) as console:
         await console.until(lambda live: bool(live.timeline.notices))
         (notice,) = console.screen.runs.run.timeline.notices
-        assert notice.text.startswith(f"tick has not come back for 3 s (node.py:{FIRST}, in fault)")
+        assert notice.text.startswith(f"tick has not come back for 1.5 s (node.py:{FIRST}, in fault)")
 
 
-@pytest.mark.parametrize("fault", ["while True: pass", "lock = threading.Lock()\nwith lock, lock: pass"])
+@pytest.mark.parametrize(
+    "fault", first_slow("while True: pass", "lock = threading.Lock()\nwith lock, lock: pass")
+)
 async def test_time_goes_on_on_screen_and_in_the_recording_while_a_callback_does_not_come_back(
     folder: Path, fault: str
 ) -> None:
@@ -120,6 +129,7 @@ async def test_time_goes_on_on_screen_and_in_the_recording_while_a_callback_does
     assert timeline_of(read(path).batches()).end > last + SECOND
 
 
+@pytest.mark.slow
 async def test_a_node_that_took_too_much_memory_can_be_run_again_with_the_key(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

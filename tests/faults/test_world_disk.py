@@ -63,6 +63,7 @@ def told_in(path: Path) -> int:
     return len([json.loads(line) for line in path.read_text().splitlines()])
 
 
+@pytest.mark.slow
 async def test_a_disk_that_fills_up_ends_the_recording_and_the_run_goes_on(folder: Path) -> None:
     async with console_on(node_with(folder, LONG, again=True)) as console:
 
@@ -81,6 +82,7 @@ async def test_a_disk_that_fills_up_ends_the_recording_and_the_run_goes_on(folde
     assert events_in(path) > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("option", "file", "what"),
     first_row_daily(
@@ -112,6 +114,7 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
     subprocess.run(["umount", "-l", str(place)], check=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("file", "taken"),
     first_row_daily(("run.mcap", 0), ("run.mcap", 50_000), ("run.jsonl", 0), ("run.jsonl", 50_000)),

@@ -124,6 +124,7 @@ def test_a_machine_that_slept_says_nothing_of_the_engine() -> None:
     assert hang_detector.received([]) == []
 
 
+@pytest.mark.slow
 def test_a_pipe_that_breaks_in_the_middle_of_a_message_gives_what_came_whole(folder: Path) -> None:
     # One event, which comes in one message; what is printed is cut into many.
     path = node_with(folder, "self.get_logger().info('x' * 20_000_000)")

@@ -143,6 +143,7 @@ def test_ctrl_c_ends_a_console_that_starts_and_gives_the_terminal_back(moment: i
         assert "fault of its own" not in console.said()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "function", first_daily(*LOOPS_START, "EndingApp.run", "EndingApp.run_async", "ending_signals_on_loop")
 )
@@ -174,6 +175,7 @@ def test_ctrl_c_as_a_console_that_was_left_ends_finds_all_of_it_whole(function: 
         assert "Exception" not in console.said()
 
 
+@pytest.mark.slow
 def test_ctrl_c_as_an_engine_starts_is_not_the_engines() -> None:
     with nothing_left():
         command = Command("-m", "cbtui", *RUN, "--clock", "real")
@@ -183,6 +185,7 @@ def test_ctrl_c_as_an_engine_starts_is_not_the_engines() -> None:
     assert recording_is_whole()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", first_daily(signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
 def test_a_run_that_is_told_to_end_tells_and_records_what_it_came_to(number: signal.Signals) -> None:
     with nothing_left():

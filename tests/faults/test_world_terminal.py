@@ -41,6 +41,7 @@ def test_a_console_whose_window_is_closed_ends_and_finishes_its_recording(tmp_pa
         assert console.ended() == HUNG_UP
 
 
+@pytest.mark.slow
 def test_a_console_that_is_told_to_hang_up_gives_the_terminal_back(tmp_path: Path) -> None:
     with recording_console(tmp_path) as console:
         console.process.send_signal(signal.SIGHUP)

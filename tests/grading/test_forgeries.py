@@ -30,7 +30,8 @@ def test_forgeries_earn_nothing_and_cost_nobody_anything(classroom: Classroom) -
     forged = [graded.rows[name] for name in (*_REACHING_OUT, *_ON_THE_TRACE)]
     assert {(row["passed"], row["total"]) for row in forged} == {("0", "1")}
     suspicious = {name for name, row in graded.rows.items() if row["suspicious"]}
-    assert graded.out.count("\n") == len(graded.rows)
+    marks, _, _ = graded.out.partition("\n\nMissed most:\n")
+    assert len(marks.splitlines()) == len(graded.rows)
     if classroom.confined:
         assert graded.err == ""
         assert suspicious == {*_ON_THE_TRACE}

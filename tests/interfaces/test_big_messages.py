@@ -18,6 +18,7 @@ PICTURE = bytes(range(256)) * (SIZE // 256)
 @pytest.mark.parametrize(
     "data",
     [PICTURE, bytearray(PICTURE), memoryview(PICTURE), array("B", PICTURE), np.frombuffer(PICTURE, "u1")],
+    ids=lambda data: type(data).__name__,
 )
 def test_a_picture_is_assigned_encoded_and_decoded_in_one_piece(data: Any) -> None:
     began = time.process_time()

@@ -9,6 +9,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -33,13 +34,18 @@ DEFINITIONS = Path(known.__file__).parent / "definitions"
 @pytest.fixture(autouse=True)
 def finder() -> Iterator[None]:
     """Install the finder for one test and leave the interpreter as it was."""
-    before, modules = sys.meta_path[:], sys.modules.copy()
+    before, others = sys.meta_path[:], _forget_interfaces()  # such as those of a real ROS 2
     sys.meta_path.insert(0, InterfaceFinder())
     yield
     sys.meta_path[:] = before
-    for name in set(sys.modules) - set(modules):
-        if name.partition(".")[0] in packages():
-            del sys.modules[name]
+    _forget_interfaces()
+    sys.modules.update(others)
+
+
+def _forget_interfaces() -> dict[str, ModuleType]:
+    """Remove the modules of interface packages, and return them."""
+    names = [name for name in sys.modules if name.partition(".")[0] in packages()]
+    return {name: sys.modules.pop(name) for name in names}
 
 
 def run(code: str) -> dict[str, Any]:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from itertools import product
+
 import pytest
 
-from sim.interfaces import UnknownInterfaceError, interface_names, interface_text, kinds_sentence, prototype
+from sim.interfaces import UnknownInterfaceError, interface_text, kinds_sentence, names, packages
+from sim.interfaces.interface_definition import Kind
 
 
 def test_messages_in_a_message_are_shown_below_it_by_tabs() -> None:
@@ -24,20 +27,11 @@ def test_services_and_actions_keep_their_division() -> None:
 
 
 def test_every_interface_can_be_shown() -> None:
-    for name in interface_names():
-        assert interface_text(name) == "" or interface_text(name).endswith("\n")
-
-
-def test_names_are_listed_by_kind() -> None:
-    assert "std_msgs/msg/Int32" in interface_names("msg")
-    assert "turtlesim/action/RotateAbsolute" in interface_names("action")
-    assert set(interface_names("srv")) < set(interface_names())
-
-
-def test_a_prototype_is_the_default_as_yaml_in_quotes() -> None:
-    assert prototype("geometry_msgs/msg/Quaternion") == '"x: 0.0\ny: 0.0\nz: 0.0\nw: 1.0\n"\n'
-    assert prototype("std_srvs/srv/SetBool") == '"data: false\n"\n'
-    assert prototype("example_interfaces/action/Fibonacci") == '"order: 0\n"\n'
+    kinds: tuple[Kind, ...] = ("msg", "srv", "action")
+    for package, kind in product(packages(), kinds):
+        for name in names(package, kind):
+            text = interface_text(f"{package}/{kind}/{name}")
+            assert text == "" or text.endswith("\n")
 
 
 @pytest.mark.parametrize(

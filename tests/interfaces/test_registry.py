@@ -224,3 +224,11 @@ def test_a_replaced_class_and_its_replacement_both_go_over_the_wire(tmp_path: Pa
     new = registry.message("geometry_msgs", "Twist")
     for twist in (old(), new()):
         assert from_cdr(type(twist), to_cdr(twist)) == twist
+
+
+@pytest.mark.parametrize("package", sorted(packages()))
+def test_every_interface_of_every_package_can_be_built(package: str) -> None:
+    builders: dict[Kind, Callable[[str, str], object]] = {"msg": message, "srv": service, "action": action}
+    for kind, build in builders.items():
+        for name in names(package, kind):
+            assert build(package, name)

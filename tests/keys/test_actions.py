@@ -5,23 +5,25 @@ from textual.dom import DOMNode
 
 from cbtui.app import CbtuiApp
 from cbtui.keys.action import KeyAction, Scope, group_by, method_of
-from cbtui.keys.actions import ACTIONS, actions_of
+from cbtui.keys.actions import ACTIONS, TASKS, actions_of
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import Charset
-from cbtui.screens.diagnoses import DiagnosesScreen
-from cbtui.screens.export import ExportScreen
-from cbtui.screens.group import GroupScreen
-from cbtui.screens.help import HelpScreen
 from cbtui.screens.menu import MenuScreen
-from cbtui.screens.moment import MomentScreen
-from cbtui.screens.number import NumberScreen
-from cbtui.screens.open_file import OpenFileScreen
-from cbtui.screens.prediction import PredictionScreen
-from cbtui.screens.setup import SetupScreen
-from cbtui.screens.solution import ConfirmSolutionScreen, SolutionScreen
-from cbtui.screens.threads import ThreadsScreen
+from cbtui.screens.windows.chain import ChainScreen
+from cbtui.screens.windows.diagnoses import DiagnosesScreen
+from cbtui.screens.windows.export import ExportScreen
+from cbtui.screens.windows.group import GroupScreen
+from cbtui.screens.windows.help import HelpScreen
+from cbtui.screens.windows.moment import MomentScreen
+from cbtui.screens.windows.number import NumberScreen
+from cbtui.screens.windows.open_file import OpenFileScreen
+from cbtui.screens.windows.prediction import PredictionScreen
+from cbtui.screens.windows.setup import SetupScreen
+from cbtui.screens.windows.solution import ConfirmSolutionScreen, SolutionScreen
+from cbtui.screens.windows.threads import ThreadsScreen
 from cbtui.widgets.checks import ChecksView
+from cbtui.widgets.choice import ChoiceOptions
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.log import LogFilter, LogLines
 from cbtui.widgets.menu_search import MenuSearch
@@ -36,6 +38,7 @@ HOMES: dict[Scope, type[DOMNode]] = {
     Scope.FILTER: LogFilter,
     Scope.CODE: CodeView,
     Scope.CHECKS: ChecksView,
+    Scope.CHOICE: ChoiceOptions,
     Scope.PROMPT: Prompt,
     Scope.KEYBOARD: ProgramKeyboard,
     Scope.THREADS: ThreadsScreen,
@@ -48,6 +51,7 @@ HOMES: dict[Scope, type[DOMNode]] = {
     Scope.ASKING: ConfirmSolutionScreen,
     Scope.NUMBER: NumberScreen,
     Scope.MOMENT: MomentScreen,
+    Scope.CHAIN: ChainScreen,
     Scope.HELP: HelpScreen,
 }
 
@@ -71,7 +75,7 @@ def test_no_key_is_one_that_terminals_keep_for_themselves(action: KeyAction) -> 
 def test_only_actions_that_rule_each_other_out_share_a_key() -> None:
     used = Counter((action.scope, key) for action in ACTIONS for key in action.key.split(","))
     shared = {key for (_, key), times in used.items() if times > 1}
-    assert shared == {"space", "r", "enter", "f", "e", "d"}
+    assert shared == {"space", "r", "enter", "f", "e", "d", "C", "h", "H", "7"}
 
 
 def test_ids_are_unique_within_a_scope() -> None:
@@ -101,3 +105,9 @@ def test_neighbouring_keys_are_written_together() -> None:
 @pytest.mark.parametrize("scope", Scope)
 def test_an_ascii_terminal_gets_keys_in_ascii(scope: Scope) -> None:
     assert signs_of(actions_of(scope), Charset.ASCII).isascii()
+
+
+def test_the_help_has_every_action_of_a_lesson_that_the_footer_may_have() -> None:
+    shown = [name for names in TASKS.values() for name in names]
+    assert len(shown) == len(set(shown))
+    assert set(shown) == {action.name for action in ACTIONS if action.scope is Scope.LESSON and action.label}

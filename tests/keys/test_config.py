@@ -107,7 +107,7 @@ def test_an_entry_whose_partner_in_a_swap_is_wrong_does_not_count_either() -> No
         ("[display]\ntheme = 1", "c.toml:2: theme has to be a name in quotation marks"),
         (
             "[display]\ncolour = 1",
-            "c.toml:2: there is no entry colour in [display]; there are theme and charset",
+            "c.toml:2: there is no entry colour in [display]; there are theme and charset and screen_reader",
         ),
         ("[keyz]\na = 1", "c.toml:1: there is no table [keyz]; did you mean keys?"),
         ("keys = 1", "c.toml:1: keys has to be a table; write [keys], and its entries below"),

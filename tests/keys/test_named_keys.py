@@ -6,7 +6,8 @@ from cbtui.app import CbtuiApp
 from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.keys.named_keys import key_in_force, with_keys_in_force
 from cbtui.widgets.guide import Guide
-from tests.support.console import WIDE, RecordedConsole, settle
+from lessons.catalogue import lessons
+from tests.support.console import WIDE, RecordedConsole, predict, settle
 from tests.support.fake_session import FakeEngines
 from tests.support.pictures import text_of
 from tests.support.runs import shared_group_run
@@ -67,6 +68,7 @@ async def test_the_end_of_a_run_names_the_keys_in_force() -> None:
 
 async def test_the_menu_names_the_keys_in_force() -> None:
     app = CbtuiApp(open_session=FakeEngines([], 0), keys=OTHER)
+    predict(app, lessons()[0].id)
     async with app.run_test(size=WIDE) as pilot:
         await pilot.pause()
         screen = text_of(app)

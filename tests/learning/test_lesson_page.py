@@ -13,7 +13,7 @@ from cbtui.learning.lesson_page import (
     tally,
 )
 from cbtui.learning.outcome import PredictionOutcome, run_text
-from cbtui.learning.stage import Stage, stage_of
+from cbtui.learning.stage import Stage, stage_of, steps_of
 from lessons.catalogue import find, lessons
 from lessons.lesson import Lesson
 from lessons.progress import LessonProgress
@@ -95,11 +95,33 @@ def test_a_page_says_which_run_decides(lesson: str, words: str) -> None:
     assert run_text(find(lesson)) == words
 
 
-def test_a_lesson_without_an_exercise_is_done_when_it_was_watched() -> None:
+def test_a_lesson_is_done_once_it_is_predicted_explained_and_solved() -> None:
     plain, exercised = find("shared-group"), find("split-groups")
-    assert stage_of(plain, known(plain, seen=True), opened=True) is Stage.DONE
-    assert stage_of(exercised, known(exercised, seen=True), opened=True) is Stage.WATCHED
-    passed = msgspec.structs.replace(known(exercised), passed=True)
-    assert stage_of(exercised, passed, opened=False) is Stage.DONE
+    replace = msgspec.structs.replace
+    watched, explained = (
+        known(plain, (0, 0), seen=True),
+        replace(known(plain, (0, 0), seen=True), explained=True),
+    )
+    assert stage_of(plain, watched, opened=True) is Stage.WATCHED
+    assert stage_of(plain, explained, opened=True) is Stage.DONE
+    assert stage_of(plain, replace(explained, answers=()), opened=True) is Stage.WATCHED
+    explained = replace(known(exercised, (0, 0), seen=True), explained=True)
+    assert stage_of(exercised, explained, opened=True) is Stage.WATCHED
+    assert stage_of(exercised, replace(explained, passed=True), opened=True) is Stage.DONE
     assert stage_of(plain, known(plain), opened=True) is Stage.OPENED
     assert stage_of(plain, known(plain), opened=False) is Stage.UNTOUCHED
+
+
+def test_the_first_step_that_is_not_done_is_current() -> None:
+    lesson, replace = find("split-groups"), msgspec.structs.replace
+
+    def told(progress: LessonProgress, checks: str = "") -> str:
+        return " ▸ ".join(step.text for step in steps_of(lesson, progress, checks))
+
+    assert told(known(lesson)) == "Predict ● ▸ Run ▸ Explain ▸ Exercise"
+    watched = known(lesson, (0, 0), seen=True)
+    assert told(replace(watched, seen=False)) == "Predict ✓ ▸ Run ● ▸ Explain ▸ Exercise"
+    assert told(watched) == "Predict ✓ ▸ Run ✓ ▸ Explain ● ▸ Exercise"
+    assert told(known(lesson, seen=True)) == "Predict missed ▸ Run ✓ ▸ Explain ● ▸ Exercise"
+    assert told(replace(watched, explained=True), "2/5") == "Predict ✓ ▸ Run ✓ ▸ Explain ✓ ▸ Exercise 2/5"
+    assert [step.name for step in steps_of(find("shared-group"), watched)] == ["Predict", "Run", "Explain"]

@@ -33,7 +33,7 @@ def test_the_lessons_of_a_unit_stand_together() -> None:
 
 
 def test_every_lesson_folder_is_in_the_catalogue() -> None:
-    folders = {path.parent for path in ROOT.glob("unit*/*/node.py")}
+    folders = {path.parent for path in ROOT.glob("unit*/*/lesson.toml")}
     assert folders == {lesson.folder for lesson in lessons()}
 
 

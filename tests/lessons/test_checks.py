@@ -6,18 +6,25 @@ from lessons.checks import (
     ROTATES,
     Check,
     Verdict,
+    begin_in_order,
     calls_of,
     data_never_older,
     every_call_answered,
     exclusive_groups_hold,
     is_called,
+    is_called_between,
     is_called_often,
     keeps_coming,
     log_never_says,
     log_says,
+    never_gets_ahead_of,
+    never_loses_messages,
     never_overlap,
     never_raises,
+    never_runs_longer_than,
     never_stuck,
+    never_takes_older_than,
+    never_waits_longer_than,
     no_problem,
     no_problems,
     overlap,
@@ -29,7 +36,7 @@ from lessons.checks import (
     turns,
     uses_threads,
 )
-from sim.trace.events import CallbackStarted, EntityReady, RequestLost
+from sim.trace.events import CallbackStarted, EntityReady, Notice, NoticeKind, Reason, RequestLost, Severity
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -147,12 +154,43 @@ def deadlocked() -> Timeline:
     return timeline(run)
 
 
+def locked() -> Timeline:
+    """Two threads wait for each other's locks."""
+    run = Run()
+    run.add(Notice(ns(3.0), Severity.ERROR, "a waits for b, b for a", kind=NoticeKind.DEADLOCK))
+    run.over(10.0)
+    return timeline(run)
+
+
 def said(*texts: str) -> Timeline:
     run = Run()
     for second, text in enumerate(texts, start=1):
         run.log(text, second)
     run.over(10.0)
     return timeline(run)
+
+
+def listening(*messages: tuple[float, float], waits: float = 0.0, depth: int = 10) -> Timeline:
+    """A timer called at 1 and 2 s, and messages, each published and taken at a time, after a wait."""
+    run = Run()
+    node = run.node("/node")
+    timer = run.timer(run.exclusive(node), "tick", 1.0)
+    scan = run.subscription(run.exclusive(node), "/scan", "look", depth)
+    thread = run.thread("MainThread")
+    for at in (1.0, 2.0):
+        run.callback(timer, thread, at, 0.1)
+    for published, taken in messages:
+        run.message(scan, published)
+        if waits:
+            run.wait(scan, taken - waits, taken, Reason.NO_FREE_WORKER)
+        run.callback(scan, thread, taken, 0.2)
+    run.over(10.0)
+    return timeline(run)
+
+
+SEES = listening((1.2, 1.3), (2.2, 2.3))
+EARLY = listening((0.1, 0.3), (2.2, 3.3))
+FULL = listening((1.2, 3.0), (1.3, 4.0), depth=1)
 
 
 @pytest.mark.parametrize(
@@ -185,6 +223,22 @@ def said(*texts: str) -> Timeline:
         (exclusive_groups_hold(), TWICE, TOGETHER, "one beside other", 1.5),
         (ticks_on_time("timer_callback", 0.05), TWO_THREADS, ONE_THREAD, "4.55 s late", 7.55),
         (is_called_often("timer_callback", 8), TWO_THREADS, ONE_THREAD, "6 calls", 10.0),
+        (is_called_between("look", 1, 2), SEES, APART, "no call of look", None),
+        (is_called_between("one", 0, 1), SEES, APART, "2 calls", 3.0),
+        (never_waits_longer_than("look", 0.1), SEES, APART, "no call of look", None),
+        (
+            never_waits_longer_than("/scan", 0.1),
+            SEES,
+            listening((1.2, 1.3), (2.2, 3.2), waits=0.5),
+            "a wait of 0.5 s, no free worker",
+            0.8,
+        ),
+        (never_runs_longer_than("one", 1.0), APART, TWICE, "a call of 3 s", 1.0),
+        (never_takes_older_than("look", 0.2), SEES, EARLY, "a message 1.1 s old", 3.3),
+        (never_loses_messages("/scan"), SEES, FULL, "1 message lost", 1.3),
+        (begin_in_order("tick", "look"), SEES, EARLY, "look, then tick", 0.3),
+        (begin_in_order("tick", "look"), SEES, NOTHING, "no call of tick", None),
+        (never_gets_ahead_of("look", "tick"), SEES, EARLY, "call 1 of look after 0 calls of tick", 0.3),
         (never_raises(), SPLIT, raising(), "tick: IndexError: list index out of range", 2.0),
         (uses_threads(2), TWO_THREADS, ONE_THREAD, "at most 1", None),
         (replies_within("/stop", 1.0), called((1.0, 1.5)), called((1.0, 3.0)), "an answer after 2 s", 1.0),
@@ -235,11 +289,12 @@ def test_a_check_tells_a_run_that_does_it_from_one_that_does_not(
     ("check", "good", "bad", "at"),
     [
         (never_stuck(), called((1.0, 2.0)), deadlocked(), 1.0),
+        (never_stuck(), called((1.0, 2.0)), locked(), 3.0),
         (no_problem("group-starvation"), SPLIT, SHARED, None),
         (no_problem("no-free-worker"), TWO_THREADS, ONE_THREAD, None),
         (no_problems(), SPLIT, SHARED, None),
     ],
-    ids=["never stuck", "group", "worker", "no problem"],
+    ids=["never stuck", "locks", "group", "worker", "no problem"],
 )
 def test_a_check_can_ask_the_diagnosis(check: Check, good: Timeline, bad: Timeline, at: float | None) -> None:
     assert check.judge(good) == Verdict(True, check.judge(good).expected, "none")

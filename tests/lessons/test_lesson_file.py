@@ -190,6 +190,13 @@ def test_a_bad_field_is_named_with_its_fault(kitchen: Kitchen, right: str, wrong
     assert sentence_about(kitchen(WHOLE.replace(right, wrong, 1))) == sentence
 
 
+def test_a_lesson_may_run_the_node_of_another_one(kitchen: Kitchen, tmp_path: Path) -> None:
+    folder = kitchen(WHOLE.replace('"node.py"', '"../three-cooks/cooks.py"', 1))
+    (tmp_path / "three-cooks").mkdir()
+    (tmp_path / "three-cooks" / "cooks.py").touch()
+    assert read_lesson(folder).node_path == tmp_path / "three-cooks" / "cooks.py"
+
+
 @pytest.mark.parametrize(
     ("right", "wrong", "field"),
     [

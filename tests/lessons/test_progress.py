@@ -52,7 +52,7 @@ def test_the_file_is_plain_text_with_a_line_for_each_lesson(path: Path) -> None:
     progress.see("b")
     progress.see("a")
     assert path.read_text() == "".join(
-        f'{{"lesson":"{name}","answers":[],"seen":true,"hints":0,"solution":false,"passed":false}}\n'
+        f'{{"lesson":"{name}","answers":[],"seen":true,"explained":false,"hints":0,"solution":false,"passed":false}}\n'
         for name in "ba"
     )
 

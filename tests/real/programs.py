@@ -48,16 +48,21 @@ class Tried(Node):
         self.create_timer(0.1, self.tell, callback_group=MutuallyExclusiveCallbackGroup())
         self.create_timer(1.0, self.work)
         self.create_subscription(String, "news", self.hear, 2)
+        self.guard = self.create_guard_condition(self.wake)
 
     def tell(self):
         self.publisher.publish(String(data="x"))
 
     def work(self):
         self.get_logger().info("works")
+        self.guard.trigger()
         time.sleep(0.7)
         print("worked")
 
     def hear(self, message):
+        pass
+
+    def wake(self):
         pass
 """
 CALLS_ITSELF = """

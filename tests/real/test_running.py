@@ -49,6 +49,18 @@ def test_a_wait_is_told_of_while_it_lasts_and_with_its_reason(starved: Run) -> N
         assert told.t < span.start + 0.3 * SECOND
 
 
+def test_a_guard_condition_waits_from_when_it_was_triggered(starved: Run) -> None:
+    timeline = starved.timeline
+    work, wake = entity_named("work", timeline), entity_named("wake", timeline)
+    waits = [event for event in starved.events if isinstance(event, WaitStarted) and event.entity == wake]
+    for span in timeline.spans_of(work, whole(timeline))[:2]:
+        assert span.end is not None
+        told = next(wait for wait in waits if span.start < wait.t < span.end)
+        assert (told.reason, told.holder) == (Reason.GROUP_HELD, work)
+        assert span.start < told.since < told.t < span.start + 0.3 * SECOND
+    assert timeline.spans_of(wake, whole(timeline))
+
+
 def test_what_a_full_queue_loses_is_counted(starved: Run) -> None:
     timeline = starved.timeline
     hear = entity_named("hear", timeline)

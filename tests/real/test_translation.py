@@ -134,6 +134,20 @@ def test_what_a_subscription_passes_over_is_lost() -> None:
     assert [getattr(event, "message", None) for event in told.all(MessageDropped)] == [2, 3]
 
 
+def test_what_comes_of_a_publisher_that_was_never_heard_is_not_lost() -> None:
+    def robot(t: int) -> Sent:
+        return Sent(START + t, t, "/news", 0, 0, 10 * t, 10 * t + 5)
+
+    told = Told()
+    told.tell(sent(START + 10, 100), Taken(START + 15, HEARD, THREAD, 101, 0))
+    told.tell(robot(20), robot(30), robot(40))
+    told.tell(EntityReady(START + 50, HEARD, 1, 0))
+    told.tell(robot(60), sent(START + 70, 700), robot(80))
+    told.tell(Taken(START + 90, HEARD, THREAD, 701, 0))
+    assert told.all(MessageDropped) == []
+    assert [event.message for event in told.all(EntityReady) if isinstance(event, EntityReady)] == [0, 6]
+
+
 def test_what_was_sent_before_a_publisher_was_heard_first_is_not_lost() -> None:
     told = Told()
     told.tell(sent(START + 10, 500), sent(START + 20, 600), Taken(START + 40, HEARD, THREAD, 602, 9))

@@ -107,11 +107,13 @@ def test_submissions_are_graded_on_real_ros_and_liars_are_found(
         (tmp_path / "homework" / learner / "blinker.py").write_text(text)
     capsys.readouterr()
     assert cli.main(["grade", "homework", "--on", "ros2"]) == SUSPICIOUS
-    ann, bob, eve = capsys.readouterr().out.splitlines()
+    ann, bob, eve, *missed = capsys.readouterr().out.splitlines()
     assert ann == "1/1  ann  blinker"
     assert bob == "0/1  bob  blinker"
     assert eve.startswith("0/1  eve  blinker  suspicious: blinker.py:5 imports cbtui_probe")
     assert "the program tells, as if it were the run, of the run or of the robot" in eve
+    assert missed[1] == "Missed most:"
+    assert missed[2].startswith("  1 of 2  blinker: ")
 
 
 @needs_ros

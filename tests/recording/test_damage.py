@@ -63,6 +63,7 @@ def batches_of(recording: Recording) -> list[list[AnyEvent]]:
     return batches
 
 
+@pytest.mark.slow
 def test_a_recording_that_was_cut_holds_what_came_before(whole: bytes, tmp_path: Path) -> None:
     chance = random.Random(1)
     held = []
@@ -80,6 +81,7 @@ def test_a_recording_that_was_cut_holds_what_came_before(whole: bytes, tmp_path:
     assert max(held) == len(KEPT)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", first_daily(*range(4)))
 def test_flipped_bytes_cost_no_more_than_the_chunks_they_are_in(
     whole: bytes, tmp_path: Path, seed: int
@@ -98,6 +100,7 @@ def test_flipped_bytes_cost_no_more_than_the_chunks_they_are_in(
         assert recording.damage is not None or batches == KEPT
 
 
+@pytest.mark.slow
 def test_damaged_beginnings_and_lengths_are_read_over(whole: bytes, tmp_path: Path) -> None:
     for place in range(0, 300, 3):
         for value in (0, 1, 255):
@@ -178,7 +181,7 @@ while True:
 """
 
 
-@pytest.mark.parametrize("kind", ["direct", "background"])
+@pytest.mark.parametrize("kind", first_daily("background", "direct"))
 def test_a_recorder_that_is_killed_leaves_all_but_the_last_second(tmp_path: Path, kind: str) -> None:
     chance = random.Random(5)
     for turn in range(2):

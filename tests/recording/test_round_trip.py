@@ -25,6 +25,7 @@ from tests.recording.files import (
     write,
     write_in_chunks,
 )
+from tests.support.daily import first_daily
 from tests.support.properties import examples
 from tests.trace.samples import FULL
 from tests.trace.systems import legal_runs
@@ -42,10 +43,11 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return path
 
 
-def test_the_state_at_a_thousand_times_is_that_of_the_run(recorded: Path) -> None:
+@pytest.mark.parametrize("times", first_daily(200, 1000))
+def test_the_state_at_many_times_is_that_of_the_run(recorded: Path, times: int) -> None:
     live, replayed = timeline_of(BATCHES), timeline_of(read(recorded).batches())
     chance = random.Random(4)
-    for _ in range(1000):
+    for _ in range(times):
         at = chance.randint(-1, live.end + 1)
         window = Window(at, at + chance.randint(0, live.end))
         for answer in everything(at, window):

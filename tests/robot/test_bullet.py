@@ -8,7 +8,10 @@ from contextlib import closing
 import pytest
 
 from sim.robot.bullet import BulletClient, WorldUnavailable, silence
+from sim.robot.physics import PhysicsChoice
 from sim.robot.world import World
+
+pytest.importorskip("pybullet")
 
 WHOLE_LIFE = """
 from sim.robot.world import World
@@ -38,8 +41,8 @@ def test_silence_ends_with_its_block(capfd: pytest.CaptureFixture[str]) -> None:
 
 def test_a_missing_pybullet_is_one_sentence_that_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "pybullet", None)
-    with pytest.raises(WorldUnavailable, match=r"^The robot's world needs PyBullet.*pip install pybullet"):
-        World()
+    with pytest.raises(WorldUnavailable, match=r"^PyBullet cannot be imported.*--physics numpy"):
+        World(physics=PhysicsChoice.PYBULLET)
 
 
 def test_a_pybullet_without_a_free_client_is_one_sentence(monkeypatch: pytest.MonkeyPatch) -> None:

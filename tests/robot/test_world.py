@@ -11,6 +11,7 @@ from sim.robot.arena import ARENA, ROBOT_RADIUS, START, Arena, Circle, Segment
 from sim.robot.drive import MAX_ANGULAR, MAX_LINEAR, STANDSTILL
 from sim.robot.lidar import BEAMS
 from sim.robot.world import World
+from tests.robot.conftest import MakeWorld
 
 AHEAD = BEAMS // 2
 OUT_OF_SIGHT = Circle(0.0, -50.0, 0.1)
@@ -50,8 +51,8 @@ def test_the_robot_starts_at_the_origin_at_rest_facing_along_x(world: World) -> 
     assert not world.touching()
 
 
-def test_ten_seconds_at_eight_centimetres_a_second_are_eighty_centimetres() -> None:
-    with closing(World(open_floor())) as world:
+def test_ten_seconds_at_eight_centimetres_a_second_are_eighty_centimetres(make_world: MakeWorld) -> None:
+    with closing(make_world(open_floor())) as world:
         world.command(0.08, 0.0)
         world.advance_to(seconds(10))
         pose = world.pose()
@@ -80,15 +81,15 @@ def test_the_turned_angle_counts_whole_turns_and_their_sign(world: World) -> Non
     assert world.turned == pytest.approx(0.0, abs=0.5)
 
 
-def test_an_arc_is_driven_as_wide_as_the_two_speeds_say() -> None:
-    with closing(World(open_floor())) as world:
+def test_an_arc_is_driven_as_wide_as_the_two_speeds_say(make_world: MakeWorld) -> None:
+    with closing(make_world(open_floor())) as world:
         world.command(0.1, 0.5)
         world.advance_to(seconds(math.pi / 0.5))
         assert world.pose().y == pytest.approx(2 * 0.1 / 0.5, rel=0.02)
 
 
-def test_ranges_360_reads_the_distance_to_a_wall_one_metre_ahead() -> None:
-    with closing(World(wall_ahead(1.0))) as world:
+def test_ranges_360_reads_the_distance_to_a_wall_one_metre_ahead(make_world: MakeWorld) -> None:
+    with closing(make_world(wall_ahead(1.0))) as world:
         assert world.scan()[AHEAD] == pytest.approx(1.00, abs=0.02)
         world.command(0.1, 0.0)
         world.advance_to(seconds(5))
@@ -158,8 +159,8 @@ def test_power_that_was_there_already_does_not_forget_the_command(world: World) 
 
 
 @pytest.mark.parametrize("heading", [0.0, 0.7])
-def test_a_wall_stops_the_robot_and_is_felt(heading: float) -> None:
-    with closing(World(wall_ahead(0.5))) as world:
+def test_a_wall_stops_the_robot_and_is_felt(heading: float, make_world: MakeWorld) -> None:
+    with closing(make_world(wall_ahead(0.5))) as world:
         world.command(0.0, heading)
         world.advance_to(seconds(1))
         assert not world.touching()
@@ -181,14 +182,16 @@ def test_the_sphere_stops_the_robot_and_is_felt(world: World) -> None:
     assert gap == pytest.approx(ARENA.sphere.radius + ROBOT_RADIUS, abs=0.005)
 
 
-def test_reset_brings_the_robot_back_to_the_start_at_rest_and_lets_the_counters_be(world: World) -> None:
+def test_reset_brings_the_robot_back_to_the_start_at_rest_and_lets_the_counters_be(
+    world: World, make_world: MakeWorld
+) -> None:
     drive_about(world, until=4.0)
     world.advance_to(seconds(5))
     turned, travelled = world.turned, world.travelled
     world.reset()
     assert world.commanded == STANDSTILL
     assert (world.turned, world.travelled) == (turned, travelled)
-    with closing(World()) as fresh:
+    with closing(make_world()) as fresh:
         assert (world.pose(), world.velocity(), world.wheel_angles()) == (
             fresh.pose(),
             fresh.velocity(),
@@ -210,18 +213,18 @@ def test_time_goes_on_over_a_reset(world: World) -> None:
     assert world.travelled == pytest.approx(0.1, rel=0.05)
 
 
-def test_the_same_commands_give_the_same_bits() -> None:
-    with closing(World()) as first, closing(World()) as second:
+def test_the_same_commands_give_the_same_bits(make_world: MakeWorld) -> None:
+    with closing(make_world()) as first, closing(make_world()) as second:
         drive_about(first, until=12.0)
         drive_about(second, until=12.0)
         assert state(first) == state(second)
 
 
-def test_two_worlds_in_one_process_leave_each_other_alone() -> None:
-    with closing(World()) as alone:
+def test_two_worlds_in_one_process_leave_each_other_alone(make_world: MakeWorld) -> None:
+    with closing(make_world()) as alone:
         drive_about(alone, until=4.0)
         expected = state(alone)
-    with closing(World()) as one, closing(World(wall_ahead(0.3))) as other:
+    with closing(make_world()) as one, closing(make_world(wall_ahead(0.3))) as other:
         other.command(0.2, 1.0)
         for tick in range(40):
             other.advance_to(seconds(tick / 10))
@@ -239,8 +242,10 @@ def every(step: float) -> Callable[[World, int], None]:
 
 
 @pytest.mark.parametrize("advance", [every(0.05), every(0.001), every(0.0317)])
-def test_how_the_time_is_sliced_changes_nothing(advance: Callable[[World, int], None]) -> None:
-    with closing(World()) as whole, closing(World()) as sliced:
+def test_how_the_time_is_sliced_changes_nothing(
+    advance: Callable[[World, int], None], make_world: MakeWorld
+) -> None:
+    with closing(make_world()) as whole, closing(make_world()) as sliced:
         for world in (whole, sliced):
             world.command(0.2, 0.4)
         whole.advance_to(seconds(5.01))

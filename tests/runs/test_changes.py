@@ -1,5 +1,7 @@
 """What a person changed: what it makes of a set-up, how it is told, and which code would do it."""
 
+from pathlib import Path
+
 import msgspec
 import pytest
 
@@ -13,10 +15,10 @@ from cbtui.runs.setup.changeable import (
 )
 from cbtui.runs.setup.changes import GROUP_CHOICES, Changes, changes_in
 from cbtui.runs.setup.equivalent_code import code_of, code_of_group
-from cbtui.runs.setup.lesson_setup import setup_for
+from cbtui.runs.setup.lesson_setup import RunRequest, setup_for
 from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, BadQuantityError, Quantity
 from cbtui.runs.setup.shown_program import of_lesson
-from cbtui.screens.setup_rows import rows_of
+from cbtui.screens.windows.setup_rows import rows_of
 from lessons.catalogue import find, lessons
 from sim.engine.setup import GroupChange, PeriodChange, RobotUse, RunSetup
 from sim.ros.middleware.callback_overrides import GroupChoice
@@ -275,12 +277,12 @@ def test_a_number_may_have_its_unit(text: str, number: float) -> None:
 @pytest.mark.parametrize(
     ("quantity", "text", "sentence"),
     [
-        (PERIOD, "0", "0 is no period; give 0.001 to 3600 s"),
-        (PERIOD, "-1", "-1 is no period; give 0.001 to 3600 s"),
-        (PERIOD, "nan", "nan is no period; give 0.001 to 3600 s"),
+        (PERIOD, "0", "0 is not a period; give 0.001 to 3600 s"),
+        (PERIOD, "-1", "-1 is not a period; give 0.001 to 3600 s"),
+        (PERIOD, "nan", "nan is not a period; give 0.001 to 3600 s"),
         (PERIOD, "soon", "'soon' is not a number; give 0.001 to 3600 s"),
         (PERIOD, "", "'' is not a number; give 0.001 to 3600 s"),
-        (SENSOR_RATE, "101 Hz", "101 is no sensor rate; give 0.1 to 100 Hz"),
+        (SENSOR_RATE, "101 Hz", "101 is not a sensor rate; give 0.1 to 100 Hz"),
     ],
 )
 def test_what_is_no_such_number_gets_a_sentence(quantity: Quantity, text: str, sentence: str) -> None:
@@ -295,3 +297,11 @@ def test_a_seed_is_a_change_that_set_ups_keep_and_lanes_tell() -> None:
     assert Changes(threads=2).applied(setup).seed == 17
     assert changes_in(setup).words == "seed 17"
     assert Changes(seed=17).without(Changes(seed=17)) == Changes()
+
+
+def test_each_of_several_files_has_arguments_behind_a_double_dash_of_its_own() -> None:
+    files = [Path("a.py"), Path("b.py"), Path("c.py")]
+    words = ["-x", "1", "--", "-y", "2"]
+    setup = RunRequest(files=files, arguments=words).setup()
+    assert [each.arguments for each in setup.programs] == [("-x", "1"), ("-y", "2"), ()]
+    assert RunRequest(files=files[:1], arguments=words).setup().programs[0].arguments == tuple(words)

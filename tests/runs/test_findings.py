@@ -5,9 +5,46 @@ from collections.abc import Iterator, Sequence
 from cbtui.runs.live.findings import FindingsMonitor, problem_count_text
 from sim.diagnosis import Diagnoses, Explanation, Finding, Rule, Weight
 from sim.diagnosis.timeline_view import TimelineView
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.trace.timeline import Timeline
+from tests.diagnosis.findings import SetBool, diagnosed, once, serve_outside, spin
 from tests.support.builder import Run, ns
 from tests.support.runs import shared_group_run, split_groups_run
+from tests.support.simulation import Simulation
+
+
+def calling(*, beats: bool) -> FindingsMonitor:
+    """Two threads, and a callback that at 1 s calls a service whose reply its own group keeps out."""
+
+    def program(simulation: Simulation) -> None:
+        serve_outside(simulation)
+        node = Node("n")
+        group = MutuallyExclusiveCallbackGroup()
+        client = node.create_client(SetBool, "/outside", callback_group=group)
+        once(node, 1.0, lambda: client.call(SetBool.Request()), group)
+        if beats:
+            node.create_timer(0.5, lambda: None, callback_group=MutuallyExclusiveCallbackGroup())
+        spin(node, 2)
+
+    watch = FindingsMonitor(diagnosed(program).timeline)
+    watch.look()
+    return watch
+
+
+def test_nothing_moves_once_all_that_runs_is_stuck() -> None:
+    watch = calling(beats=False)
+    assert watch.nothing_moves_since() == ns(1.0)
+    stuck = watch.stuck_at(ns(1.5))
+    assert stuck is not None
+    assert len(stuck.ring) == 4
+    assert watch.stuck_at(ns(0.5)) is None
+
+
+def test_a_program_of_which_a_part_goes_on_still_moves() -> None:
+    watch = calling(beats=True)
+    assert watch.stuck_at(ns(1.5)) is not None
+    assert watch.nothing_moves_since() is None
 
 
 class Counting(Rule):
@@ -114,7 +151,7 @@ def test_what_was_found_comes_with_weight_and_words_problems_first() -> None:
     starved = next(each for each in told if each.name == "group starvation")
     assert starved.is_problem
     assert starved.leads_somewhere
-    assert starved.explanation.what.startswith("odom_callback waited 16.0 s: group A was held by")
+    assert starved.explanation.what.startswith("odom_callback and scan_callback waited up to 16.0 s: ")
 
 
 def test_problems_are_counted_and_remarks_are_not() -> None:

@@ -74,6 +74,7 @@ def test_a_name_that_is_no_text_is_remembered_too(path: Path) -> None:
         b"[" * 100_000,
         b"",
     ],
+    ids=lambda line: repr(line[:30]),
 )
 def test_a_broken_file_is_set_aside_and_told_of_and_the_rest_goes_on(path: Path, line: bytes) -> None:
     noted(path, LESSON, RECORDING)

@@ -134,6 +134,7 @@ def test_deep_toml_is_refused_with_its_line(tmp_path: Path, what: str) -> None:
     assert len(complaint) < 200
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("little_memory")
 @pytest.mark.parametrize("filling", [" ", "[", '"a"', "a ", "a.", "# "])
 def test_long_texts_in_toml_take_no_more_than_their_length(tmp_path: Path, filling: str) -> None:

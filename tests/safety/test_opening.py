@@ -124,7 +124,7 @@ def test_a_description_and_its_texts_are_read_and_nothing_is_run(bad_lesson: Pat
 async def test_the_menu_shows_a_foreign_lesson_and_runs_it_only_when_it_is_opened(
     bad_lesson: Path, marks: Marks, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cbtui.screens.menu._HOVER_DELAY", 0.001)
+    monkeypatch.setattr("cbtui.screens.parts.previews.HOVER_DELAY", 0.001)
     engines = FakeEngines(shared_group_run().events, 0)
     app = CbtuiApp(open_session=engines)
     app.animation_level = "none"
@@ -212,6 +212,7 @@ def test_a_recording_is_read_and_nothing_in_it_is_run_or_written_elsewhere(
     assert set(tmp_path.rglob("*")) - before <= {recording.parent / "out"}
 
 
+@pytest.mark.slow
 async def test_a_recording_in_the_console_is_shown_and_nothing_in_it_is_run(
     recording: Path, marks: Marks
 ) -> None:

@@ -46,8 +46,9 @@ def nobodys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv(f"XDG_{kind}_HOME", str(tmp_path / "home" / kind))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
-    ("size", "told"), first_row_daily((WIDE, hostile.every_event), (NARROW, hostile.events))
+    ("size", "told"), first_row_daily((NARROW, hostile.events), (WIDE, hostile.every_event))
 )
 async def test_a_run_full_of_hostile_texts_is_shown_in_every_pane(
     size: tuple[int, int], told: Callable[[], list[AnyEvent]]
@@ -94,6 +95,7 @@ async def test_the_menu_shows_hostile_lessons_and_names_of_files(
     assert "ZXZpbA" in shown
 
 
+@pytest.mark.slow
 async def test_a_hostile_lesson_is_shown_with_its_guide_its_question_and_its_exercise(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

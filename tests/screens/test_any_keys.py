@@ -30,7 +30,7 @@ steps = st.lists(
 @pytest.mark.usefixtures("in_empty_folder")
 @given(lesson=st.sampled_from(sorted(RUNS)), sequence=steps, lost=st.booleans())
 @settings(
-    max_examples=examples(8),
+    max_examples=examples(4),
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )

@@ -15,12 +15,13 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.compared_runs import ComparedSide
 from cbtui.screens import compare
 from cbtui.screens.compare import CompareScreen
-from cbtui.screens.help import HelpScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
-from cbtui.screens.moment import MomentScreen
+from cbtui.screens.windows.help import HelpScreen
+from cbtui.screens.windows.moment import MomentScreen
 from cbtui.widgets.comparison import ComparisonTable
 from cbtui.widgets.lanes import Lanes, start_of
+from sim.durations import timestamp
 from sim.trace.events import AnyEvent, RobotMoved, RunEnded
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
@@ -69,6 +70,8 @@ async def compared(
     app = ComparingConsole(first, second, bounds=bounds)
     async with app.run_test(size=size, notifications=True) as pilot:
         await drawn(app, pilot)
+        if bounds is None:
+            await press(app, pilot, "0")
         yield app, pilot
 
 
@@ -117,6 +120,16 @@ async def test_both_runs_have_the_same_stretch_and_cursor_whatever_is_pressed() 
             assert second.picture is not None
             assert first.picture.scale == second.picture.scale
             assert first.picture.layout == second.picture.layout
+
+
+async def test_it_opens_where_the_runs_first_differ_with_a_verdict() -> None:
+    app = ComparingConsole(*sides())
+    async with app.run_test(size=WIDE) as pilot:
+        await drawn(app, pilot)
+        at = app.comparison.navigation.now
+        assert 0 < at < lanes(app)[1].timeline.end
+        assert f"they differ from {timestamp(at)}" in text_of(app)
+        assert "run B is better: losses of" in text_of(app)
 
 
 async def test_the_axis_goes_as_far_as_the_longer_run_and_the_table_as_far_as_the_shorter() -> None:
@@ -215,7 +228,7 @@ async def test_a_narrow_screen_scrolls_the_table_and_z_lets_it_fill_the_screen()
 async def test_a_narrow_screen_names_the_key_that_lets_all_lanes_be_seen() -> None:
     async with compared(*sides(), size=NARROW) as (app, pilot):
         table = app.comparison.query_one(ComparisonTable)
-        assert "+2 lanes Z" in text_of(app)
+        assert "+3 lanes Z" in text_of(app)
         await press(app, pilot, "Z")
         assert "lanes" not in text_of(app)
         assert "ThreadPoolExecutor-0_3" in text_of(app) or "Pool-0_3" in text_of(app)
@@ -225,7 +238,7 @@ async def test_a_narrow_screen_names_the_key_that_lets_all_lanes_be_seen() -> No
         assert shown == [False, True]
         assert not app.comparison.query_one("#lanes0").display
         await press(app, pilot, "z")
-        assert "+2 lanes Z" in text_of(app)
+        assert "+3 lanes Z" in text_of(app)
 
 
 async def test_a_wide_screen_has_room_for_everything() -> None:
@@ -251,6 +264,7 @@ async def test_a_run_that_goes_on_grows_on_screen_and_in_the_table() -> None:
     growing.extend([event for event in events if event.t <= ns(3.0)])
     first = ComparedSide("now", growing, alive=lambda: True)
     async with compared(first, sides()[1]) as (app, pilot):
+        await press(app, pilot, "less_than_sign")
         assert "goes on" in text_of(app)
         assert lanes(app)[0].now == growing.end
         assert "Whole runs, 0 to 3 s" in title(app)
@@ -258,6 +272,21 @@ async def test_a_run_that_goes_on_grows_on_screen_and_in_the_table() -> None:
         await drawn(app, pilot)
         assert [each.now for each in lanes(app)] == [growing.end] * 2
         assert "Whole runs, 0 to 6 s" in title(app)
+
+
+async def test_a_run_that_has_only_begun_gets_its_verdict_and_the_first_difference_later() -> None:
+    growing = Timeline()
+    app = ComparingConsole(sides()[0], ComparedSide("now", growing, alive=lambda: True))
+    async with app.run_test(size=WIDE) as pilot:
+        await drawn(app, pilot)
+        assert "no call differs" not in text_of(app)
+        growing.extend([event for event in split_groups_run().events if event.t <= ns(9.4)])
+        await drawn(app, pilot)
+        at = app.comparison.navigation.now
+        assert 0 < at < growing.end
+        assert f"they differ from {timestamp(at)}" in text_of(app)
+        await press(app, pilot, "0")
+        assert app.comparison.navigation.now == growing.end
 
 
 async def test_how_a_run_failed_and_what_of_a_recording_is_lost_is_said() -> None:
@@ -275,13 +304,15 @@ async def test_how_a_run_failed_and_what_of_a_recording_is_lost_is_said() -> Non
         assert told == {"a: it broke", "it breaks off"}
 
 
+@pytest.mark.slow
 async def test_help_begins_with_the_comparisons_keys_and_q_is_the_way_back() -> None:
     async with compared(*sides(), size=NARROW) as (app, pilot):
         await pilot.press("question_mark")
         assert isinstance(app.screen, HelpScreen)
+        await pilot.press("slash", *"table cover")
         await pilot.pause()
-        assert "Let the table tell of whole runs, or of what is on screen" in text_of(app)
-        await pilot.press("q", "q")
+        assert "Let the table cover whole runs, or only what is on screen" in text_of(app)
+        await pilot.press("escape", "q")
         assert isinstance(app.screen, MenuScreen)
 
 
@@ -323,7 +354,7 @@ async def test_a_lesson_offers_a_comparison_once_there_is_a_run_before() -> None
 async def test_keys_are_answered_while_a_comparison_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(compare, "_TIME_SLICE", 0.0)
     monkeypatch.setattr(compare, "_PROGRESS_AFTER", 0.0)
-    monkeypatch.setattr(compare, "_YIELD_TIME", 0.02)
+    monkeypatch.setattr(compare, "_YIELD_TIME", 0.5)
     app = ComparingConsole(*sides())
     async with app.run_test(size=WIDE) as pilot:
         await pilot.pause()

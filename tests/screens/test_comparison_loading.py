@@ -13,7 +13,7 @@ from cbtui.runs.compared_runs import ComparedRun, ComparisonTerms, RunProgress
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import RunRequest
 from cbtui.screens.compare import CompareScreen
-from cbtui.screens.comparison_loading import ComparisonLoadingScreen, progress_text
+from cbtui.screens.comparison_loading import ComparisonLoadingScreen
 from cbtui.screens.menu import MenuScreen
 from lessons.catalogue import find
 from tests.support.builder import ns
@@ -82,4 +82,4 @@ async def test_a_run_that_takes_long_can_be_given_up() -> None:
     ],
 )
 def test_progress_tells_how_far_a_run_has_come(progress: RunProgress, sentence: str) -> None:
-    assert progress_text(progress) == sentence
+    assert progress.text == sentence

@@ -1,5 +1,6 @@
 """An exercise on screen, with recorded runs: the file, the checks, the keys, and what a save does."""
 
+import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from functools import lru_cache, partial
@@ -101,7 +102,7 @@ async def test_e_puts_the_starter_here_and_goes_to_the_exercise(here: Path) -> N
         assert kind_of_screen(app) is ExerciseScreen
         assert (here / FILE).read_bytes() == STARTER.read_bytes()
         (told,) = app._notifications
-        assert told.message == f"{FILE} is in {here} now, and is yours: it is checked whenever you save it."
+        assert told.message == f"{FILE} is yours now, in {here}: it is checked whenever you save it."
         assert app.engines.latest.setup.programs[0].path == str(here / FILE)
         await pilot.press("e")
         await settle(pilot)
@@ -168,6 +169,12 @@ async def test_checks_that_fail_are_shown_and_enter_goes_to_their_moment() -> No
 
 
 @pytest.mark.slow
+async def test_checks_that_fail_in_a_run_without_problems_are_not_told_as_well() -> None:
+    async with console([event for event in failing() if event.t <= 3 * SECOND]) as (app, _, _pilot):
+        assert re.search(r"! \d of 5 checks fail", lines_of(app)[-2])
+
+
+@pytest.mark.slow
 async def test_what_is_asked_can_be_read_by_scrolling() -> None:
     async with console(failing()) as (app, _, pilot):
         assert "The file is the node" not in text_of(app)
@@ -190,7 +197,7 @@ async def test_a_file_that_passes_is_noted_and_the_next_lesson_named() -> None:
 async def test_a_narrow_screen_has_room_for_the_keys_that_help_with_a_file_that_fails() -> None:
     async with console(failing()) as (app, _, _pilot):
         keys = lines_of(app)[-1]
-        assert all(key in keys for key in ("look there", "w watch", "h hint", "e lesson"))
+        assert all(key in keys for key in ("go there", "w watch", "h hint", "e lesson"))
 
 
 @pytest.mark.slow
@@ -242,6 +249,7 @@ async def test_r_runs_it_again_and_w_at_the_pace_of_real_time() -> None:
 # saving
 
 
+@pytest.mark.slow
 async def test_saving_runs_it_again_and_the_run_before_can_be_compared(here: Path) -> None:
     async with console(failing()) as (app, engines, pilot):
         (here / FILE).write_bytes(SOLUTION.read_bytes())
@@ -279,7 +287,7 @@ async def test_saving_the_same_again_changes_nothing(here: Path) -> None:
 async def test_a_file_that_is_gone_is_told_of_and_goes_on_when_it_is_back(here: Path) -> None:
     async with console(failing()) as (app, engines, pilot):
         (here / FILE).unlink()
-        await until(pilot, lambda: f"{FILE} is gone; it is run and checked again" in text_of(app))
+        await until(pilot, lambda: f"{FILE} is gone; it will be run and checked again" in text_of(app))
         (here / FILE).write_bytes(SOLUTION.read_bytes())
         await until(pilot, lambda: len(engines.sessions) == 2)
         await judge(app, engines, pilot)

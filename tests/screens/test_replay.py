@@ -19,7 +19,7 @@ from sim.trace.events import AnyEvent, RunEnded
 from tests.recording.files import timeline_of, write, write_in_chunks
 from tests.support.builder import ns
 from tests.support.console import WIDE, settle
-from tests.support.daily import first_daily
+from tests.support.daily import first_slow
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import shared_group_run
 
@@ -83,6 +83,7 @@ async def test_at_its_end_it_tells_how_the_run_ended(tmp_path: Path) -> None:
         assert "the run is over" not in text_of(pilot.app)
 
 
+@pytest.mark.slow
 async def test_it_can_be_scrubbed_both_ways(tmp_path: Path) -> None:
     async with replayed(recording(tmp_path)) as (screen, pilot):
         timeline = screen.runs.run.timeline
@@ -122,6 +123,7 @@ async def test_it_plays_at_the_chosen_speed_from_its_beginning_and_stands_at_its
         assert "‖ REPLAY" in status(pilot)
 
 
+@pytest.mark.slow
 async def test_nothing_that_needs_an_engine_is_offered_or_done(tmp_path: Path) -> None:
     async with replayed(recording(tmp_path)) as (screen, pilot):
         for action in ("call_service", "prompt", "reset_world", "run_again", "threads", "record", "step"):
@@ -148,8 +150,7 @@ async def test_what_cannot_be_read_is_said_in_one_sentence_and_the_rest_is_shown
         assert "‖ REPLAY" in status(pilot)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("place", first_daily(50, 5, 20, 35, 65, 80, 95))
+@pytest.mark.parametrize("place", [*first_slow(50, 5, 35, 65, 80), *first_slow(20, 95)])
 async def test_a_damaged_recording_never_ends_the_console(place: int, tmp_path: Path) -> None:
     path = recording(tmp_path).path
     content = bytearray(path.read_bytes())

@@ -82,6 +82,7 @@ async def test_a_screen_that_grows_looks_as_if_it_had_always_been_so_large() -> 
     assert pictures[0] == pictures[1] == pictures[2]
 
 
+@pytest.mark.slow
 async def test_lanes_diagnosis_and_keys_are_always_on_screen() -> None:
     app = RecordedConsole("shared-group", EVENTS, 13.15)
     async with app.run_test(size=NARROW) as pilot:

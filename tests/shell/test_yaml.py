@@ -77,6 +77,7 @@ def test_reading_raises_nothing_but_its_own_error(text: str) -> None:
         ("2020-13-41", "a value does not fit its type"),
         ("!!int ''", "a value does not fit its type"),
     ],
+    ids=lambda value: value[:30],
 )
 def test_what_is_no_plain_value_is_refused_in_one_sentence(text: str, sentence: str) -> None:
     with pytest.raises(YamlError) as raised:

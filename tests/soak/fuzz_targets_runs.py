@@ -21,8 +21,13 @@ from sim.engine.commands import (
 )
 from sim.engine.commands import decode as decode_command
 from sim.engine.commands import encode as encode_command
-from sim.export import CallTable, ChromeFile, PerfettoFile, TraceExporter, report, svg
+from sim.export.chrome import ChromeFile
+from sim.export.csv import CallTable
 from sim.export.jsonl import JsonLines
+from sim.export.markdown import report
+from sim.export.perfetto import PerfettoFile
+from sim.export.svg import svg
+from sim.export.trace_exporter import TraceExporter
 from sim.recording import RecordingError, batch, read
 from sim.trace import events as ev
 from sim.trace.figures.summary import summarise

@@ -15,7 +15,20 @@ OWN_WORDS = set((Path(__file__).parent / "words.txt").read_text(encoding="utf-8"
 """Names, the field's terms, and what Python calls things."""
 NOT_AMERICAN = {"program", "math"}
 """Words that are British as well where computers are spoken of."""
-QUOTED = {"finalized", "initialize", "initialized", "license", "randomized", "recognized", "utilization"}
+QUOTED = {
+    "canceled",
+    "finalized",
+    "initialize",
+    "initialized",
+    "license",
+    "randomized",
+    "recognized",
+    "utilization",
+} | {
+    "color",
+    "serialized",
+    "unrecognized",
+}
 """As ROS, a library or the title of a paper has them."""
 
 WRONG = "rezeives"

@@ -79,12 +79,19 @@ def run_lesson(lesson: str, seconds: float, *calls: float, threads: int | None =
 
 
 def run_program(
-    folder: Path, source: str, seconds: float = 5.0, clock: str = "virtual", *, robot: bool = False
+    folder: Path,
+    source: str,
+    seconds: float = 5.0,
+    clock: str = "virtual",
+    *,
+    robot: bool = False,
+    distro: str = "",
 ) -> Run:
     """Write a program to a folder and run it."""
     path = folder / "node.py"
     path.write_text(source)
-    return run_to_end(program_setup(path, seconds, clock, robot=robot))
+    setup = program_setup(path, seconds, clock, robot=robot)
+    return run_to_end(msgspec.structs.replace(setup, distro=distro))
 
 
 def program_setup(path: Path, seconds: float, clock: str = "virtual", *, robot: bool = False) -> RunSetup:

@@ -13,9 +13,7 @@ from cbtui.engines.forking import forking_context
 _PRELOADED = (
     "cbtui.cli",
     "cbtui.grading.supervisor",
-    "sim.engine.process",
-    "sim.robot.driver",
-    "sim.robot.world",
+    "sim.engine.preloaded",
     __name__,
 )
 

@@ -136,7 +136,7 @@ def on_parallel_time() -> Iterator[Simulation]:
 
 @contextmanager
 def _on(clock: PacedClock) -> Iterator[Simulation]:
-    simulation = Simulation(clock)
+    simulation = Simulation(clock, "jazzy@7.1.12")
     with no_thread_left(), installed(simulation.host):
         yield simulation
 

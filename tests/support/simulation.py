@@ -11,6 +11,7 @@ import sim.ros.rclpy
 from sim.clock import RunClock, VirtualClock
 from sim.clock.schedule import Schedule
 from sim.probes.probe import Probe, PublishingProbe
+from sim.profiles import Profile
 from sim.ros.context.context import Context
 from sim.ros.middleware import host as hosts
 from sim.ros.middleware.host import Host
@@ -109,10 +110,10 @@ class Trace:
 class Simulation:
     """What a simulated program has at hand. Its context is the default one, and has begun."""
 
-    def __init__(self, clock: RunClock) -> None:
+    def __init__(self, clock: RunClock, distro: str = "jazzy") -> None:
         self.events: list[AnyEvent] = []
         self.clock = clock
-        self.host = Host(clock, Probe(clock, self._record))
+        self.host = Host(clock, Probe(clock, self._record), profile=Profile.named(distro))
 
     def _record(self, event: AnyEvent) -> None:
         if not (isinstance(event, CallbackFailed) and event.error.startswith(Ended.__name__)):
@@ -171,18 +172,21 @@ class Simulation:
 Program = Callable[[Simulation], Any]
 
 
-def simulate(program: Program, until: float = 60.0, schedule: Schedule | None = None) -> Trace:
+def simulate(
+    program: Program, until: float = 60.0, schedule: Schedule | None = None, distro: str = "jazzy"
+) -> Trace:
     """Run ``program`` on virtual time until it returns, at most until ``until`` seconds.
 
-    ``schedule`` chooses the order of threads; without one it is first come, first served. Raises what the
-    program raises; AssertionError when the simulation is stuck or leaves a thread.
+    ``schedule`` chooses the order of threads; without one it is first come, first served. ``distro`` is the
+    release of rclpy that the model is like. Raises what the program raises; AssertionError when the
+    simulation is stuck or leaves a thread.
     """
     trouble: list[BaseException] = []
     events: list[AnyEvent] = []
 
     def run() -> None:
         clock = EndedClock(schedule=schedule)
-        simulation = Simulation(clock)
+        simulation = Simulation(clock, distro)
         clock.time.before_jump = simulation.host.explain_waits
         clock.call_at(ns(until), clock.end)
         with installed(simulation.host):

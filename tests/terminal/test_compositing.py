@@ -42,6 +42,7 @@ def cells(strip: Strip) -> list[Cell]:
     return [(character, segment.style) for segment in strip for character in segment.text]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_the_parts_that_are_sent_make_the_whole_picture(
     size: tuple[int, int], monkeypatch: pytest.MonkeyPatch

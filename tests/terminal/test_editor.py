@@ -35,7 +35,7 @@ def test_visual_is_preferred_to_editor(path: Path) -> None:
 @pytest.mark.parametrize(
     ("environment", "part"),
     [
-        ({}, "no editor is named; leave, type export EDITOR=nano or another, and start anew"),
+        ({}, "no editor is named; leave, type export EDITOR=nano or another, and start again"),
         ({"EDITOR": "  "}, "no editor is named"),
         ({"EDITOR": "vi '"}, "whose quotes do not match"),
     ],

@@ -37,6 +37,7 @@ def _as_before() -> Iterator[None]:
         gc.freeze()
 
 
+@pytest.mark.slow
 def test_a_collection_takes_what_is_new_and_sets_the_rest_aside() -> None:
     with survivors_frozen():
         kept = Knot()
@@ -51,13 +52,15 @@ def test_a_collection_takes_what_is_new_and_sets_the_rest_aside() -> None:
         assert Knot.left == 0
 
 
+@pytest.mark.slow
 def test_nothing_is_collected_early_or_set_aside_without_being_asked() -> None:
+    frozen = gc.get_freeze_count()  # Python 3.12 sets some aside by itself
     Knot()
     collect_now()
     assert Knot.left == 1
     gc.collect()
     assert Knot.left == 0
-    assert gc.get_freeze_count() == 0
+    assert gc.get_freeze_count() == frozen
 
 
 def test_what_others_set_aside_is_left_alone() -> None:
@@ -73,6 +76,7 @@ def test_afterwards_all_is_as_before() -> None:
     assert gc.get_freeze_count() == 0
 
 
+@pytest.mark.slow
 async def test_a_screen_that_was_left_is_not_kept_for_its_colours() -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 2.0)
     async with app.run_test(size=WIDE) as pilot:

@@ -27,6 +27,7 @@ raise SystemExit(command())
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "keys", first_daily(_OPEN * 3 + _LEAVE * 2, _OPEN + _LEAVE, _LEAVE + _OPEN, _LEAVE * 3)
 )
@@ -53,6 +54,7 @@ def test_paging_through_the_palette_before_it_is_shown_does_nothing(tmp_path: Pa
         assert console.ended() == 0, console.said()
 
 
+@pytest.mark.slow
 def test_a_fault_of_the_consoles_own_is_told_in_a_sentence_and_loses_nothing(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -17,10 +17,10 @@ from cbtui.keys.action import Scope
 from cbtui.keys.actions import actions_of
 from cbtui.keys.bindings import perform
 from cbtui.screens.menu import MenuScreen
-from cbtui.screens.setup import SetupScreen
+from cbtui.screens.windows.setup import SetupScreen
 from cbtui.terminal.ending import EndingApp
 from cbtui.terminal.pending_keys import MOUNT_TIMEOUT
-from cbtui.terminal.textual_internals import SafeCommandPalette
+from cbtui.terminal.textual_internals import SafeCommandPalette, is_being_removed
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.rows import MemberLane
@@ -32,7 +32,7 @@ from tests.support.daily import first_daily
 from tests.support.exercises import until
 from tests.support.runs import split_groups_run
 
-_SPLIT_GROUPS = "3"
+_FOURTH = "4"
 _LOG = "5"
 _AT_MOST = 60.0
 
@@ -119,10 +119,10 @@ async def test_a_widget_that_is_never_mounted_keeps_nobody_from_leaving(
 
 
 async def test_keys_right_behind_the_one_that_opens_a_lesson_are_the_lessons() -> None:
-    app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
+    app = RecordedConsole("exclusive-2-threads", split_groups_run().events, 4.0)
     async with app.run_test(size=WIDE) as pilot:
         await pilot.press("q")
-        for key in (_SPLIT_GROUPS, _LOG):
+        for key in (_FOURTH, _LOG):
             app.post_message(Key(key, None))
         await until(pilot, lambda: bool(app.screen.query(LogLines)))
         await until(pilot, lambda: app.screen.query_one(LogLines).has_focus)
@@ -133,6 +133,7 @@ async def search_themes(app: RecordedConsole, pilot: Pilot[None]) -> None:
     await pilot.pause()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "open_window",
     first_daily(
@@ -201,10 +202,10 @@ async def test_keys_of_a_screen_that_goes_away_are_painted_no_more(monkeypatch: 
     async with app.run_test(size=WIDE) as pilot:
         lesson = app.screen
         bar = lesson.query_one(KeyBar)
-        bar.changed()
         lesson.dismiss(None)
+        await until(pilot, lambda: is_being_removed(bar))
         monkeypatch.setattr(bar, "rows", lambda _: pytest.fail("the lanes, which it asks, may have gone"))
-        await pilot.pause()
+        bar._paint()  # as a change does that came before
         assert app.screen is not lesson
 
 

@@ -13,7 +13,7 @@ from tests.terminal.console import opened
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
 
 _LOG = "5"
-_SPLIT_GROUPS = "3"
+_SPLIT_GROUPS = "3\r"
 _ESCAPE = "\x1b"
 """Out of the question what one expects, without an answer."""
 

@@ -23,6 +23,7 @@ def test_signs_get_the_plainest_sign_like_them() -> None:
     assert in_ascii("● ◂ ╭─┤ ✓ × café … ⣿█") == "* < +-+ + x cafe ~ .#"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_an_ascii_terminal_gets_nothing_but_ascii(size: tuple[int, int]) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 13.15, charset="ascii")

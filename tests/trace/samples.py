@@ -10,6 +10,7 @@ import msgspec
 from sim.trace.events import (
     AnyEvent,
     ArenaShown,
+    CallbackAt,
     CallbackEnded,
     CallbackFailed,
     CallbackResumed,
@@ -19,6 +20,7 @@ from sim.trace.events import (
     CallUnblocked,
     CommandGiven,
     ContentsLost,
+    Doing,
     EntityAppeared,
     EntityGone,
     EntityId,
@@ -98,6 +100,7 @@ FULL: list[AnyEvent] = [
     CallBlocked(2_100_000_000, 1, 1, 1, "/motor_power"),
     ServiceReplied(2_200_000_000, 1, "/motor_power", "SetBool_Response(success=True, message='')"),
     CallUnblocked(2_200_000_000, 1, 1),
+    CallbackAt(2_250_000_000, 1, 1, Doing.SLEEPS, "time.sleep", (("node.py", "odom_callback", 60),)),
     SpinClashed(2_250_000_000, 1, 1, "spin_until_future_complete", "node.py", 60),
     CallbackFailed(2_250_000_000, 1, 1, "IndexError: no beam 720", "node.py", 60),
     CallbackEnded(2_250_000_000, 1, 1),

@@ -14,13 +14,15 @@ from sim.trace.events import (
     RobotMoved,
     RunStarted,
     ThreadAppeared,
+    VelocityCommanded,
     WaitEnded,
     WaitStarted,
 )
-from sim.trace.figures.comparison import compare
-from sim.trace.figures.comparison_rows import Assessment, ComparisonRow, extent, sections
-from sim.trace.figures.comparison_text import comparison_text
-from sim.trace.model import Window
+from sim.trace.figures.comparison import compare, first_difference
+from sim.trace.figures.comparison_rows import Assessment, ComparisonRow, extent, sections, verdict
+from sim.trace.figures.comparison_text import comparison_lines, comparison_text
+from sim.trace.incremental import run_to_end
+from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
 
@@ -140,7 +142,7 @@ def test_callbacks_match_by_their_node_as_long_as_that_tells_them_apart() -> Non
 
 def test_a_callback_that_never_ran_is_no_callback_that_is_missing() -> None:
     rows = rows_of(run([ODOM], called(1, 1.0, 1.1)), run([ODOM], []), ODOM)
-    assert rows["calls"] == ComparisonRow("calls", ("1", "0"), "-1 fewer")
+    assert rows["calls"] == ComparisonRow("calls", ("1", "0"), "1 fewer")
 
 
 def test_what_only_one_run_has_is_listed_as_such() -> None:
@@ -151,17 +153,17 @@ def test_what_only_one_run_has_is_listed_as_such() -> None:
     assert titles == [TIMER, f"{ODOM}: only in run B", "whole program"]
 
 
-def test_a_difference_has_a_sign_a_word_and_a_meaning() -> None:
+def test_a_difference_has_a_word_and_a_meaning() -> None:
     there, back = rows_of(starved(), healthy(), ODOM), rows_of(healthy(), starved(), ODOM)
     told = {label: (row.difference, row.assessment) for label, row in there.items()}
     assert told == {
-        "calls": ("+1 more", Assessment.OTHER),
-        "drops": ("-2 fewer", Assessment.BETTER),
-        "wait med/max": ("max -2.0 s shorter", Assessment.BETTER),
-        "age med/max": ("max -1.8 s fresher", Assessment.BETTER),
+        "calls": ("1 more", Assessment.OTHER),
+        "drops": ("2 fewer", Assessment.BETTER),
+        "wait med/max": ("max 2.0 s shorter", Assessment.BETTER),
+        "age med/max": ("max 1.8 s fresher", Assessment.BETTER),
     }
-    assert (back["drops"].difference, back["drops"].assessment) == ("+2 more", Assessment.WORSE)
-    assert back["age med/max"].difference == "max +1.8 s older"
+    assert (back["drops"].difference, back["drops"].assessment) == ("2 more", Assessment.WORSE)
+    assert back["age med/max"].difference == "max 1.8 s older"
 
 
 def test_the_usual_is_what_differs_where_the_longest_does_not() -> None:
@@ -171,7 +173,7 @@ def test_the_usual_is_what_differs_where_the_longest_does_not() -> None:
         for each in ages
     )
     row = rows_of(one, other, ODOM)["age med/max"]
-    assert (row.figures, row.difference) == (("200 ms / 500 ms", "100 ms / 500 ms"), "med -100 ms fresher")
+    assert (row.figures, row.difference) == (("200 ms / 500 ms", "100 ms / 500 ms"), "med 100 ms fresher")
 
 
 def test_what_the_robot_did_is_compared_in_words() -> None:
@@ -183,14 +185,15 @@ def test_what_the_robot_did_is_compared_in_words() -> None:
             moved(1.0, 0.5, touching=True),
             moved(1.5, 0.5, touching=True),
             moved(2.0, 0.5),
+            VelocityCommanded(ns(2.0), 0.0, -1.6),
             moved(2.5, 0.5, touching=True),
             moved(3.0, 0.5, yaw=-1.5707963),
         ],
     )
     rows = rows_of(straight, clumsy, "whole program")
-    assert rows["robot travelled"].difference == "-0.25 m less far"
-    assert rows["robot turned"].difference == "+1.6 rad more"
-    assert rows["collisions"] == ComparisonRow("collisions", ("0", "2"), "+2 more", Assessment.WORSE)
+    assert rows["robot travelled"].difference == "0.25 m less far"
+    assert rows["robot turned"].difference == "1.6 rad more"
+    assert rows["collisions"] == ComparisonRow("collisions", ("0", "2"), "2 more", Assessment.WORSE)
     assert rows["robot at x y"].difference == "0.25 m apart"
     assert rows["heading"].difference == "-90° right"
 
@@ -207,6 +210,16 @@ def test_a_run_that_goes_on_past_the_window_is_told_of() -> None:
     assert extent(compare(starved(), starved(), Window(ns(0.0005), ns(3.1)))) == "0.001 to 3.1 s"
 
 
+def test_two_runs_as_lines_name_the_run_of_each_figure() -> None:
+    lines = list(comparison_lines(compare(starved(), healthy(), Window(0, ns(4.0))), "starved", "healthy"))
+    assert lines[:3] == [
+        "run A: starved",
+        "run B: healthy",
+        "run B is better: losses of odom_callback 0 instead of 2 and 2 more.",
+    ]
+    assert "calls: run A 1, run B 2, 1 more" in lines
+
+
 def test_two_runs_as_text_side_by_side() -> None:
     text = comparison_text(compare(starved(), healthy(), Window(0, ns(4.0))), "starved", "healthy")
     assert (
@@ -215,14 +228,15 @@ def test_two_runs_as_text_side_by_side() -> None:
 run A  starved
 run B  healthy
 0 to 4 s
+run B is better: losses of odom_callback 0 instead of 2 and 2 more.
 
                 run A          run B            B against A
 
 odom_callback
-  calls         1              2                +1 more
-  drops         2              0                -2 fewer
-  wait med/max  2.0 s / 2.0 s  0 s / 0 s        max -2.0 s shorter
-  age med/max   2.0 s / 2.0 s  100 ms / 200 ms  max -1.8 s fresher
+  calls         1              2                1 more
+  drops         2              0                2 fewer
+  wait med/max  2.0 s / 2.0 s  0 s / 0 s        max 2.0 s shorter
+  age med/max   2.0 s / 2.0 s  100 ms / 200 ms  max 1.8 s fresher
   run A waits: group A held by timer_callback
 
 timer_callback
@@ -236,3 +250,25 @@ whole program
 """
     )
     assert max(map(len, text.splitlines())) <= 80
+
+
+def test_a_verdict_says_which_run_is_better_and_by_what() -> None:
+    window = Window(0, ns(4.0))
+    better, worse = (
+        verdict(compare(starved(), healthy(), window)),
+        verdict(compare(healthy(), starved(), window)),
+    )
+    assert better == f"run B is better: losses of {ODOM} 0 instead of 2 and 2 more"
+    assert worse == f"run B is worse: losses of {ODOM} 2 instead of 0 and 2 more"
+    assert verdict(compare(healthy(), healthy(), window)).startswith("Neither run is better")
+
+
+def test_runs_first_differ_where_a_call_does_otherwise() -> None:
+    def differ(first: list[AnyEvent], second: list[AnyEvent]) -> Nanoseconds | None:
+        return run_to_end(first_difference(run([ODOM], first), run([ODOM], second), Window(0, ns(4.0))))
+
+    same = called(1, 1.0, 1.1)
+    assert differ(same, same) is None
+    assert differ([*same, *called(1, 2.0, 2.1)], [*same, *called(1, 2.0, 2.5)]) == ns(2.1)
+    assert differ(same, [*same, *called(1, 3.0, 3.1)]) == ns(3.0)
+    assert differ(same, called(1, 1.0001, 1.1001)) is None

@@ -6,7 +6,7 @@ from itertools import chain
 import pytest
 
 from sim.trace.events import AnyEvent, MessageSent
-from sim.trace.storage import event_store
+from sim.trace.storage import event_store, spill_file
 from sim.trace.storage.event_store import EventStore
 from tests.support.runs import shared_group_run
 
@@ -70,7 +70,7 @@ def test_where_no_file_can_be_made_a_store_keeps_what_it_had_in_memory(
     def refuse(**_: object) -> object:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(event_store, "TemporaryFile", refuse)
+    monkeypatch.setattr(spill_file, "TemporaryFile", refuse)
     monkeypatch.setattr(event_store, "_BLOCK", 1000)
     kept = stored()
     left = events_in(kept)

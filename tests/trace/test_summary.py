@@ -3,8 +3,9 @@
 import pytest
 
 from sim.trace.events import Reason
-from sim.trace.figures.summary import Summary, summarise
+from sim.trace.figures.summary import Summary, robot_in, summarise
 from sim.trace.figures.summary_text import plain_text
+from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_one_thread_run, ns, shared_group_run, split_groups_run
 
@@ -156,24 +157,37 @@ def test_service_calls_tell_how_many_were_answered_and_how_soon() -> None:
 @pytest.mark.parametrize(
     ("rates", "turns", "turned"),
     [
-        ((0.2,) * 10, 1, 2.0),
+        ((0.0,) + (0.2,) * 10 + (0.0,), 1, 2.0),
         ((0.2,) * 5 + (0.0,) + (0.2,) * 5, 2, 2.0),
-        ((0.2,) * 5 + (-0.2,) * 5, 2, 2.0),
-        ((0.2,) * 2, 0, 0.0),
-        ((0.01,) * 100, 0, 0.0),
+        ((0.2,) * 5 + (-0.2,) * 5, 1, 0.0),
+        ((0.0,) * 10, 0, 0.0),
     ],
-    ids=["one", "two with a rest", "there and back", "too little", "drift"],
+    ids=["one", "two with a rest", "there and back", "none"],
 )
-def test_a_turn_is_a_stretch_of_turning_in_one_direction(
+def test_a_turn_goes_from_a_command_to_turn_to_the_first_one_not_to(
     rates: tuple[float, ...], turns: int, turned: float
 ) -> None:
     run, _, _, _ = small_run()
-    for second in range(len(rates) + 1):
+    for second, rate in enumerate(rates):
         run.robot(float(second), turned=sum(rates[:second]))
-        run.robot(float(second), turned=sum(rates[:second]))
+        run.velocity(float(second), 0.1, rate)
+    run.robot(float(len(rates)), turned=sum(rates))
     robot = summary_of(run).robot
     assert robot is not None
     assert (robot.turns, round(robot.turned, 9)) == (turns, turned)
+
+
+def test_two_turns_right_after_each_other_are_two_also_in_a_window_that_begins_in_the_first() -> None:
+    run, _, _, _ = small_run()
+    for at, rate in ((1.0, 0.2), (3.0, 0.0), (3.0, 0.2), (4.0, 0.0)):
+        run.velocity(at, 0.0, rate)
+    for second in range(1, 6):
+        run.robot(float(second), turned=0.2 * min(3, max(0, second - 1)))
+    timeline = Timeline()
+    timeline.extend(run.until(5.0))
+    robot = robot_in(timeline, Window(ns(2.0), ns(5.0)))
+    assert robot is not None
+    assert (robot.turns, round(robot.turned, 9)) == (2, 0.4)
 
 
 def test_a_pose_is_never_minus_zero() -> None:

@@ -164,6 +164,7 @@ def test_a_callback_that_ends_when_its_begin_is_spilled_has_its_end() -> None:
     assert (span.start, span.end) == (500, 10**6)
 
 
+@pytest.mark.slow
 def test_memory_does_not_grow_with_the_run() -> None:
     timeline = spilling(entries=64)
     tracemalloc.start()

@@ -14,6 +14,7 @@ async def until(page: Page, expression: str) -> None:
             await asyncio.sleep(0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(PROGRAM is None, reason="there is no Chromium here")
 async def test_a_lesson_is_run_paused_and_left_in_a_browser_that_asks_nobody_else() -> None:
     with serving() as server:
@@ -21,6 +22,7 @@ async def test_a_lesson_is_run_paused_and_left_in_a_browser_that_asks_nobody_els
             await page.until_drawn("Split groups")
             await until(page, "document.body.classList.contains('-first-byte')")
             await page.press("3")
+            await page.press("\r")
             await page.until_drawn("What do you expect?")
             await page.press_escape()
             await page.until_drawn("LIVE")

@@ -57,7 +57,7 @@ async def test_a_visitor_sees_the_menu_opens_a_lesson_and_leaves() -> None:
         async with server.visited() as session:
             async with session.ws_connect("/ws?width=140&height=40") as websocket:
                 await read_until(websocket, "Split groups")
-                await websocket.send_json(["stdin", "3"])
+                await websocket.send_json(["stdin", "3\r"])
                 await read_until(websocket, "What do you expect?")
                 await websocket.send_json(["stdin", "\x1b"])
                 await read_until(websocket, "3/8 Split groups")

@@ -77,6 +77,7 @@ async def test_the_token_is_left_out_of_the_address_and_kept_in_a_cookie(server:
     assert server.token not in cookie
 
 
+@pytest.mark.slow
 async def test_behind_https_the_cookie_is_for_https_alone() -> None:
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
@@ -95,6 +96,7 @@ async def test_who_follows_a_link_of_another_site_is_led_on_by_a_page_of_ours(se
                 assert (refused.status, refused.headers.get("Refresh")) == (403, led_on)
 
 
+@pytest.mark.slow
 async def test_a_token_of_ones_own_is_neither_in_the_list_of_processes_nor_handed_to_programs() -> None:
     with serving("--", "split-groups", "--threads", "4", CBTUI_TOKEN=TOKEN) as server:
         async with server.visited() as session, session.ws_connect("/ws") as websocket:
@@ -105,11 +107,13 @@ async def test_a_token_of_ones_own_is_neither_in_the_list_of_processes_nor_hande
                 assert "our class" not in str(psutil.Process(process).environ())
 
 
+@pytest.mark.slow
 def test_each_server_makes_a_token_of_its_own(server: Serving) -> None:
     with serving() as other:
         assert other.token != server.token
     assert len(server.token) >= 43
 
 
+@pytest.mark.slow
 def test_a_cookie_does_not_tell_the_token() -> None:
     assert TOKEN not in AccessToken(TOKEN)._cookie

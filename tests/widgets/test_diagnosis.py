@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import pytest
 
 from cbtui.runs.live.findings import ExplainedFinding, FindingsMonitor
@@ -99,6 +101,17 @@ def test_a_wait_for_several_workers_names_what_keeps_most_of_them() -> None:
     run.callback(service, threads[2], 1.2)
     run.wait(timer, 2.0, None, Reason.NO_FREE_WORKER, workers_busy=True)
     assert said(run, 5.0).text == "tick waits 3.0 s: all 3 threads are busy with serve and tick"
+
+
+def test_a_wait_in_the_event_queue_names_what_runs_before() -> None:
+    run = Run()
+    thread = run.thread("MainThread")
+    run.executor("EventsExecutor", 1)
+    group = run.exclusive(run.node("/n"))
+    scan, timer = run.subscription(group, "/scan", "scan"), run.timer(group, "tick", 1.0)
+    run.callback(scan, thread, 1.0)
+    run.wait(timer, 2.0, None, Reason.EVENT_QUEUE, scan, workers_busy=True)
+    assert said(run, 5.0).text == "tick waits 3.0 s: the only thread runs scan"
 
 
 def test_a_node_that_nobody_spins_is_told() -> None:
@@ -213,10 +226,23 @@ def line(diagnosis: Diagnosis, width: int, note: str = "", problems: str = "7 pr
 
 def test_a_moment_that_is_well_tells_of_the_runs_worst_problem() -> None:
     told = with_worst_problem(said(shared_group_run(), 3.0), told_of(shared_group_run(), 15.0))
-    what = "timer_callback slept or worked for 10.0 s in group A"
+    what = "odom_callback and scan_callback waited up to 11.0 s: group A was held by timer_callback"
     assert told.level is DiagnosisLevel.TROUBLE
     assert told.text.startswith(f"at 4.0 s: {what}")
-    assert told.at_length.startswith(f"long callback among sensors at 4.0 s: {what}")
+    assert told.at_length.startswith(f"group starvation at 4.0 s: {what}")
+
+
+def test_a_wait_that_never_ends_is_told_whatever_else_waits() -> None:
+    moment = said(shared_group_run(), 12.9)
+    (worst, *_) = told_of(shared_group_run(), 15.0)
+    explanation = replace(worst.explanation, what="deadlock: tick waits for ever", for_ever=True)
+    endless = replace(worst, explanation=explanation)
+    told = with_worst_problem(moment, [worst, endless], "R starts over")
+    assert told.text == "at 4.0 s: deadlock: tick waits for ever"
+    assert told.at_length.endswith("; R starts over")
+    stalled = replace(moment, text="tick has not come back for 1.5 s", stays=True, is_stall=True)
+    assert with_worst_problem(stalled, [worst, endless], "R starts over") == told
+    assert with_worst_problem(stalled, [worst]) is stalled
 
 
 def test_a_moment_that_is_not_well_is_told_of_itself() -> None:

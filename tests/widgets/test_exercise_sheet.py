@@ -1,5 +1,7 @@
 """The words of an exercise's checks, as text."""
 
+from pathlib import Path
+
 from cbtui.runs.judged.checking import CheckedFile, ObservedRun
 from cbtui.widgets.checks import CheckRow, ChecksSheet, CheckStatus
 from cbtui.widgets.checks.exercise_sheet import ExerciseKeys, ExerciseTexts
@@ -77,9 +79,17 @@ def test_while_it_runs_it_tells_how_far_it_is() -> None:
 
 def test_what_is_asked_can_be_read_below_the_checks() -> None:
     lines = shown(WORDS.running(0))
-    asks = " ".join(lines[lines.index("What is asked") + 1 :])
+    asks = " ".join(lines[lines.index("What the exercise asks") + 1 :])
     assert LESSON.exercise is not None
     assert asks == " ".join(LESSON.exercise.asks.split())
+
+
+def test_markdown_is_for_the_page_alone() -> None:
+    texts = ExerciseTexts(
+        find("await-keeps-its-group"), CHECKS, "mine.py", NEXT, ExerciseKeys("o", "w", "e", "n")
+    )
+    assert "watch_callback has to go on" in " ".join(shown(texts.running(0)))
+    assert "`watch_callback` has to go on" in texts.page(Path("mine.py"))
 
 
 def test_no_line_is_wider_than_there_is_room_and_no_text_obeys_the_terminal() -> None:

@@ -52,7 +52,7 @@ def test_a_status_line_is_as_wide_as_the_screen(
 @pytest.mark.parametrize(
     ("status", "words"),
     [
-        (replace(LIVE, state=RunState.STARTING), "○ STARTING"),
+        (replace(LIVE, state=RunState.STARTING), "◐ STARTING"),
         (replace(LIVE, state=RunState.PAUSED), "‖ PAUSED"),
         (replace(LIVE, state=RunState.ENDED), "■ ENDED"),
         (replace(LIVE, state=RunState.LOST, back=3_000_000_000), "✗ LOST"),

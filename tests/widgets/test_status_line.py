@@ -62,3 +62,9 @@ def test_the_line_is(status: RunStatus, width: int, golden: str) -> None:
 @pytest.mark.parametrize("width", range(40, 140, 7))
 def test_the_line_is_as_wide_as_it_is_asked_to_be(width: int) -> None:
     assert len(line(LIVE, width)) == width
+
+
+def test_a_program_in_which_nothing_moves_is_not_only_live() -> None:
+    still = replace(LIVE, still=ns(4.1))
+    assert "✗ STUCK 4.1 s, nothing moves" in line(still, 100)
+    assert "◂ BACK 2.0 s" in line(replace(still, back=ns(2.0)), 100)

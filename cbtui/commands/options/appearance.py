@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from cbtui.commands.options.targets import refuse
 
 if TYPE_CHECKING:
-    from cbtui.app import CbtuiApp
     from cbtui.keys.keymap import Keymap
 
 _CHARSETS = ("auto", "braille", "block", "ascii")
@@ -29,6 +28,8 @@ class Appearance(NamedTuple):
     theme: str
     keys: "Keymap"
     complaints: Sequence[str]
+    screen_reader: bool = False
+    """Whether to tell what happens in lines instead of drawing it."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -46,6 +47,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="colours: dark, light, high-contrast, high-contrast-light, or another that ctrl+p offers (dark)",
     )
     parser.add_argument(
+        "--screen-reader",
+        action="store_const",
+        const="on",
+        default=argparse.SUPPRESS,
+        help="tell runs, recordings, comparisons and puzzles in plain lines, for screen readers and braille",
+    )
+    parser.add_argument(
         "--config",
         metavar="FILE.toml",
         default=argparse.SUPPRESS,
@@ -55,7 +63,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def set_defaults(parser: argparse.ArgumentParser) -> None:
     """Set the defaults once on the main parser, so that an option may stand before or after the command."""
-    parser.set_defaults(**dict.fromkeys(_NAMES))
+    parser.set_defaults(**dict.fromkeys(_NAMES), screen_reader=None)
 
 
 def given(options: argparse.Namespace) -> list[str]:
@@ -88,7 +96,8 @@ def appearance(options: argparse.Namespace) -> Appearance:
     if configured == AUTO:
         charset = charset_of(os.environ, bool(sys.flags.utf8_mode), sys.stderr.encoding or "utf-8")
     theme = options.theme or config.theme or colour_themes.STANDARD
-    return Appearance(charset, configured, theme, config.keymap, reading.complaints)
+    in_lines = (options.screen_reader or config.screen_reader) == "on"
+    return Appearance(charset, configured, theme, config.keymap, reading.complaints, in_lines)
 
 
 def _may_be_there(path: Path) -> bool:
@@ -98,10 +107,19 @@ def _may_be_there(path: Path) -> bool:
         return True
 
 
-def console_of(look: Appearance, **begins_with: Any) -> "CbtuiApp":
-    """Return the console with those looks; the other arguments are ``CbtuiApp``'s own."""
+def run_console(look: Appearance, **begins_with: Any) -> int:
+    """Run the console with those looks, or tell it in lines; returns the exit code.
+
+    The other arguments are ``CbtuiApp``'s own.
+    """
+    if look.screen_reader:
+        from cbtui.commands.in_lines import open_in_lines
+
+        return open_in_lines(look, **begins_with)
     from cbtui.app import CbtuiApp
 
-    return CbtuiApp(
+    app = CbtuiApp(
         charset=look.charset, theme=look.theme, keys=look.keys, complaints=look.complaints, **begins_with
     )
+    app.run()
+    return app.return_code or 0

@@ -1,10 +1,7 @@
 """The options that change a program's set-up without touching its file."""
 
 import argparse
-import shutil
-import subprocess
 import sys
-from dataclasses import replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,7 +12,7 @@ from cbtui.text.installing import install_command
 
 if TYPE_CHECKING:
     from cbtui.runs.setup.changes import CallbackPlace, Changes
-    from sim.engine.setup import RealRos
+    from sim.engine.setup import PhysicsChoice, RealRos
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -51,6 +48,36 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=values.sensor_rate,
         help="how often a second the robot's sensors measure (20)",
     )
+    add_physics(parser)
+    add_distro(parser)
+
+
+def add_distro(parser: argparse.ArgumentParser) -> None:
+    """Add ``--distro``."""
+    parser.add_argument(
+        "--distro",
+        metavar="NAME[@PATCH]",
+        type=values.distro,
+        help="the release whose rclpy the model is like: humble, jazzy, kilted, lyrical, also with a patch, "
+        "as in jazzy@7.1.6; jazzy and kilted were run, humble and lyrical follow documentation and source, "
+        "not runs (what the lesson or the file says, else jazzy@7.1.9)",
+    )
+
+
+def add_physics(parser: argparse.ArgumentParser) -> None:
+    """Add ``--physics``."""
+    parser.add_argument(
+        "--physics",
+        choices=("pybullet", "numpy"),
+        help="what moves the robot (pybullet if it is installed, else numpy)",
+    )
+
+
+def physics_of(options: argparse.Namespace) -> "PhysicsChoice | None":
+    """The physics that ``--physics`` asks for, None for the usual one."""
+    from sim.engine.setup import PhysicsChoice
+
+    return None if options.physics is None else PhysicsChoice(options.physics)
 
 
 def add_on(parser: argparse.ArgumentParser, side: str = "") -> None:
@@ -92,7 +119,12 @@ def changes_of(options: argparse.Namespace) -> "Changes":
     from cbtui.runs.setup.changes import Changes
 
     return Changes(
-        options.threads, dict(options.groups), dict(options.periods), sensor_rate=options.sensor_rate
+        options.threads,
+        dict(options.groups),
+        dict(options.periods),
+        sensor_rate=options.sensor_rate,
+        physics=physics_of(options),
+        distro=options.distro,
     )
 
 
@@ -105,11 +137,15 @@ def real_ros_of(options: argparse.Namespace, side: str = "") -> "RealRos | None"
         return None
     if getattr(options, "clock", None) == "virtual" or getattr(options, "seed", None) is not None:
         refuse("real ROS 2 runs on the real clock and in its own order: leave out --clock virtual and --seed")
+    if getattr(options, "distro", None) is not None:
+        refuse("a real ROS 2 is the release it is: leave out --distro; --python names a Python with another")
     return real_ros(chosen, side)
 
 
 def real_ros(chosen: str | None, side: str = "") -> "RealRos":
     """The ROS 2 of a Python, None for cbtui's own; ends the program with one line and 2 if it has none."""
+    import shutil
+
     from sim.engine.setup import RealRos
 
     python = chosen or sys.executable
@@ -124,20 +160,46 @@ def real_ros(chosen: str | None, side: str = "") -> "RealRos":
     return RealRos(chosen or "")
 
 
+def release_of(python: str) -> str | None:
+    """The release of the rclpy that a Python has, as ``--distro`` takes it; None if that is not known."""
+    import subprocess
+
+    from sim.profiles import Profile, UnknownProfileError
+    from sim.real.programs import unbootstrapped
+
+    asked = [python or sys.executable, "-c", _RELEASE]
+    environment = unbootstrapped(asked[0])
+    said = subprocess.run(asked, check=False, capture_output=True, text=True, env=environment).stdout
+    try:
+        return str(Profile.named(said.strip()))
+    except UnknownProfileError:
+        return None
+
+
+_RELEASE = """
+import os
+from importlib.metadata import distributions
+names = {each.name.replace("_", "-"): each.version for each in distributions()}
+wheels = [f"{name.split('-')[1]}@{names[name]}" for name in names if name.split("-")[::2] == ["ros", "rclpy"]]
+print(*wheels[:1] or [f"{os.environ.get('ROS_DISTRO')}@{names.get('rclpy')}"])
+"""
+
+
 def _has_rclpy(python: str) -> bool:
     if Path(python) == Path(sys.executable):
         return find_spec("rclpy") is not None
+    import subprocess
+
     code = "import importlib.util, sys; sys.exit(importlib.util.find_spec('rclpy') is None)"
     return subprocess.run([python, "-c", code], check=False, capture_output=True).returncode == 0
 
 
 def seeded_changes_of(options: argparse.Namespace) -> "Changes":
     """The changes that the options make, with what ``--seed``, ``--on`` and ``--traceback`` say."""
+    from dataclasses import replace
+
     return replace(
-        changes_of(options),
-        seed=options.seed,
-        real=real_ros_of(options),
-        whole_tracebacks=options.traceback,
+        changes_of(options), seed=options.seed, real=real_ros_of(options), whole_tracebacks=options.traceback
     )
 
 
@@ -148,7 +210,11 @@ def words(changes: "Changes") -> list[str]:
         said += ["--group", f"{_spelt(place)}={wish}"]
     for place, period in changes.periods.items():
         said += ["--period", f"{_spelt(place)}={period / 1e9:.9g}"]
-    return said if changes.sensor_rate is None else [*said, "--sensor-rate", f"{changes.sensor_rate:g}"]
+    if changes.sensor_rate is not None:
+        said += ["--sensor-rate", f"{changes.sensor_rate:g}"]
+    if changes.physics is not None:
+        said += ["--physics", changes.physics]
+    return said if changes.distro is None else [*said, "--distro", changes.distro]
 
 
 def _spelt(place: "CallbackPlace") -> str:

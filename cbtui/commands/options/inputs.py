@@ -8,6 +8,11 @@ from cbtui.commands.options import values
 from cbtui.commands.options.targets import refuse
 
 
+def add_length(parser: argparse.ArgumentParser, shown: str) -> None:
+    """Add ``--for`` to a command; ``shown`` is its help."""
+    parser.add_argument("--for", dest="seconds", metavar="SECONDS", type=values.duration, help=shown)
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add ``--call`` and ``--at`` to a command."""
     parser.add_argument(

@@ -1,9 +1,13 @@
 """The option that chooses a thread schedule by its seed."""
 
 import argparse
+from typing import TYPE_CHECKING
 
 from cbtui.commands.options import values
 from cbtui.commands.options.targets import refuse
+
+if TYPE_CHECKING:
+    from sim.clock.schedule import Seed
 
 
 def add_seed(parser: argparse.ArgumentParser) -> None:
@@ -11,12 +15,12 @@ def add_seed(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--seed",
         metavar="S",
-        type=values.seed,
+        type=values.schedule,
         help="run in the order of threads that cbtui explore calls S; on the virtual clock",
     )
 
 
-def check_seed(seed: int | None, clock: str | None) -> None:
+def check_seed(seed: "Seed | None", clock: str | None) -> None:
     """Refuse a seed on the real clock, where the machine chooses the order; ``clock`` is the chosen one."""
     if seed is not None and clock == "real":
         refuse(f"on the real clock the machine chooses the order of threads; leave out --seed {seed}")

@@ -11,6 +11,7 @@ from cbtui.text.output import complain, is_text
 
 if TYPE_CHECKING:
     from lessons.lesson import Lesson
+    from lessons.puzzles import Puzzle
 
 
 def lesson_of(name: str) -> "Lesson":
@@ -21,6 +22,13 @@ def lesson_of(name: str) -> "Lesson":
         return find(name)
     except UnknownLesson as error:
         refuse(str(error))
+
+
+def puzzle_of(name: str) -> "Puzzle | None":
+    """The puzzle of that id, if there is one."""
+    from lessons.puzzles import puzzles
+
+    return next((puzzle for puzzle in puzzles() if puzzle.id == name), None)
 
 
 def refuse(sentence: str) -> NoReturn:

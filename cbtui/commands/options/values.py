@@ -10,6 +10,7 @@ from sim.units import nearest_ns
 
 if TYPE_CHECKING:
     from cbtui.runs.setup.changes import CallbackPlace
+    from sim.clock.schedule import Seed
 
 _MAX_THREADS = 64
 _LONGEST = 1e9
@@ -53,13 +54,19 @@ def _bounded(seconds: float, text: str) -> float:
     return seconds
 
 
+def distro(text: str) -> str:
+    """Read a release of rclpy; returns its name with the patch."""
+    from sim.profiles import Profile, UnknownProfileError
+
+    try:
+        return str(Profile.named(text))
+    except UnknownProfileError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
 def threads(text: str) -> int:
     """Read a number of threads of an executor."""
-    try:
-        number = int(text)
-    except ValueError:
-        sentence = f"{text!r} is not a whole number; give 1 to {_MAX_THREADS}"
-        raise argparse.ArgumentTypeError(sentence) from None
+    number = whole_number(text, f"1 to {_MAX_THREADS}")
     if not 1 <= number <= _MAX_THREADS:
         raise argparse.ArgumentTypeError(
             f"an executor cannot have {number} threads here; give 1 to {_MAX_THREADS}"
@@ -77,6 +84,38 @@ def count(text: str) -> int:
     return number
 
 
+def shard(text: str) -> tuple[int, int]:
+    """Read a part of a whole: ``2/4``."""
+    part, _, parts = text.partition("/")
+    try:
+        number, whole = int(part), int(parts)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is no part; give one such as 2/4") from None
+    if not 1 <= number <= whole:
+        raise argparse.ArgumentTypeError(f"there is no part {number} of {whole}; they are counted from 1")
+    return number, whole
+
+
+def schedule(text: str) -> "Seed":
+    """Read what names a schedule: a seed, one behind a strategy's name (``pct:5``), or moves."""
+    from sim.clock.played import moves_of
+    from sim.clock.schedule import STRATEGIES
+
+    strategy, colon, choices = text.partition(":")
+    if not colon:
+        return seed(text)
+    if strategy in STRATEGIES:
+        seed(choices)
+        return text
+    try:
+        if strategy == "moves" and all(min(move) >= 0 for move in moves_of(choices).items()):
+            return text
+    except ValueError:
+        pass
+    known = ", ".join(f"{each}:5" for each in STRATEGIES)
+    raise argparse.ArgumentTypeError(f"no schedule is called {text}; give a seed, {known}, or moves:3=1,9=2")
+
+
 def seed(text: str) -> int:
     """Read the seed of a schedule."""
     number = whole_number(text)
@@ -87,12 +126,12 @@ def seed(text: str) -> int:
     return number
 
 
-def whole_number(text: str) -> int:
+def whole_number(text: str, give: str = "one such as 17") -> int:
     """Read a whole number."""
     try:
         return int(text)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number; give one such as 17") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number; give {give}") from None
 
 
 def port(text: str) -> int:
@@ -107,6 +146,16 @@ def process_or_address(text: str) -> int | tuple[str, int]:
     """A process's number, or host and port."""
     host, colon, number = text.rpartition(":")
     return (host, port(number)) if colon else whole_number(text)
+
+
+def chain(text: str) -> tuple[str, ...]:
+    """Read the topics and services of a chain: ``/scan:/cmd_vel``."""
+    names = tuple(name if name.startswith("/") else f"/{name}" for name in text.split(":"))
+    if len(names) < 2 or "/" in names:
+        raise argparse.ArgumentTypeError(
+            f"{text!r} is no chain; give a first and a last topic: /scan:/cmd_vel"
+        )
+    return names
 
 
 def speed(text: str) -> float:

@@ -1,8 +1,10 @@
 """Runs a program without the console: log to stderr, summary and diagnosis to stdout, events to files."""
 
+from collections.abc import Sequence
 from contextlib import ExitStack, closing, nullcontext
 from pathlib import Path
 from signal import Signals
+from typing import TYPE_CHECKING
 
 from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from cbtui.engines.listening import ListeningSession
@@ -10,28 +12,30 @@ from cbtui.engines.session import PROGRAM_EXIT_TIMEOUT
 from cbtui.runs.headless.program_log import ProgramLog
 from cbtui.runs.headless.standard_input import StandardInput
 from cbtui.runs.live.disk_space import DiskSpaceWatch
-from cbtui.runs.recorded.events_file import EventsFile
-from cbtui.runs.recorded.recording_file import CannotRecordError, start_recording
-from cbtui.runs.recorded.repeat import why_unrepeatable
 from cbtui.terminal.interrupts import deferred_interrupt, ending_signals
 from cbtui.text.output import CannotSayError, complain, say
 from sim.diagnosis import diagnose, findings_text
 from sim.durations import timestamp
 from sim.engine.commands import Stop
 from sim.engine.setup import Keyboard, RunSetup
-from sim.recording import RecordingWriter
 from sim.trace.events import AnyEvent
 from sim.trace.figures.summary import summarise
 from sim.trace.figures.summary_text import plain_text
 from sim.trace.timeline import Timeline
+
+if TYPE_CHECKING:
+    from cbtui.runs.recorded.events_file import EventsFile
+    from sim.recording import RecordingWriter
 
 
 def run_headless(
     setup: RunSetup,
     *,
     events_path: str | None = None,
+    summary_path: str | None = None,
     recording_path: str | None = None,
     replace_recording: bool = False,
+    chains: Sequence[Sequence[str]] = (),
 ) -> int:
     """Run a set-up to its end; returns the exit code: 0 well, 1 failed, 2 a file cannot be written.
 
@@ -41,7 +45,7 @@ def run_headless(
     """
     with ExitStack() as files:
         try:
-            file = None if events_path is None else EventsFile(Path(events_path))
+            file = None if events_path is None else _events_file(Path(events_path))
         except OSError as error:
             complain(f"cannot write events to {events_path}: {error.strerror}")
             return 2
@@ -49,6 +53,8 @@ def run_headless(
             files.callback(file.close)
         recorder: RecordingWriter | None = None
         if recording_path is not None:
+            from cbtui.runs.recorded.recording_file import CannotRecordError, start_recording
+
             try:
                 with deferred_interrupt():
                     recorder = start_recording(Path(recording_path), setup, replace=replace_recording)
@@ -59,7 +65,9 @@ def run_headless(
         if file is not None:
             file.begin()
         try:
-            return _Headless(setup, file, recorder).run()
+            run = _Headless(setup, file, recorder, chains)
+            code = run.run()
+            return code if summary_path is None else max(code, run.save_summary(Path(summary_path)))
         except (BrokenPipeError, CannotSayError):
             raise  # about standard output, not about the run
         except OSError as error:
@@ -70,8 +78,15 @@ def run_headless(
 class _Headless:
     """One run, followed on this thread."""
 
-    def __init__(self, setup: RunSetup, file: EventsFile | None, recorder: RecordingWriter | None) -> None:
+    def __init__(
+        self,
+        setup: RunSetup,
+        file: "EventsFile | None",
+        recorder: "RecordingWriter | None",
+        chains: Sequence[Sequence[str]],
+    ) -> None:
         self._setup = setup
+        self._chains = chains
         self._run = FollowedRun(setup, ListeningSession)
         self._timeline = Timeline(until_ending=True)
         self._file = file
@@ -93,9 +108,28 @@ class _Headless:
         say(plain_text(summarise(self._timeline)))
         found = findings_text(diagnose(self._timeline), self._timeline)
         say(f"\n{found}" if found else "")
-        if self._setup.seed and why_unrepeatable(self._timeline.notices):
+        self._tell_chains()
+        if self._setup.seed and any(notice.unrepeatable for notice in self._timeline.notices):
             complain(f"this program is not repeatable: seed {self._setup.seed} orders its threads, no more")
         return self._verdict(loss) if self._signal is None else 128 + self._signal
+
+    def save_summary(self, path: Path) -> int:
+        """Write the summary of the ended run as JSON; returns 1 if that cannot be done, else 0."""
+        from sim.export.summary_json import summary_json
+
+        try:
+            path.write_bytes(summary_json(self._timeline))
+        except OSError as error:
+            complain(f"cannot write the summary to {path}: {error.strerror}")
+            return 1
+        return 0
+
+    def _tell_chains(self) -> None:
+        if self._chains:
+            from sim.trace.figures.chains_text import told_chain
+
+            for names in self._chains:
+                say(f"\n{told_chain(self._timeline, names)}")
 
     def _end_early(self, signal: Signals) -> None:
         """Stop the engine; its last events are still received."""
@@ -169,7 +203,13 @@ class _Headless:
         return 0
 
 
-def _close(recorder: RecordingWriter) -> None:
+def _events_file(path: Path) -> "EventsFile":
+    from cbtui.runs.recorded.events_file import EventsFile
+
+    return EventsFile(path)
+
+
+def _close(recorder: "RecordingWriter") -> None:
     """Finish a recording even if Ctrl-C is pressed meanwhile."""
     with deferred_interrupt():
         recorder.close()

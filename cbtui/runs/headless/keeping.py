@@ -25,9 +25,12 @@ from sim.units import SECOND
 _TROUBLE = (
     "group-starvation",
     "no-free-worker",
+    "behind-others",
     "self-made-deadlock",
     "needs-one-more-worker",
     "endless-wait",
+    "endless-loop",
+    "service-never-comes",
 )
 """The rules whose problems are worth a recording: a callback starves, or waits for ever."""
 _RENEWED: Nanoseconds = 600 * SECOND

@@ -4,6 +4,7 @@ import sys
 
 from cbtui.looks.theme import Charset
 from cbtui.text.cells import visible, without_tabs
+from cbtui.text.colours import Colour, coloured
 from cbtui.text.output import writing_to_stream
 from sim.trace.events import (
     AnyEvent,
@@ -20,6 +21,9 @@ from sim.trace.events import (
     Typed,
 )
 from sim.units import SECOND
+
+_COLOURS = {"WARN": Colour.WARNING, "ERROR": Colour.BAD, "FATAL": Colour.BAD}
+"""As ROS colours its log."""
 
 
 class ProgramLog:
@@ -42,9 +46,8 @@ class ProgramLog:
                 case Logged(t=t, severity=severity, logger=logger, text=text, thread=thread):
                     seconds, nanoseconds = divmod(self._epoch + t, SECOND)
                     prefix = self._prefix(self._processes.get(thread, 0))
-                    write_line(
-                        f"{prefix}[{severity}] [{seconds}.{nanoseconds:09d}] [{logger}]: {text}", error=True
-                    )
+                    line = f"{prefix}[{severity}] [{seconds}.{nanoseconds:09d}] [{logger}]: {text}"
+                    write_line(line, error=True, colour=_COLOURS.get(severity))
                 case Printed(text=text, error=error, process=process, ends=ends):
                     write_line(f"{self._prefix(process)}{text}", error=error, ends=ends)
                     self._line_begun = not ends or (error and self._line_begun)
@@ -57,7 +60,7 @@ class ProgramLog:
                 case LineSaid(text=text, error=error):
                     write_line(without_tabs(text), error=error)
                 case Notice(severity=severity, text=text):
-                    write_line(f"cbtui: {text}", error=True)
+                    write_line(f"cbtui: {text}", error=True, colour=_COLOURS.get(severity))
                 case ThreadAppeared(thread=thread, process=process):
                     self._processes[thread] = process
                 case ProcessAppeared(process=process, label=label):
@@ -75,7 +78,7 @@ class ProgramLog:
         return self._prefixes.get(process, "")
 
 
-def write_line(line: str, *, error: bool, ends: bool = True) -> None:
+def write_line(line: str, *, error: bool, ends: bool = True, colour: Colour | None = None) -> None:
     """Write a line, or without ``ends`` the beginning of one, to standard output or error.
 
     Control characters are made visible.
@@ -84,6 +87,7 @@ def write_line(line: str, *, error: bool, ends: bool = True) -> None:
     """
     stream = sys.stderr if error else sys.stdout
     text = "\n".join(visible(part, Charset.BRAILLE) for part in line.split("\n"))
+    text = coloured(text, colour, stream)
     with writing_to_stream():
         stream.write(f"{text}\n" if ends else text)
         if not ends:

@@ -3,7 +3,7 @@
 A run is limited in real time and in the amount of text that it writes.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Event
@@ -13,6 +13,7 @@ from cbtui.engines.session import OpenSession, ProcessSession
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.judge import Judge, JudgedCheck
 from lessons.lesson import Lesson
+from sim.clock.schedule import Seed
 from sim.durations import timestamp
 from sim.engine.setup import RealRos, RunSetup
 from sim.trace.events import AnyEvent, Logged, Printed
@@ -67,14 +68,16 @@ def check(
     file: Path,
     limit: float = LIMIT,
     *,
-    seed: int | None = None,
+    seed: Seed | None = None,
     real: RealRos | None = None,
+    take: Callable[[list[AnyEvent]], object] = len,
 ) -> CheckedFile:
     """Run a learner's file and judge it by a lesson's checks; takes about a second on virtual time.
 
-    ``limit`` is that of ``real_limit``; ``seed`` and ``real`` are those of ``request_to_judge``.
+    ``limit`` is that of ``real_limit``; ``seed`` and ``real`` are those of ``request_to_judge``; ``take``
+    gets every batch of events.
     """
-    run = observe(setup_to_judge(lesson, file, seed=seed, real=real), file.name, limit)
+    run = observe(setup_to_judge(lesson, file, seed=seed, real=real), file.name, limit, take=take)
     judged = () if run.trouble is not None else tuple(judge.verdicts(run.timeline))
     return CheckedFile(judged, len(judge.checks), run)
 
@@ -85,11 +88,12 @@ def observe(
     limit: float = LIMIT,
     given_up: Event | None = None,
     open_session: OpenSession = ProcessSession,
+    take: Callable[[list[AnyEvent]], object] = len,
 ) -> ObservedRun:
     """Run a set-up to its end on the caller's thread; ``name`` stands for the program in sentences.
 
     ``limit`` is that of ``real_limit``. Setting ``given_up``, from any thread, aborts the run.
-    ``open_session`` creates the session.
+    ``open_session`` creates the session. ``take`` gets every batch of events.
     """
     timeline = Timeline(until_ending=True)
     text, limit = 0, real_limit(setup, limit)
@@ -98,6 +102,7 @@ def observe(
             run.start()
             run.limit(limit)
             for batch in run:
+                take(batch)
                 timeline.extend(batch)
                 text += text_in(batch)
                 if text > MOST_TEXT:

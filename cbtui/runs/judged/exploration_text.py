@@ -3,27 +3,68 @@
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import fill
+from typing import NamedTuple
 
 from cbtui.runs.judged.check_text import FAILED, PASSED
-from cbtui.runs.judged.exploring import ScheduleResult
+from cbtui.runs.judged.exploring import ScheduleResult, SeedT
+from sim.clock.schedule import Seed
 from sim.diagnosis.text import WIDTH
 from sim.plural import counted
 
 
-def exploration_text(name: str, found: Mapping[int, ScheduleResult], replays: Sequence[str]) -> str:
+class Shrunk(NamedTuple):
+    """What a search for a simple schedule that fails came to: ``result`` None if it found none."""
+
+    tried: int
+    seed: str
+    result: ScheduleResult | None
+
+
+def exploration_text(
+    name: str,
+    found: Mapping[SeedT, ScheduleResult],
+    replays: Sequence[str],
+    proof: str = "",
+    shrunk: Shrunk | None = None,
+) -> str:
     """Summarise the different outcomes of a program's schedules, each with an example seed.
 
-    ``found`` has the result of each seed, ``replays`` the commands that repeat a schedule, without its seed.
+    ``found`` has the result of each seed, the simplest first, ``replays`` the commands that repeat a
+    schedule, without its seed. ``proof`` says what was searched, "" for nothing in particular. ``shrunk`` is
+    what the search for a simpler schedule came to, if there was one.
     """
-    return "\n".join([*_lines(name, found, replays), ""])
+    return "\n".join([*_lines(name, found, replays, proof, shrunk), ""])
 
 
-def _lines(name: str, found: Mapping[int, ScheduleResult], replays: Sequence[str]) -> Iterator[str]:
-    outcomes: defaultdict[ScheduleResult, list[int]] = defaultdict(list)
+def proof_text(found: Mapping[str, ScheduleResult], preemptions: int, *, is_complete: bool) -> str:
+    """Say what a search within a bound has shown, and whether it came to its end."""
+    at_most = f"with at most {counted(preemptions, 'preemption')}"
+    bound = at_most if preemptions else "without preemptions"
+    said = (
+        bound if any(not each.well for each in found.values()) else f"no deadlock and no failed check {bound}"
+    )
+    ran = (
+        f"{counted(len(found), 'schedule')}, all run"
+        if is_complete
+        else f"stopped after {len(found)} schedules"
+    )
+    return f"{said}: {ran}"
+
+
+def _lines(
+    name: str,
+    found: Mapping[SeedT, ScheduleResult],
+    replays: Sequence[str],
+    proof: str,
+    shrunk: Shrunk | None,
+) -> Iterator[str]:
+    outcomes: defaultdict[ScheduleResult, list[SeedT]] = defaultdict(list)
     for seed, result in found.items():
         outcomes[result].append(seed)
     failed = sum(len(seeds) for result, seeds in outcomes.items() if not result.well)
     said = f"{counted(failed, 'schedule')} failed" if failed else "all went well"
+    if proof:
+        yield f"{name}: {proof}"
     yield f"{name}: {counted(len(found), 'schedule')}, {counted(len(outcomes), 'outcome')}, {said}"
     # Failures first, and the more frequent first.
     for result, seeds in sorted(outcomes.items(), key=lambda pair: (pair[0].well, -len(pair[1]))):
@@ -35,10 +76,23 @@ def _lines(name: str, found: Mapping[int, ScheduleResult], replays: Sequence[str
     yield ""
     if not all(result.repeatable for result in found.values()):
         yield "This program is not repeatable: a seed orders its threads, and another run of it may differ."
-    shown = next((seed for seed, result in found.items() if not result.well), min(found))
+    shown: Seed = next((seed for seed, result in found.items() if not result.well), next(iter(found)))
+    if shrunk is not None:
+        yield from _simplest(shrunk)
+        shown = shrunk.seed or shown
     yield "To see one again:"
     for command in replays:
         yield f"  {_with_seed(command, shown)}"
+
+
+def _simplest(shrunk: Shrunk) -> Iterator[str]:
+    if shrunk.result is None:
+        yield f"No simpler order that fails was found in {counted(shrunk.tried, 'further schedule')}."
+    else:
+        yield _wrapped(f"The simplest order found, run to prove it: seed {shrunk.seed}", 0)
+        yield from (_wrapped(failure.what, 4) for failure in shrunk.result.failures)
+        yield from _steps(shrunk.result)
+    yield ""
 
 
 def _result(result: ScheduleResult, shown: ScheduleResult) -> Iterator[str]:
@@ -46,12 +100,22 @@ def _result(result: ScheduleResult, shown: ScheduleResult) -> Iterator[str]:
         yield _wrapped(failure.what, 4)
         if failure.detail:
             yield _wrapped(failure.detail, 6)
+    if shown.failures:
+        yield from _steps(shown)
     for note in shown.notes:
         yield _wrapped(f"note: {note}", 4)
     if result.problems:
         yield _wrapped(f"diagnosis: {', '.join(result.problems)}", 4)
     elif result.well:
         yield "    no problem"
+
+
+def _steps(shown: ScheduleResult) -> Iterator[str]:
+    """Where a schedule leaves the usual order, and the accesses that conflict in it."""
+    for number, step in enumerate(shown.steps, start=1):
+        yield _wrapped(f"{number}. {step}", 6)
+    for conflict in shown.conflicts:
+        yield _wrapped(f"conflict: {conflict}", 4)
 
 
 def _wrapped(text: str, indent: int) -> str:
@@ -65,7 +129,7 @@ def _wrapped(text: str, indent: int) -> str:
     )
 
 
-def _with_seed(command: str, seed: int) -> str:
+def _with_seed(command: str, seed: Seed) -> str:
     """The command with the seed inserted before the program's own arguments."""
     own, dashes, behind = command.partition(" -- ")
     return f"{own} --seed {seed}{dashes}{behind}"

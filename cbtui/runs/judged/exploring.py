@@ -1,12 +1,15 @@
 """Runs a program under many thread schedules, several at once, and returns the result of each."""
 
 import os
-from collections.abc import Generator, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
+from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
-from multiprocessing.context import BaseContext
+from itertools import islice
+from operator import attrgetter
 from threading import Event
+from typing import Protocol, TypeVar
 
 import msgspec
 
@@ -14,17 +17,60 @@ from cbtui.engines.forking import forking_context
 from cbtui.engines.session import ProcessSession
 from cbtui.runs.judged.check_text import verdict_line
 from cbtui.runs.judged.checking import ObservedRun, observe
+from cbtui.runs.judged.schedule_text import conflict_text, step_text
 from cbtui.runs.recorded.repeat import why_unrepeatable
 from lessons.checks import problems
 from lessons.judge import Judge
+from sim.clock.schedule import Seed
 from sim.engine.setup import RunSetup
-from sim.trace.events import NoticeKind, Severity
+from sim.trace.events import NoticeKind, Severity, ThreadChosen
 from sim.trace.model import Window
 
-_PRELOADED = ["cbtui.cli", "sim.engine.process", "sim.robot.driver", "sim.robot.world"]
+PRELOADED = ["cbtui.cli", "sim.engine.preloaded"]
 """Modules of an engine, imported once in the server that every run is forked from."""
-_STUCK = ("self-made-deadlock", "needs-one-more-worker")
+_STUCK = ("self-made-deadlock", "needs-one-more-worker", "endless-loop", "service-never-comes")
 """Ids of the diagnosis rules on callbacks that wait for ever."""
+
+
+Looked = TypeVar("Looked")
+SeedT = TypeVar("SeedT", bound=Seed)
+
+
+def each_schedule(
+    setup: RunSetup,
+    name: str,
+    limit: float,
+    seeds: Iterable[SeedT],
+    look: Callable[[ObservedRun], Looked],
+    processes: int | None = None,
+) -> Generator[tuple[SeedT, Looked], None, None]:
+    """Run the schedules of some seeds and yield what ``look`` makes of them, in order of completion.
+
+    ``seeds`` is asked for more whenever a run is over, even where there was none left before. ``processes``
+    run at once, by default one per core; ``look`` is called on their threads. ``limit`` is in real seconds
+    for each run. Closing the iterator ends all of them.
+    """
+    given_up = Event()
+    session = partial(ProcessSession, context=forking_context(PRELOADED))
+    coming, at_once = iter(seeds), processes or _cores()
+
+    def result(seed: SeedT) -> Looked:
+        return look(observe(msgspec.structs.replace(setup, seed=seed), name, limit, given_up, session))
+
+    with ThreadPoolExecutor(at_once) as pool:
+        running: dict[Future[Looked], SeedT] = {}
+        try:
+            while True:
+                running |= {
+                    pool.submit(result, seed): seed for seed in islice(coming, at_once - len(running))
+                }
+                if not running:
+                    return
+                for done in wait(running, return_when=FIRST_COMPLETED).done:
+                    yield running.pop(done), done.result()
+        finally:
+            given_up.set()
+            pool.shutdown(cancel_futures=True)
 
 
 @dataclass(frozen=True)
@@ -48,11 +94,27 @@ class ScheduleResult:
     """Warnings of the engine."""
     repeatable: bool = field(default=True, compare=False)
     """Whether a run with the same seed is expected to be the same."""
+    steps: tuple[str, ...] = field(default=(), compare=False)
+    """Where a schedule of moves leaves the usual order, in order."""
+    conflicts: tuple[str, ...] = field(default=(), compare=False)
+    """Where data was used twice, and changed or read by another thread in between."""
 
     @property
     def well(self) -> bool:
         """Whether nothing failed; problems of the diagnosis alone are no failures."""
         return not self.failures
+
+
+class Search(Protocol):
+    """Gives out seeds, depending on the runs of those before."""
+
+    def __iter__(self) -> Iterator[str]:
+        """The next seeds; there may be some again where there were none left."""
+
+    def take(
+        self, seed: str, failures: Sequence[ScheduleFailure], choices: Sequence[ThreadChosen], /
+    ) -> None:
+        """Take what came of a run."""
 
 
 @dataclass(frozen=True)
@@ -64,31 +126,37 @@ class Exploration:
     judge: Judge | None
     limit: float
 
+    def search(
+        self, search: Search, processes: int | None = None
+    ) -> Generator[tuple[str, ScheduleResult], None, None]:
+        """Run the schedules of a search and yield their results as ``each_schedule`` does."""
+        found = each_schedule(self.setup, self.name, self.limit, search, self._with_choices, processes)
+        with closing(found):
+            for seed, (result, choices) in found:
+                search.take(seed, result.failures, choices)
+                yield seed, result
+
+    def _with_choices(self, observed: ObservedRun) -> tuple[ScheduleResult, Sequence[ThreadChosen]]:
+        return self._result(observed), observed.timeline.choices
+
     def results(
-        self, seeds: Iterable[int], processes: int | None = None
-    ) -> Generator[tuple[int, ScheduleResult], None, None]:
-        """Run the schedules of some seeds and yield their results in order of completion.
+        self, seeds: Iterable[SeedT], processes: int | None = None
+    ) -> Generator[tuple[SeedT, ScheduleResult], None, None]:
+        """Run the schedules of some seeds and yield their results as ``each_schedule`` does."""
+        return each_schedule(self.setup, self.name, self.limit, seeds, self._result, processes)
 
-        ``processes`` run at once, by default one per core. Closing the iterator ends all of them.
-        """
-        given_up = Event()
-        context = forking_context(_PRELOADED)
-        with ThreadPoolExecutor(processes or _cores()) as pool:
-            running = {pool.submit(self._result, seed, context, given_up): seed for seed in seeds}
-            try:
-                for done in as_completed(running):
-                    yield running.pop(done), done.result()
-            finally:
-                given_up.set()
-                pool.shutdown(cancel_futures=True)
-
-    def _result(self, seed: int, context: BaseContext, given_up: Event) -> ScheduleResult:
-        setup = msgspec.structs.replace(self.setup, seed=seed)
-        observed = observe(setup, self.name, self.limit, given_up, partial(ProcessSession, context=context))
+    def _result(self, observed: ObservedRun) -> ScheduleResult:
         found = tuple(dict.fromkeys(each.rule.id for each in problems(observed.timeline)))
         failures = tuple(dict.fromkeys(self._failures(observed, found)))
         repeatable = why_unrepeatable(observed.timeline.notices) is None
-        return ScheduleResult(failures, found, tuple(dict.fromkeys(_warnings(observed))), repeatable)
+        return ScheduleResult(
+            failures,
+            found,
+            tuple(dict.fromkeys(_warnings(observed))),
+            repeatable,
+            tuple(map(step_text, filter(attrgetter("chosen"), observed.timeline.choices))),
+            tuple(conflict_text(each, observed.timeline) for each in observed.timeline.conflicts),
+        )
 
     def _failures(self, observed: ObservedRun, found: tuple[str, ...]) -> Iterator[ScheduleFailure]:
         raised = [*_raised(observed)]

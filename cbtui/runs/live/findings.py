@@ -6,7 +6,7 @@ from time import monotonic
 
 from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
 from sim.plural import counted
-from sim.trace.model import Nanoseconds
+from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _MIN_INTERVAL = 1.0
@@ -16,6 +16,8 @@ _TIME_SHARE = 0.01
 _MAX_GROWTH: Nanoseconds = 20_000_000_000
 """Growth after which an update is not delayed: a recording grows by minutes while it is read, and one update
 for all of that would block the keys."""
+_STANDS_STILL: Nanoseconds = 1_000_000_000
+"""How long nothing has run but what is stuck until a program counts as standing still."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,10 +56,7 @@ class FindingsMonitor:
     """
 
     def __init__(
-        self,
-        timeline: Timeline,
-        diagnoses: Diagnoses | None = None,
-        clock: Callable[[], float] = monotonic,
+        self, timeline: Timeline, diagnoses: Diagnoses | None = None, clock: Callable[[], float] = monotonic
     ) -> None:
         self.findings: tuple[ExplainedFinding, ...] = ()
         """The findings of the last update, the worst problem first."""
@@ -66,6 +65,22 @@ class FindingsMonitor:
         self._clock = clock
         self._due = 0.0
         self._looked_to: Nanoseconds = 0
+
+    def stuck_at(self, at: Nanoseconds) -> Finding | None:
+        """The finding of callbacks that can never go on and had come to a stop by a moment; None for none."""
+        endless = (each.finding for each in self.findings if each.explanation.for_ever)
+        return next((found for found in endless if found.at <= at), None)
+
+    def nothing_moves_since(self) -> Nanoseconds | None:
+        """Since when the program can never go on, as all that it still runs is stuck; None if it can."""
+        timeline = self._timeline
+        found = self.stuck_at(timeline.end)
+        if found is None or timeline.end - found.at < _STANDS_STILL:
+            return None
+        stuck = {each for told in self.findings if told.explanation.for_ever for each in told.finding.stuck}
+        since = Window(timeline.end - _STANDS_STILL, timeline.end + 1)
+        ran = (span.entity for thread in timeline.threads for span in timeline.spans_on(thread, since))
+        return found.at if stuck.issuperset(ran) else None
 
     def look_when_due(self) -> bool:
         """Update if it is time, or if the run has grown much; returns whether the findings changed."""

@@ -61,7 +61,7 @@ class LiveRecording:
         """
         self._recorder = BackgroundRecorder(self._recorder_here(_NAME_RETRIES))
         self._recorder.take(self._snapshot.events())
-        return f"Recording to {self._recorder.path}; {key} again ends it"
+        return f"Recording to {self._recorder.path}; press {key} again to stop"
 
     def _recorder_here(self, tries: int) -> RecordingWriter:
         try:

@@ -11,6 +11,7 @@ from cbtui.runs.live.live_export import ExportableRun
 from cbtui.runs.live.live_recording import FinishFile, LiveRecording
 from sim.engine.commands import (
     CallService,
+    Choose,
     CompleteLine,
     InterruptLine,
     KeepContents,
@@ -23,7 +24,7 @@ from sim.engine.commands import (
     Step,
     TerminalInput,
 )
-from sim.engine.setup import RunSetup
+from sim.engine.setup import RobotUse, RunSetup
 from sim.trace.events import (
     AnyEvent,
     CommandGiven,
@@ -71,6 +72,10 @@ class ShownRun(Protocol):
     loss: str | None
     paused: bool
     speed: float | None
+
+    @property
+    def recording(self) -> LiveRecording | None:
+        """The recording of the run; None if it cannot be recorded."""
 
     @property
     def state(self) -> RunState:
@@ -122,6 +127,11 @@ class ShownRun(Protocol):
 
     def change_speed(self, steps: int) -> None:
         """Change the speed by steps of ``speeds``."""
+
+
+def has_robot(run: ShownRun) -> bool:
+    """Tell whether a run has the robot, or will have it as soon as its engine has started."""
+    return run.setup.robot is RobotUse.ALWAYS or run.timeline.arena is not None
 
 
 def neighbouring_speed(speed: float | None, speeds: Sequence[float | None], steps: int) -> float | None:
@@ -287,6 +297,10 @@ class LiveRun:
         """Let time pass again."""
         self.paused, self._time_passes = False, True
         self._session.send(Resume())
+
+    def choose(self, option: int) -> None:
+        """Have one of the threads go on that the run asks for, by its number from 0."""
+        self._session.send(Choose(option))
 
     def step(self) -> None:
         """Run to the next scheduling decision, and pause there."""

@@ -109,6 +109,7 @@ class RecordedRun:
 
     alive = False
     asked = None
+    recording = None
     can_be_paced = True
     speeds = SPEEDS[:-1]
     """The available playback speeds."""
@@ -188,7 +189,7 @@ def of_recording(recording: Recording) -> ShownProgram:
     title = _plain(about.title) or _plain(recording.path.name)
     return ShownProgram(
         heading=title,
-        guide=_GUIDE.format(title=_escaped(title), facts="\n".join(_facts(recording))),
+        guide=_GUIDE.format(title=_escaped(title), facts="\n".join(facts_on(recording))),
         node_path=path,
         service="" if setup.service is None else setup.service.name,
         executor="",
@@ -219,7 +220,8 @@ def _program_text(path: Path) -> str:
 _NO_SOURCE = "# The recording holds no source of this program, and this machine has none.\n"
 
 
-def _facts(recording: Recording) -> list[str]:
+def facts_on(recording: Recording) -> list[str]:
+    """Return what a recording is of, as a list in Markdown."""
     about = recording.about
     facts = [f"- file: {_escaped(_plain(str(recording.path)))}"]
     if about.recorded:

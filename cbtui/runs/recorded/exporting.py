@@ -1,21 +1,21 @@
 """Exports the events of a run to trace viewers, spreadsheets and paper, in several formats."""
 
 import os
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager, suppress
 from io import TextIOWrapper
 from itertools import chain
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Protocol, Self
+from typing import TYPE_CHECKING, NamedTuple, Protocol, Self
 
-from sim.atomic_file import atomic_file
 from sim.units import SECOND, nearest_ns
 
 if TYPE_CHECKING:
-    from sim.export import CallTable, TraceExporter
+    from sim.export.csv import CallTable
+    from sim.export.trace_exporter import TraceExporter
     from sim.trace.events import AnyEvent
+    from sim.trace.figures.chains import ChainStep
     from sim.trace.model import Nanoseconds, Window
     from sim.trace.timeline import Timeline
 
@@ -25,6 +25,7 @@ FORMATS = {
     "svg": ("OUT.svg", "a picture of the lanes, for paper; see --from, --to and --width"),
     "csv": ("OUT.csv", "a table of the calls"),
     "markdown": ("OUT.md", "a report: set-up, statistics, waits, notices; with the --svg picture, if any"),
+    "html": ("OUT.html", "a page that plays the run in any browser, without a server or a network"),
 }
 WIDTH = 1100
 
@@ -40,8 +41,7 @@ class ExportError(Exception):
     """An export failed; the text is one sentence for the person."""
 
 
-@dataclass(frozen=True)
-class ExportRequest:
+class ExportRequest(NamedTuple):
     """The wanted files: paths by format, and the part (seconds) and width (pixels) of the picture.
 
     Existing files are only replaced with ``replace``, each when the new one is complete.
@@ -52,6 +52,8 @@ class ExportRequest:
     end: float | None = None
     width: int = WIDTH
     replace: bool = True
+    chains: Sequence[Sequence[str]] = ()
+    """What a report follows, from the first topic to the last; a picture frames their critical paths."""
 
 
 def _go_on(_: "Nanoseconds") -> None:
@@ -74,7 +76,7 @@ def export(
     first = next(batches, None)
     if first is None:
         raise ExportError("there are no events to export")
-    timeline = Timeline(until_ending=True) if {"svg", "markdown"} & wish.outputs.keys() else None
+    timeline = Timeline(until_ending=True) if {"svg", "markdown", "html"} & wish.outputs.keys() else None
     with ExitStack() as open_files:
         outputs = [
             open_files.enter_context(_ExportFile(name, path, wish.replace))
@@ -97,6 +99,8 @@ class _ExportFile:
     """One file that is written."""
 
     def __init__(self, name: str, path: Path, replace: bool) -> None:
+        from sim.atomic_file import atomic_file
+
         self._name = name
         self._path = path
         self._writer: TraceExporter | CallTable | None = None
@@ -116,7 +120,10 @@ class _ExportFile:
 
     def begin(self) -> None:
         """Write the head of a format that is written event by event."""
-        from sim.export import CallTable, ChromeFile, PerfettoFile, TraceExporter
+        from sim.export.chrome import ChromeFile
+        from sim.export.csv import CallTable
+        from sim.export.perfetto import PerfettoFile
+        from sim.export.trace_exporter import TraceExporter
 
         with self._trouble():
             if self._name == "perfetto":
@@ -150,14 +157,30 @@ class _ExportFile:
 
 
 def _page(name: str, timeline: "Timeline", wish: ExportRequest) -> str:
-    """The text of a picture or a report; empty for other formats."""
-    from sim.export import report, svg
+    """The text of a page, a picture or a report; empty for other formats."""
+    from sim.export.html import page
+    from sim.export.markdown import report
+    from sim.export.svg import svg
 
+    if name == "html":
+        return page(timeline)
     if name == "markdown":
-        return report(timeline, _picture_beside(wish))
+        return report(timeline, _picture_beside(wish), wish.chains)
     if name == "svg":
-        return svg(timeline, _window(timeline, wish), wish.width)
+        return svg(timeline, _window(timeline, wish), wish.width, path=_critical_steps(timeline, wish.chains))
     return ""
+
+
+def _critical_steps(timeline: "Timeline", chains: Sequence[Sequence[str]]) -> "list[ChainStep]":
+    """The steps of the critical paths of those chains that there are; a report says why of the others."""
+    from sim.trace.figures.chains import ChainError, chain
+
+    steps: list[ChainStep] = []
+    for names in chains:
+        with suppress(ChainError):
+            critical = chain(timeline, names).critical
+            steps += () if critical is None else critical.steps
+    return steps
 
 
 def _window(timeline: "Timeline", wish: ExportRequest) -> "Window":

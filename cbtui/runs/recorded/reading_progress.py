@@ -1,9 +1,9 @@
 """Shows the progress of reading a recording on a terminal."""
 
-import sys
 import time
 from collections.abc import Iterator
 
+from cbtui.terminal.progress_line import ProgressLine
 from sim.recording import Recording
 from sim.trace.events import AnyEvent
 
@@ -21,18 +21,9 @@ class ReadingProgress:
     def batches(self) -> Iterator[list[AnyEvent]]:
         """The events, in batches. Raises what the recording raises."""
         due = time.monotonic() + _QUIET_TIME
-        shown = False
-        try:
+        with ProgressLine() as line:
             for events in self._recording.batches():
-                if time.monotonic() > due and sys.stderr.isatty():
-                    due, shown = time.monotonic() + _PERIOD, True
-                    _show(f"reading {self._recording.path.name}: {self._recording.share:.0%}")
+                if time.monotonic() > due:
+                    due = time.monotonic() + _PERIOD
+                    line.show(f"reading {self._recording.path.name}: {self._recording.share:.0%}")
                 yield events
-        finally:
-            if shown:
-                _show("")
-
-
-def _show(text: str) -> None:
-    sys.stderr.write(f"\r\x1b[K{text}")
-    sys.stderr.flush()

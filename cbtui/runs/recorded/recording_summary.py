@@ -1,25 +1,32 @@
 """The content of a recording, as plain text."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from cbtui.runs.recorded.reading_progress import ReadingProgress
 from cbtui.runs.recorded.recording_file import date_text, setup_of
 from cbtui.runs.setup.changes import changes_in
-from cbtui.text.output import complain, say, shown
+from cbtui.text.output import complain, say, say_data, shown
 from sim.durations import timestamp
+from sim.export.summary_json import summary_json
 from sim.recording import Recording, RecordingError, Topic, read
 from sim.trace.events import AnyEvent, ContentsLost, EventsLost, RunEnded, RunEnding, RunStarted
+from sim.trace.figures.chains_text import told_chain
+from sim.trace.timeline import Timeline
 
 _LABEL = "{:<11}{}\n"
 
 
-def tell(path: Path) -> int:
-    """Print a summary; returns the exit code: 0 all can be read, 1 some of it, 2 nothing."""
+def tell(path: Path, chains: Sequence[Sequence[str]] = (), *, as_json: bool = False) -> int:
+    """Print what a recording has, and chains; or its run's summary and diagnosis, ``as_json``.
+
+    Returns the exit code: 0 all can be read, 1 some of it, 2 nothing.
+    """
+    timeline = Timeline(until_ending=True) if chains or as_json else None
     try:
         recording = read(path)
-        tally = _tally_of(recording)
+        tally = _tally_of(recording, timeline)
         topics = recording.topics()
         size = path.stat().st_size
     except RecordingError as error:
@@ -28,7 +35,12 @@ def tell(path: Path) -> int:
     except OSError as error:
         complain(f"{path} cannot be read to its end: {error.strerror}")
         return 2
-    say("".join(_lines(recording, tally, topics, size)))
+    if timeline is None or not as_json:
+        say("".join(_lines(recording, tally, topics, size)))
+    if timeline is not None and as_json:
+        say_data(summary_json(timeline).decode())
+    elif timeline is not None:
+        say("".join(f"\n{told_chain(timeline, names)}" for names in chains))
     if recording.damage is not None:
         complain(f"{path}: {recording.damage}")
         return 1
@@ -70,10 +82,12 @@ class _Tally:
                     self.contents_lost = max(self.contents_lost, count)
 
 
-def _tally_of(recording: Recording) -> _Tally:
+def _tally_of(recording: Recording, timeline: Timeline | None) -> _Tally:
     tally = _Tally()
     for events in ReadingProgress(recording).batches():
         tally.take(events)
+        if timeline is not None:
+            timeline.extend(events)
     return tally
 
 
@@ -83,6 +97,8 @@ def _lines(recording: Recording, tally: _Tally, topics: list[Topic], size: int) 
     title = about.title or (started.target if started else "a run")
     clock = about.clock or (started.clock if started else "unknown")
     yield _line("run", f"{title}, {clock} clock")
+    if started is not None and started.distro:
+        yield _line("like", f"rclpy of {started.distro}")
     if about.recorded:
         yield _line("recorded", f"{date_text(about.recorded)} by cbtui {about.version}")
     for program in about.programs:

@@ -29,12 +29,7 @@ class CannotRepeatError(Exception):
     """A recording cannot be repeated; the text is a sentence that says why."""
 
 
-def repeated_setup(
-    path: Path,
-    request: RunRequest,
-    *,
-    tell: Callable[[str], None],
-) -> RunSetup:
+def repeated_setup(path: Path, request: RunRequest, *, tell: Callable[[str], None]) -> RunSetup:
     """The set-up of a run that gets the inputs of a recorded one instead of its own.
 
     The recorded program runs again if the request names none. Its ``seconds`` None: as long as the recording.

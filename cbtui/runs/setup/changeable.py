@@ -80,7 +80,7 @@ def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
     """Return the callbacks of the programs' own code, in order of creation."""
     found: dict[CallbackPlace, ChangeableCallback] = {}
     for entity in timeline.entities.values():
-        if _is_programs_own(entity):
+        if programs_own(entity):
             place = place_of(entity, timeline)
             found.setdefault(
                 place, ChangeableCallback(place, entity.kind, _group_of(entity, timeline), entity.period)
@@ -93,7 +93,8 @@ def place_of(entity: EntityInfo, timeline: Timeline) -> CallbackPlace:
     return timeline.nodes.get(entity.node, ""), entity.callback or entity.name
 
 
-def _is_programs_own(entity: EntityInfo) -> bool:
+def programs_own(entity: EntityInfo) -> bool:
+    """Tell whether an entity is one of the programs' own code, and not rclpy's."""
     named = bool(entity.callback or entity.name)
     return named and entity.kind is not EntityKind.WAITABLE and entity.label not in HOUSEKEEPING
 
@@ -103,7 +104,7 @@ def _group_of(entity: EntityInfo, timeline: Timeline) -> str:
     others = [
         short_name(member.spoken_name)
         for member in timeline.group_members(group.id)
-        if member.id != entity.id and _is_programs_own(member)
+        if member.id != entity.id and programs_own(member)
     ]
     company = f", with {', '.join(others)}" if others else ", alone"
     return f"{group.letter} {group.kind.value}{company}"

@@ -10,7 +10,8 @@ import msgspec
 
 from cbtui.text.callback_names import short_name
 from lessons.lesson import with_argument
-from sim.engine.setup import GroupChange, PeriodChange, ProgramSetup, RealRos, RunSetup
+from sim.clock.schedule import Seed
+from sim.engine.setup import GroupChange, PeriodChange, PhysicsChoice, ProgramSetup, RealRos, RunSetup
 from sim.plural import counted
 from sim.units import SECOND
 
@@ -31,8 +32,8 @@ class Changes:
 
     ``groups`` holds values of ``GROUP_CHOICES``, ``periods`` nanoseconds, ``settings`` numbers by the name of
     their command-line argument. ``sensor_rate`` is in Hz; ``seed`` chooses the order of threads. ``real`` is
-    the ROS 2 that replaces the model, always on the real clock. ``whole_tracebacks`` affects only how
-    exceptions are printed.
+    the ROS 2 that replaces the model, always on the real clock; ``distro`` is the model's release.
+    ``whole_tracebacks`` affects only how exceptions are printed.
     """
 
     threads: int | None = None
@@ -40,9 +41,11 @@ class Changes:
     periods: Mapping[CallbackPlace, int] = field(default_factory=dict)
     settings: Mapping[str, float] = field(default_factory=dict)
     sensor_rate: float | None = None
-    seed: int | None = None
+    seed: Seed | None = None
     real: RealRos | None = None
     whole_tracebacks: bool = field(default=False, compare=False)
+    physics: PhysicsChoice | None = None
+    distro: str | None = None
 
     def with_group(self, place: CallbackPlace, wish: str | None) -> Changes:
         """The same with another group for a callback."""
@@ -75,6 +78,8 @@ class Changes:
             None if self.sensor_rate == others.sensor_rate else self.sensor_rate,
             None if self.seed == others.seed else self.seed,
             None if self.real == others.real else self.real,
+            physics=None if self.physics == others.physics else self.physics,
+            distro=None if self.distro == others.distro else self.distro,
         )
 
     def applied(self, setup: RunSetup) -> RunSetup:
@@ -84,14 +89,13 @@ class Changes:
             threads=setup.threads if self.threads is None else self.threads,
             programs=tuple(self._with_settings(program) for program in setup.programs),
             sensor_rate=setup.sensor_rate if self.sensor_rate is None else self.sensor_rate,
+            physics=self.physics or setup.physics,
             seed=setup.seed if self.seed is None else self.seed,
             real=setup.real if self.real is None else self.real,
+            distro=setup.distro if self.distro is None else self.distro,
             clock=setup.clock if self.real is None else "real",
             whole_tracebacks=self.whole_tracebacks,
-            groups=(
-                *setup.groups,
-                *(GroupChange(*place, wish) for place, wish in self.groups.items()),
-            ),
+            groups=(*setup.groups, *(GroupChange(*place, wish) for place, wish in self.groups.items())),
             periods=(
                 *setup.periods,
                 *(PeriodChange(*place, period) for place, period in self.periods.items()),
@@ -115,8 +119,12 @@ class Changes:
         said += [f"{argument} {number:g}" for argument, number in self.settings.items()]
         if self.sensor_rate is not None:
             said.append(f"sensors {self.sensor_rate:g} Hz")
+        if self.physics is not None:
+            said.append(f"{self.physics} physics")
         if self.threads is not None:
             said.append(counted(self.threads, "thread"))
+        if self.distro is not None:
+            said.append(f"as on {self.distro}")
         if self.real is not None:
             said.append("on real ROS 2")
         if self.seed is not None:
@@ -133,6 +141,8 @@ def changes_in(setup: RunSetup) -> Changes:
         sensor_rate=setup.sensor_rate,
         seed=setup.seed,
         real=setup.real,
+        physics=setup.physics,
+        distro=setup.distro or None,
     )
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from cbtui.runs.setup.changes import Changes
 from lessons.catalogue import ROOT
 from lessons.lesson import Lesson
+from sim.clock.schedule import Seed
 from sim.engine.setup import (
     Keyboard,
     ProgramSetup,
@@ -29,10 +30,10 @@ _LESSON_PACKAGES = tuple(str(path) for path in sorted(ROOT.glob("unit*")))
 class RunRequest:
     """A request for a run; ``setup()`` makes the engine's set-up.
 
-    A ``lesson`` runs its own node, or one of ``files`` in its place; without a lesson the ``files`` run, each
-    with the ``arguments``. Times are seconds of the run's own time. ``clock`` None is the lesson's, for files
-    the real one. ``speed`` is seconds of the run per real second, None for as fast as possible: on the real
-    clock that is 1.
+    A ``lesson`` runs its own node, or one of ``files`` in its place; without a lesson the ``files`` run, with
+    the ``arguments``: of several files the second gets those behind the first ``--``, and so on. Times are
+    seconds of the run's own time. ``clock`` None is the lesson's, for files the real one. ``speed`` None:
+    as fast as possible; else seconds of the run per real second, on the real clock 1.
 
     On a lesson's real clock the robot is only created when it is used: its physics computes beside the node.
     """
@@ -78,6 +79,7 @@ class RunRequest:
             packages=_LESSON_PACKAGES,
             robot=self._robot_use(),
             contents=self.contents,
+            distro="" if lesson is None else lesson.setup.distro,
         )
         return self.changes.applied(setup)
 
@@ -86,9 +88,12 @@ class RunRequest:
         if lesson is not None and not self.files:
             arguments = lesson.arguments_with(self.changes.threads)
             yield ProgramSetup(str(lesson.node_path), tuple(arguments))
+        left = self.arguments if lesson is None else lesson.setup.arguments
         for path in self.files:
-            given = self.arguments if lesson is None else lesson.setup.arguments
-            yield ProgramSetup(str(path.absolute()), tuple(given))
+            several = len(self.files) > 1 and "--" in left
+            end = left.index("--") if several else len(left)
+            yield ProgramSetup(str(path.absolute()), tuple(left[:end]))
+            left = left[end + 1 :]
 
     def _robot_use(self) -> RobotUse:
         if not self.robot:
@@ -119,7 +124,7 @@ def setup_for_line(text: str, folder: Path) -> RunSetup:
 
 
 def request_to_judge(
-    lesson: Lesson, file: Path | None = None, *, seed: int | None = None, real: RealRos | None = None
+    lesson: Lesson, file: Path | None = None, *, seed: Seed | None = None, real: RealRos | None = None
 ) -> RunRequest:
     """Return the run that the lesson's predictions and checks judge, of its node or of another file.
 
@@ -137,7 +142,7 @@ def request_to_judge(
 
 
 def setup_to_judge(
-    lesson: Lesson, file: Path | None = None, *, seed: int | None = None, real: RealRos | None = None
+    lesson: Lesson, file: Path | None = None, *, seed: Seed | None = None, real: RealRos | None = None
 ) -> RunSetup:
     """Return the set-up of ``request_to_judge``."""
     return request_to_judge(lesson, file, seed=seed, real=real).setup()

@@ -33,7 +33,7 @@ class Quantity(NamedTuple):
         except ValueError:
             raise BadQuantityError(f"{plain!r} is not a number; give {self.bounds}") from None
         if not (math.isfinite(number) and self.least <= number <= self.most):
-            raise BadQuantityError(f"{plain} is no {self.name}; give {self.bounds}")
+            raise BadQuantityError(f"{plain} is not a {self.name}; give {self.bounds}")
         return number
 
     def shown(self, number: float) -> str:

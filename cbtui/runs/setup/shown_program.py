@@ -1,15 +1,23 @@
 """The program that a screen runs and shows: a lesson of the catalogue, or a learner's own file."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
+import msgspec
+
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import RunRequest, request_to_judge, setup_for
+from lessons.description import Actor
 from lessons.lesson import Lesson
-from sim.engine.setup import RealRos, RobotUse, RunSetup, ServiceChoice
+from lessons.puzzles import SECONDS, Puzzle
+from sim.engine.inputs import inputs_of
+from sim.engine.setup import Keyboard, PhysicsChoice, RealRos, RobotUse, RunSetup, ServiceChoice
 from sim.plural import counted
+from sim.trace.events import AnyEvent
+from sim.trace.model import Nanoseconds
+from sim.units import SECOND
 
 if TYPE_CHECKING:
     from sim.real.wire import Hello
@@ -17,19 +25,25 @@ if TYPE_CHECKING:
 SetUp: TypeAlias = Callable[[int | None, float | None], RunSetup]
 """Makes a run for a number of threads (None: the program's own) and a speed (None: as fast as possible)."""
 
-_GUIDE = """# {name}
+_FROM_MOMENT = 10 * SECOND
+"""How long a run goes on whose threads the learner schedules from a moment on."""
 
-Your own file, on {clock} time. Every thread that runs callbacks has a lane; below are the callback groups, in
-the order in which the program fills them, with what waits in them and why.
+_CHOOSING_GUIDE = """# {title}
 
-- `s` calls the first SetBool service that your program offers, `S` the same with false.
-- `t` runs it again with another number of threads, `g` with another group for the selected callback, `p` with
-  other timers' periods, and tells which line of code would do that.
-- `r` puts the robot back to its start, and runs the file again when it is over.
+{task}
 
-The lessons' robot is there for your file too: `/odom`, `/scan`, `/cmd_vel`, `/reset_world`, `/motor_power`.
+Time stands still wherever more than one thread can go on, and you choose which one does. The first one goes
+on by itself; to choose another is a move.
+
+- `1`, `2` … or the arrow keys and `enter` choose; the code shows where the highlighted thread stands.
+- `u` takes the last choice back, `r` begins again, `space` lets the rest go on by itself.
+{keys}
+A thread is left only in front of a line that touches what another callback changes, at a lock, or at a call
+of ROS. What cannot go on is listed with its reason: that is what rclpy allows, and no choice of yours.
 """
-
+_PUZZLE_KEYS = """- `H` begins again and shows the solution, choice by choice.
+- `e` opens the lesson that the puzzle belongs to.
+"""
 
 _WATCHED_GUIDE = """# Processes on real ROS 2
 
@@ -57,7 +71,8 @@ class ShownProgram:
     """A program to run on screen; ``service`` is empty if only its run shows it.
 
     ``source`` is the program's text if that differs from the file at ``node_path``, ``sources`` the texts of
-    a recording, by path.
+    a recording, by path. ``is_own_file`` tells that it is a file which the learner edits, whose guide is
+    written as it runs.
     """
 
     heading: str
@@ -70,6 +85,12 @@ class ShownProgram:
     following: Lesson | None = None
     source: str | None = None
     sources: Mapping[str, str] = field(default_factory=dict)
+    is_own_file: bool = False
+
+    @property
+    def scene(self) -> tuple[Actor, ...]:
+        """The figures that are shown in place of a robot."""
+        return () if self.lesson is None else self.lesson.scene
 
 
 def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> ShownProgram:
@@ -117,15 +138,56 @@ def of_file(path: Path, arguments: Sequence[str], clock: str) -> ShownProgram:
 
     return ShownProgram(
         heading=path.name,
-        guide=_GUIDE.format(name=path.name, clock=clock),
+        guide="",
         node_path=path,
         service="",
         executor="as the file says",
         set_up=set_up,
+        is_own_file=True,
     )
 
 
-def of_robot(folder: Path, rate: float | None) -> ShownProgram:
+def of_puzzle(puzzle: Puzzle) -> ShownProgram:
+    """Return the program of a puzzle."""
+    setup = RunRequest(files=[puzzle.node_path], clock="virtual", seconds=SECONDS).setup()
+    return ShownProgram(
+        heading=f"Puzzle: {puzzle.title}",
+        guide=_CHOOSING_GUIDE.format(title=puzzle.title, task=puzzle.task, keys=_PUZZLE_KEYS),
+        node_path=puzzle.node_path,
+        service="",
+        executor="as the puzzle says",
+        set_up=lambda _threads, _speed: setup,
+    )
+
+
+def of_moment(
+    subject: ShownProgram, run: RunSetup, events: Iterable[AnyEvent], at: Nanoseconds
+) -> ShownProgram:
+    """Return a program from a moment of its run on, of which these are the events; it goes on for a while."""
+    setup = msgspec.structs.replace(
+        run,
+        speed=None,
+        until=at + _FROM_MOMENT,
+        explored_from=at,
+        inputs=inputs_of(events),
+        keyboard=Keyboard.NOBODY if run.keyboard is Keyboard.NOBODY else Keyboard.REPEATED,
+    )
+    return replace(
+        subject,
+        heading=f"{subject.heading}: you choose",
+        guide=_CHOOSING_GUIDE.format(
+            title="You are the scheduler",
+            task="The run is made again up to the moment at which you have paused it.",
+            keys="- `q` goes back to the paused run.\n",
+        ),
+        set_up=lambda _threads, _speed: setup,
+        lesson=None,
+        following=None,
+        is_own_file=False,
+    )
+
+
+def of_robot(folder: Path, rate: float | None, physics: PhysicsChoice | None = None) -> ShownProgram:
     """Return the robot on real ROS 2, and with it the processes whose probes listen in a folder.
 
     ``rate`` (Hz) is that of its sensors, None the usual one.
@@ -137,6 +199,7 @@ def of_robot(folder: Path, rate: float | None) -> ShownProgram:
         service=ServiceChoice("/motor_power", "std_srvs/srv/SetBool"),
         robot=RobotUse.ALWAYS,
         sensor_rate=rate,
+        physics=physics,
         real=RealRos(watched=str(folder)),
     )
     return ShownProgram(

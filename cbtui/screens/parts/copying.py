@@ -52,11 +52,15 @@ def summary(heading: str, timeline: Timeline, now: Nanoseconds, concurrency: Con
     note = call_note(timeline, now)
     if note:
         yield note
-    moment = timeline.moment(now)
-    for span in moment.running.values():
-        thread = timeline.threads.get(span.thread)
-        where = "" if thread is None else f" on {thread.name}"
-        yield f"  {name_of(span.entity, timeline)} runs{where} for {duration(now - span.start)}"
-    for wait in moment.waiting.values():
+    yield from (f"  {each}" for each in what_runs(timeline, now))
+    for wait in timeline.moment(now).waiting.values():
         took = duration(max(0, now - wait.since))
         yield f"  {name_of(wait.entity, timeline)} waits {took}: {why_waiting(wait, timeline)}"
+
+
+def what_runs(timeline: Timeline, now: Nanoseconds) -> Iterator[str]:
+    """Yield which callback runs on which thread, and for how long already."""
+    for span in timeline.moment(now).running.values():
+        thread = timeline.threads.get(span.thread)
+        where = "" if thread is None else f" on {thread.name}"
+        yield f"{name_of(span.entity, timeline)} runs{where} for {duration(now - span.start)}"

@@ -3,21 +3,20 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from cbtui.runs.live.live_run import LiveRun, RunState, ShownRun
+from cbtui.runs.live.live_run import LiveRun, RunState, ShownRun, has_robot
 from cbtui.runs.recorded.recording_file import CannotRecordError
 from cbtui.screens.parts.finishing import FileFinisher
 from cbtui.screens.parts.panes import PaneLayout
-from cbtui.screens.parts.part import ScreenHost, ScreenPart
+from cbtui.screens.parts.part import DrawnHost, ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.shell import ShellView
-from sim.engine.setup import RobotUse
 
 
 @dataclass
 class PaceKeys(ScreenPart):
     """Pauses and resumes a run, and changes its speed."""
 
-    host: ScreenHost
+    host: DrawnHost
     runs: RunController[ShownRun]
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
@@ -86,8 +85,8 @@ class WorldKeys(ScreenPart):
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer them while the engine lives; resetting the robot needs one that answers."""
         run = self.runs.run
-        has_robot = run.setup.robot is not RobotUse.NEVER and run.state is not RunState.SILENT
-        return run.alive and (has_robot or action != "reset_world")
+        can_reset = has_robot(run) and run.state is not RunState.SILENT
+        return run.alive and (can_reset or action != "reset_world")
 
     def action_call_service(self) -> None:
         """Call the lesson's service with true."""

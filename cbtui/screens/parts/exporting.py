@@ -7,11 +7,11 @@ from time import monotonic
 
 from cbtui.runs.live.live_export import LiveExport
 from cbtui.runs.live.live_run import ShownRun
-from cbtui.screens.export import ExportChoice, ExportScreen
 from cbtui.screens.parts.finishing import FileFinisher
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
+from cbtui.screens.windows.export import ExportChoice, ExportScreen
 
 PROGRESS_INTERVAL = 0.25
 """Seconds between two updates of an export's progress."""

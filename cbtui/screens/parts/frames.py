@@ -5,6 +5,12 @@ from enum import Enum, auto
 from math import inf
 from time import monotonic
 
+from textual.screen import Screen
+
+from cbtui.runs.live.live_run import ShownRun
+from cbtui.screens.parts.runs import RunController
+from cbtui.terminal.processor import cpu_wait, time_off_cpu
+
 FRAMES_A_SECOND = 30
 
 _LANES_A_PANE = 6
@@ -76,3 +82,61 @@ class FrameSchedule:
     def rest(self, waited: float) -> None:
         """Rest after a frame by the seconds that it waited for a CPU; key effects are still drawn."""
         self._rests_until = self._clock() + min(_REST_FACTOR * waited, _MAX_REST)
+
+
+class FrameLoop:
+    """Draws the frames of a screen that shows ``runs``: ``draw`` draws what it is told.
+
+    While something ``holds`` the picture, no frame comes by itself.
+    """
+
+    def __init__(
+        self,
+        screen: Screen[None],
+        runs: RunController[ShownRun],
+        draw: Callable[[FrameContent], None],
+        holds: Callable[[], bool],
+    ) -> None:
+        self._screen = screen
+        self._draw = draw
+        self._runs = runs
+        self._holds = holds
+        self._schedule = FrameSchedule()
+
+    def start(self) -> None:
+        """Start the timer."""
+        self._screen.set_interval(1 / FRAMES_A_SECOND, self._draw_if_due)
+
+    def grow(self) -> None:
+        """Note that the run has grown, which the next frames draw."""
+        self._schedule.grow()
+
+    def redraw(self) -> None:
+        """Draw everything in the next frame, or at once if none was just drawn."""
+        self._schedule.invalidate()
+        if self._screen.is_running:
+            self._screen.call_next(self._draw_at_once)
+
+    def draw(self, content: FrameContent) -> None:
+        """Draw now."""
+        if content is not FrameContent.LANES:
+            self._schedule.drawn(content)
+        self._draw(content)
+
+    def _draw_at_once(self) -> None:
+        if self._schedule.is_due_before_next():
+            self.draw(FrameContent.ALL)
+
+    def _draw_if_due(self) -> None:
+        if self._holds():
+            return
+        if self._runs.findings.look_when_due():
+            self.redraw()
+        content = self._schedule.next()
+        if content is not FrameContent.NOTHING:
+            self.draw(content)
+            self._screen.call_after_refresh(self._rest, time_off_cpu())
+
+    def _rest(self, before: float) -> None:
+        """Rest for as long as the frame waited for a CPU."""
+        self._schedule.rest(cpu_wait(before))

@@ -1,6 +1,6 @@
-"""The keys that a run's screen offers, by the state of its parts and by the focus."""
+"""The keys that a run's screen offers, by the state of its parts and by the focus, and why others are not."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,27 +9,33 @@ from textual.widget import Widget
 from cbtui.keys.action import KeyAction, Scope
 from cbtui.looks.theme import Charset
 from cbtui.screens.layout import Layout
-from cbtui.screens.parts.part import ScreenParts
+from cbtui.screens.parts.part import ScreenHost, ScreenPart, ScreenParts
 from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.checks import ChecksView
+from cbtui.widgets.choice import ChoiceOptions
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.key_bar import KeyBar, hint
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.log import LogFilter, LogLines
-from cbtui.widgets.shell import ProgramKeyboard, Prompt
+from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellOutput
+from lessons.lesson import Lesson
 
 _ON_LANES = ("zoom", "pan", "select", "lane", "event", "code", "copy", "deselect")
 """Labels of the actions that the lanes' frame shows."""
 
-_WITH_KEYS = (LogLines, CodeView, ChecksView)
+_ON_SHELL = ("ros2", "type")
+"""Labels that come first while the shell's output has the focus."""
+
+_WITH_KEYS = (LogLines, CodeView, ChecksView, ChoiceOptions)
 """Panes with a ``check_action`` of their own."""
 
 _TYPED_INTO = (Prompt, ProgramKeyboard, LogFilter)
 _NOT_ON: Mapping[str, tuple[type[Widget], ...]] = {
     "pan_earlier": _TYPED_INTO,
     "pan_later": _TYPED_INTO,
-    "select": _TYPED_INTO,
+    "select": (*_TYPED_INTO, ChoiceOptions),
     "next_pane": _TYPED_INTO,
+    "jump": _TYPED_INTO,
     "copy_details": (*_TYPED_INTO, LogLines, CodeView),
     "filter_log": (LogLines,),
     "open_source": (CodeView,),
@@ -43,6 +49,7 @@ _SCOPES: Mapping[type[Widget], Scope] = {
     LogFilter: Scope.FILTER,
     CodeView: Scope.CODE,
     ChecksView: Scope.CHECKS,
+    ChoiceOptions: Scope.CHOICE,
 }
 """The scope whose keys are shown while a widget has the focus."""
 
@@ -72,7 +79,8 @@ class OfferedKeys:
         lanes, bar = self.screen.query_one(Lanes), self.screen.query_one(KeyBar)
         # In the grid the lanes have a frame, which shows their keys.
         framed = self.screen.layout_now is Layout.GRID
-        bar.first = (*_ON_LANES, "enlarge") if lanes.has_focus and not framed else ()
+        on_lanes = (*_ON_LANES, "enlarge") if lanes.has_focus and not framed else ()
+        bar.first = _ON_SHELL if isinstance(self.screen.focused, ShellOutput) else on_lanes
         working = tuple(bar.working())
         if working != self._shown:
             self._shown = working
@@ -84,3 +92,56 @@ class OfferedKeys:
         focused = self.screen.focused
         scopes = (scope for kind, scope in _SCOPES.items() if isinstance(focused, kind))
         self.screen.query_one(KeyBar).show(next(scopes, Scope.LESSON))
+
+
+_REFUSED = {
+    "no_exercise": "exercise",
+    "no_hint": "hint",
+    "no_solution": "solution",
+    "no_comparison": "compare",
+}
+"""The actions that tell why another one is not available."""
+
+
+@dataclass
+class Refusals(ScreenPart):
+    """Tells why an action does nothing; ``is_available`` tells whether it does something.
+
+    ``lesson`` is None for a program that belongs to no lesson.
+    """
+
+    host: ScreenHost
+    lesson: Lesson | None
+    is_available: Callable[[str], bool]
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer the refusal where the action itself is not offered."""
+        return not self.is_available(_REFUSED[action])
+
+    def action_no_exercise(self) -> None:
+        """Tell that there is no exercise."""
+        self._tell("")
+
+    def action_no_hint(self) -> None:
+        """Tell when there are hints."""
+        self._tell("The hints come once the lesson is explained: press {key}.")
+
+    def action_no_solution(self) -> None:
+        """Tell when there is a solution."""
+        self._tell("The solution can be looked at once the lesson is explained: press {key}.")
+
+    def action_no_comparison(self) -> None:
+        """Tell what makes a second run."""
+        threads, group, set_up = map(self.host.key, ("threads", "group", "set_up"))
+        self.host.tell(
+            f"There is only one run so far: change something with {threads}, {group} or {set_up} first."
+        )
+
+    def _tell(self, with_exercise: str) -> None:
+        """Tell that there is no exercise, or something about the one there is."""
+        if self.lesson is None:
+            self.host.tell("Your own program has no exercise; lessons of the menu have.")
+        elif self.lesson.exercise is None:
+            self.host.tell(f"{self.lesson.title} has no exercise: it is done once it is explained.")
+        else:
+            self.host.tell(with_exercise.format(key=self.host.key("explain")))

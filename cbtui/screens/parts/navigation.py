@@ -5,25 +5,25 @@ from dataclasses import dataclass, field
 
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.live.playhead import SPANS, Playhead
-from cbtui.screens.moment import MomentScreen
 from cbtui.screens.parts.part import ScreenPart, WindowHost
+from cbtui.screens.windows.moment import MomentScreen
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 
 @dataclass
 class TimeNavigation(ScreenPart):
-    """Holds and moves the playhead of a screen with one or more runs.
+    """Holds and moves the playhead of one or more runs.
 
     ``end`` returns the last moment, ``moved`` is called after each move, and ``live`` returns the run whose
-    engine can run on, if there is one.
+    engine can run on, if there is one; ``stepped`` is called when an event is gone to.
     """
 
-    host: WindowHost
     timelines: Callable[[], Sequence[Timeline]]
     end: Callable[[], Nanoseconds]
     moved: Callable[[], None]
     live: Callable[[], LiveRun | None] = lambda: None
+    stepped: Callable[[], None] = lambda: None
     playhead: Playhead = field(default_factory=Playhead)
 
     @property
@@ -76,6 +76,7 @@ class TimeNavigation(ScreenPart):
     def action_step(self) -> None:
         """Run to the next scheduling decision, or, looking back, go to the next event."""
         run = self.live()
+        self.stepped()
         if self.playhead.at is None and run is not None:
             run.step()
         else:
@@ -83,29 +84,25 @@ class TimeNavigation(ScreenPart):
 
     def action_step_back(self) -> None:
         """Look at the event before."""
+        self.stepped()
         self._go_to_event(-1)
 
     def _go_to_event(self, step: int) -> None:
         self.move(self.playhead.beside(self.timelines(), self.end(), step))
 
-    def action_go_to_time(self) -> None:
-        """Ask for a moment."""
-        goes_on = self._run_that_goes_on() is not None
-        self.host.ask(MomentScreen(self.now, self.end(), goes_on, self.host.charset), self._go_to_time)
-
-    def _go_to_time(self, moment: Nanoseconds | None) -> None:
-        """Go to a past moment, or let the run continue to a future one."""
-        if moment is None:
-            return
-        is_to_come = moment > self.end()
-        self.seek(moment)
-        run = self._run_that_goes_on()
-        if is_to_come and run is not None:
-            run.run_until(moment)
-
-    def _run_that_goes_on(self) -> LiveRun | None:
+    @property
+    def run_that_goes_on(self) -> LiveRun | None:
+        """The run whose engine can still run on, if there is one."""
         run = self.live()
         return run if run is not None and run.alive else None
+
+    def go_to(self, moment: Nanoseconds) -> None:
+        """Go to a past moment, or let the run continue to a future one."""
+        is_to_come = moment > self.end()
+        self.seek(moment)
+        run = self.run_that_goes_on
+        if is_to_come and run is not None:
+            run.run_until(moment)
 
     def action_live(self) -> None:
         """Follow the end of the run."""
@@ -126,3 +123,18 @@ class TimeNavigation(ScreenPart):
     def action_pan_later(self) -> None:
         """Show a later stretch of time."""
         self.move(self.playhead.panned(1, self.end()))
+
+
+@dataclass
+class MomentKey(ScreenPart):
+    """Asks for a moment, and goes there."""
+
+    host: WindowHost
+    navigation: TimeNavigation
+
+    def action_go_to_time(self) -> None:
+        """Ask for a moment."""
+        navigation = self.navigation
+        goes_on = navigation.run_that_goes_on is not None
+        question = MomentScreen(navigation.now, navigation.end(), goes_on, self.host.charset)
+        self.host.ask(question, lambda moment: None if moment is None else navigation.go_to(moment))

@@ -12,7 +12,9 @@ from cbtui.keys.keymap import keymap_of
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.terminal.editor import EditorError, edit
 from cbtui.widgets.checks import ChecksView
+from cbtui.widgets.choice import ChoiceOptions
 from cbtui.widgets.code import CodeView
+from cbtui.widgets.factory import FactoryView
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
 from cbtui.widgets.log import LogLines, LogView
@@ -20,12 +22,14 @@ from cbtui.widgets.robot import RobotView
 from cbtui.widgets.shell import ShellOutput
 from cbtui.widgets.tabs import Tabs, title_of
 
-_PANE_ALONE = "-maximised"
-_LANES_ALONE = "-lanes-alone"
+PANE_ALONE = "-maximised"
+LANES_ALONE = "-lanes-alone"
 """Style classes of a screen that one pane, or the lanes, fill."""
-_BEHIND = {"log": "shell", "checks": "guide"}
-"""Panes of the grid that are replaced by another pane while that is current."""
-_INSIDES: dict[str, type[Widget]] = {"log": LogLines, "shell": ShellOutput}
+WITHOUT_ROBOT = "-without-robot"
+"""Style class of a screen without a robot."""
+_BEHIND = {"log": "shell", "checks": "guide", "choice": "guide", "code": "robot"}
+"""Panes of the grid that are replaced by another pane while that is current, or make room for it."""
+_INSIDES: dict[str, type[Widget]] = {"log": LogLines, "shell": ShellOutput, "choice": ChoiceOptions}
 """The widget inside a pane that takes the focus."""
 
 
@@ -33,7 +37,7 @@ _INSIDES: dict[str, type[Widget]] = {"log": LogLines, "shell": ShellOutput}
 class PaneLayout(ScreenPart):
     """Arranges the panes ``names`` of a screen; the current one, or the lanes, can fill it.
 
-    ``changes`` returns the user's changes to the run in words.
+    ``changes`` returns the user's changes to the run in words. ``arranged`` is called when others are shown.
     """
 
     screen: Screen[None]
@@ -41,6 +45,7 @@ class PaneLayout(ScreenPart):
     names: tuple[str, ...]
     current: str
     changes: Callable[[], str]
+    arranged: Callable[[], object] = lambda: None
 
     def pane(self, name: str) -> Widget:
         """Return a pane."""
@@ -49,13 +54,13 @@ class PaneLayout(ScreenPart):
     def show(self, name: str) -> None:
         """Make a pane the current one."""
         screen = self.screen
-        if screen.has_class(_LANES_ALONE):
+        if screen.has_class(LANES_ALONE):
             self.enlarge("")
         self.current = name
         for each in self.names:
-            self.pane(each).set_class(each == name, "-current", update=False)
-            self.pane(each).set_class(_BEHIND.get(each) == name, "-behind", update=False)
-        screen.update_node_styles(animate=False)
+            self.pane(each).set_class(each == name, "-current")
+            self.pane(each).set_class(_BEHIND.get(each) == name, "-behind")
+        self.arranged()
         screen.query_one(Tabs).current = name
         self.update_titles()
         if not self.pane(name).has_focus_within:
@@ -75,9 +80,9 @@ class PaneLayout(ScreenPart):
         notes = {}
         for name in self.names:
             pane = self.pane(name)
-            if isinstance(pane, CodeView | LogView | ChecksView):
+            if isinstance(pane, CodeView | FactoryView | LogView | ChecksView):
                 notes[name] = pane.note
-                pane.border_title = Text(f"{title_of(name)} {pane.note}")
+                pane.border_title = Text(f"{title_of(name)} {pane.note}".rstrip())
         words = self.changes()
         changed = f"changed: {words}" if words else ""
         self.screen.query_one(Tabs).note = " · ".join(filter(None, (notes.get(self.current), changed)))
@@ -85,13 +90,19 @@ class PaneLayout(ScreenPart):
     def enlarge(self, alone: str) -> None:
         """Let the current pane or the lanes fill the screen; "" for neither."""
         screen = self.screen
-        for name in (_PANE_ALONE, _LANES_ALONE):
-            screen.set_class(name == alone, name, update=False)
-        screen.update_node_styles(animate=False)
-        more = ("lane_above", "lane_below") if alone == _LANES_ALONE else ("enlarge_lanes",)
+        for name in (PANE_ALONE, LANES_ALONE):
+            screen.set_class(name == alone, name)
+        self.arranged()
+        more = ("lane_above", "lane_below") if alone == LANES_ALONE else ("enlarge_lanes",)
         keys = lane_keys(keymap_of(screen.app), Scope.LESSON, self.host.charset, *more)
         screen.query_one(Lanes).keys = keys
         self.host.redraw()
+
+    def set_robot(self, is_here: bool) -> None:
+        """Have room for the robot's pane, or give it to the code."""
+        if is_here is self.screen.has_class(WITHOUT_ROBOT):
+            self.screen.set_class(not is_here, WITHOUT_ROBOT)
+            self.arranged()
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer the existing panes."""
@@ -110,14 +121,14 @@ class PaneLayout(ScreenPart):
         if self.screen.query_one(Lanes).has_focus:
             self.action_enlarge_lanes()
         else:
-            self.enlarge("" if self.screen.has_class(_PANE_ALONE) else _PANE_ALONE)
+            self.enlarge("" if self.screen.has_class(PANE_ALONE) else PANE_ALONE)
 
     def action_enlarge_lanes(self) -> None:
         """Go to the lanes and let them fill the screen, or go back to the current pane."""
-        if self.screen.has_class(_LANES_ALONE):
+        if self.screen.has_class(LANES_ALONE):
             self.show(self.current)
         else:
-            self.enlarge(_LANES_ALONE)
+            self.enlarge(LANES_ALONE)
             self.screen.query_one(Lanes).focus()
 
     def action_cycle_camera(self) -> None:

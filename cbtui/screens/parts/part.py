@@ -1,14 +1,14 @@
 """Parts of a screen, and how their actions become the screen's."""
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Protocol
 
 from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
 
 from cbtui.keys.action import Scope, method_of
 from cbtui.keys.actions import ACTIONS
 from cbtui.looks.theme import Charset
-from cbtui.screens.console import ConsoleApp
+from cbtui.screens.console import ConsoleApp, LessonOpener
 
 
 class ScreenPart:
@@ -27,35 +27,45 @@ class WindowHost(Protocol):
         """What the terminal can show."""
 
     def ask(
-        self,
-        question: Screen[ScreenResultType],
-        take: ScreenResultCallbackType[ScreenResultType] | None,
+        self, question: Screen[ScreenResultType], take: ScreenResultCallbackType[ScreenResultType] | None
     ) -> None:
         """Open a screen over this one; ``take`` gets its result."""
 
 
-class ScreenHost(WindowHost, Protocol):
+class DrawnHost(Protocol):
+    """What shows a run, and can be told that something has changed."""
+
+    def redraw(self) -> None:
+        """Draw everything soon."""
+
+
+class RunHost(DrawnHost, Protocol):
+    """What shows a run, and tells of it."""
+
+    @property
+    def console(self) -> LessonOpener:
+        """What opens lessons."""
+
+    def tell(self, sentence: str | None) -> None:
+        """Show a sentence for a few seconds; nothing for None."""
+
+    def key(self, action: str) -> str:
+        """Return the key in force of one of a lesson's actions, for display."""
+
+
+class ScreenHost(WindowHost, RunHost, Protocol):
     """A screen as its parts see it."""
 
     @property
     def console(self) -> ConsoleApp:
         """The app; available once the screen is shown."""
 
-    def tell(self, sentence: str | None) -> None:
-        """Show a sentence for a few seconds; nothing for None."""
-
-    def redraw(self) -> None:
-        """Draw everything soon."""
-
-    def key(self, action: str) -> str:
-        """Return the key in force of one of a lesson's actions, for display."""
-
 
 class ScreenParts:
     """The actions of a screen: those of its parts, its own methods ``action_<id>``, and more by id."""
 
     def __init__(
-        self, screen: Screen[Any], scope: Scope, *parts: ScreenPart, **more: Callable[[], object]
+        self, screen: object, scope: Scope, *parts: ScreenPart, **more: Callable[[], object]
     ) -> None:
         self._homes: dict[str, ScreenPart] = {}
         for part in parts:

@@ -8,7 +8,7 @@ from typing import Any
 from textual.screen import Screen
 
 from cbtui.runs.compared_runs import ComparedSide, compared_side
-from cbtui.runs.live.live_run import LiveRun, RunState
+from cbtui.runs.live.live_run import LiveRun, RunState, has_robot
 from cbtui.runs.setup.changeable import (
     ChangeableCallback,
     ChangeableSetup,
@@ -20,11 +20,11 @@ from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.equivalent_code import code_of
 from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.compare import CompareScreen
-from cbtui.screens.parts.part import ScreenHost, ScreenPart
+from cbtui.screens.parts.part import RunHost, ScreenHost, ScreenPart, WindowHost
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.parts.selection import LaneSelection
-from cbtui.screens.setup import SetupScreen
-from cbtui.screens.setup_rows import GroupRow, NumberRow, SettingRow, ThreadsRow
+from cbtui.screens.windows.setup import SetupScreen
+from cbtui.screens.windows.setup_rows import GroupRow, NumberRow, SettingRow, ThreadsRow
 
 _TOLD = 2
 """The most statements of equivalent code in the notification of a restart."""
@@ -38,7 +38,7 @@ class Restarts(ScreenPart):
     yet; ``speed`` returns its speed. ``at_any_time`` offers a restart before the run has ended.
     """
 
-    host: ScreenHost
+    host: RunHost
     runs: RunController[LiveRun]
     changes: Changes
     began: Callable[[], None]
@@ -48,14 +48,11 @@ class Restarts(ScreenPart):
     """The previous run."""
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer ``run_again`` for ended and silent runs; ``start_over`` always works."""
+        """Offer ``run_again`` at any time if the run has no robot to reset; ``start_over`` always works."""
         run = self.runs.run
-        match action:
-            case "run_again":
-                return self.at_any_time or not run.alive or run.state is RunState.SILENT
-            case "compare":
-                return self.before is not None
-        return True
+        is_over = not run.alive or run.state is RunState.SILENT
+        repeats = is_over or self.at_any_time or (bool(run.setup.programs) and not has_robot(run))
+        return repeats or action != "run_again"
 
     async def again(self, changes: Changes) -> None:
         """Run again with these changes."""
@@ -80,11 +77,27 @@ class Restarts(ScreenPart):
         """Restart a run that has not ended."""
         await self.again(self.changes)
 
+    @property
+    def both(self) -> tuple[ComparedSide, ComparedSide] | None:
+        """The previous run and this one; None if this is the first."""
+        return None if self.before is None else (self.before, compared_side(self.runs.run, self.changes))
+
+
+@dataclass
+class CompareKey(ScreenPart):
+    """Compares the run with the previous one."""
+
+    host: WindowHost
+    restarts: Restarts
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer it from the second run on."""
+        return self.restarts.both is not None
+
     def action_compare(self) -> None:
-        """Compare this run with the previous one."""
-        if self.before is not None:
-            now = compared_side(self.runs.run, self.changes)
-            self.host.ask(CompareScreen(self.before, now, self.host.charset), None)
+        """Open the comparison."""
+        if self.restarts.both is not None:
+            self.host.ask(CompareScreen(*self.restarts.both, self.host.charset), None)
 
 
 @dataclass
@@ -154,4 +167,6 @@ class SetUpKeys(ScreenPart):
                 self.host.tell("\n".join(code))
             else:
                 words = changes.words
-                self.host.tell(f"changed: {words}" if words else "everything as it is written")
+                self.host.tell(
+                    f"changed: {words}" if words else "everything is back to what the program says"
+                )

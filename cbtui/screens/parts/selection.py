@@ -1,29 +1,38 @@
 """Keys and clicks that navigate between lanes, code and findings."""
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from textual.screen import Screen
 
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import ShownRun
-from cbtui.screens.diagnoses import DiagnosesScreen
 from cbtui.screens.parts.bars import BarSelection
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
+from cbtui.screens.windows.diagnoses import Chosen, DiagnosesScreen, Way
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.lanes import Lanes, Selection
+from cbtui.widgets.lanes.details import position_in
 from cbtui.widgets.lanes.rows import all_lanes
 from cbtui.widgets.lanes.selection import neighbouring_bar
+from lessons.catalogue import lesson_on
+from lessons.lesson import Lesson
 from sim.trace.events import EntityId
+from sim.trace.model import Span
+
+if TYPE_CHECKING:
+    from cbtui.screens.parts.cures import CureTrials
 
 
 @dataclass
 class LaneSelection(ScreenPart):
     """Moves the selection along the lanes of one run, and between lanes and code.
 
-    ``service`` has a lane before its first call.
+    ``service`` has a lane before its first call; ``lesson`` is the one on screen; ``cures`` tries the cures
+    of findings, if the run can be made again.
     """
 
     screen: Screen[None]
@@ -33,6 +42,8 @@ class LaneSelection(ScreenPart):
     bars: BarSelection
     panes: PaneLayout
     service: str
+    lesson: Lesson | None = None
+    cures: "CureTrials | None" = None
 
     @property
     def _lanes(self) -> Lanes:
@@ -78,24 +89,47 @@ class LaneSelection(ScreenPart):
         self.panes.show(self.panes.current)
 
     def action_to_code(self) -> None:
-        """Show the code of the selected callback."""
-        callback = self.callback
-        entity = None if callback is None else self.runs.timeline.entities.get(callback)
-        if entity is not None:
-            self.panes.show("code")
-            self.screen.query_one(CodeView).show_callback(entity)
+        """Show the line at which the selected call is, or was longest; else its callback."""
+        callback, timeline, selection = self.callback, self.runs.timeline, self._lanes.selection
+        entity = None if callback is None else timeline.entities.get(callback)
+        if entity is None:
+            return
+        self.panes.show("code")
+        bar = None if selection is None else selection.bar
+        position = position_in(timeline, bar, self.navigation.now) if isinstance(bar, Span) else None
+        code = self.screen.query_one(CodeView)
+        if position is None:
+            code.show_callback(entity)
+        else:
+            code.show_line(position.file, position.line)
 
     def action_diagnoses(self) -> None:
         """List what the rules found."""
         monitor = self.runs.findings
         monitor.look()
         self.host.redraw()
-        self.host.ask(DiagnosesScreen(monitor.findings, self.host.charset), self._go_to_finding)
+        helps = None if self.cures is None else self.cures.helps
+        screen = DiagnosesScreen(monitor.findings, self.host.charset, helps, self._lesson_on)
+        self.host.ask(screen, self._take)
 
-    def _go_to_finding(self, told: ExplainedFinding | None) -> None:
-        """Go to a finding's moment and code, and select its callback's lane."""
-        if told is None:
+    def _lesson_on(self, told: ExplainedFinding) -> Lesson | None:
+        """The lesson that shows a problem, unless it is on screen."""
+        lesson = lesson_on(told.finding.rule.id) if told.is_problem else None
+        return None if lesson == self.lesson else lesson
+
+    async def _take(self, chosen: Chosen | None) -> None:
+        if chosen is None:
             return
+        lesson = self._lesson_on(chosen.finding)
+        if chosen.way is Way.CURE and self.cures is not None:
+            await self.cures.run(chosen.finding)
+        elif chosen.way is Way.LESSON and lesson is not None:
+            self.host.console.open_lesson(lesson)
+        else:
+            self._go_to_finding(chosen.finding)
+
+    def _go_to_finding(self, told: ExplainedFinding) -> None:
+        """Go to a finding's moment and code, and select its callback's lane."""
         if told.at is not None:
             self.navigation.seek(told.at)
         self.bars.select(self._last_of(told.finding.subject))

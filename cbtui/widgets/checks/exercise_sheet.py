@@ -32,7 +32,8 @@ class ExerciseTexts:
         self, lesson: Lesson, checks: Sequence[Check], name: str, following: Lesson | None, keys: ExerciseKeys
     ) -> None:
         assert lesson.exercise is not None, "only exercises are told about here"
-        self._asks = " ".join(lesson.exercise.asks.split())
+        self._task = " ".join(lesson.exercise.asks.split())
+        self._asks = self._task.replace("`", "")
         self._seconds = lesson.run.seconds
         self._open = tuple(CheckRow(check.asks) for check in checks)
         self._name = name
@@ -61,16 +62,16 @@ class ExerciseTexts:
         """Return the task and how to work on it, as Markdown."""
         keys = self._keys
         return (
-            f"# Exercise\n\n{self._asks}\n\n"
-            f"Your file is `{file}`. `{keys.editor}` opens it in your editor; any other editor does as well. "
-            "Whenever it is saved, it is run as the exercise says, and checked. "
-            f"`{keys.watch}` runs it so slowly that you can watch. `{keys.lesson}` goes back to the lesson."
+            f"# Exercise\n\n{self._task}\n\n"
+            f"Your file is `{file}`. `{keys.editor}` opens it in your editor; any other editor works too. "
+            "Whenever you save it, it is run and checked. "
+            f"`{keys.watch}` runs it slowly enough to watch. `{keys.lesson}` goes back to the lesson."
         )
 
     @property
     def gone(self) -> str:
         """The sentence on a missing file."""
-        return f"{self._name} is gone; it is run and checked again when it is back."
+        return f"{self._name} is gone; it will be run and checked again when it is back."
 
     @property
     def _way_on(self) -> str:

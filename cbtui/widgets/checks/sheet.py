@@ -3,12 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum, StrEnum
-from textwrap import wrap
 from typing import NamedTuple
 
-from cbtui.looks.theme import Charset
 from cbtui.runs.judged.check_text import FAILED, PASSED
-from cbtui.text.cells import visible
+from cbtui.text.cells import lines_of_text
 from sim.trace.model import Nanoseconds
 
 _INDENT = 2
@@ -73,9 +71,18 @@ class ChecksSheet:
     @property
     def note(self) -> str:
         """The number of passed checks in brief; "" if none was judged."""
-        passed = sum(row.standing is CheckStatus.PASSED for row in self.rows)
         judged = any(row.standing is not CheckStatus.OPEN for row in self.rows)
-        return f"{self.standing.sign} {passed} of {len(self.rows)} pass" if judged else ""
+        return f"{self.standing.sign} {self._passed} of {len(self.rows)} pass" if judged else ""
+
+    @property
+    def count(self) -> str:
+        """The number of passed checks: ``2/5``; ``✓`` if the exercise is done."""
+        is_done = self.standing is CheckStatus.PASSED
+        return self.standing.sign if is_done else f"{self._passed}/{len(self.rows)}"
+
+    @property
+    def _passed(self) -> int:
+        return sum(row.standing is CheckStatus.PASSED for row in self.rows)
 
 
 class ChecksLine(NamedTuple):
@@ -95,10 +102,10 @@ def _lines(sheet: ChecksSheet, width: int) -> Iterator[ChecksLine]:
     for place, row in enumerate(sheet.rows):
         for line in _signed(row.standing, row.asks, ChecksStyle.ASKS, width):
             yield line._replace(row=place)
-        for text in _wrapped(row.detail, width - _INDENT):
+        for text in lines_of_text(row.detail, width - _INDENT):
             yield ChecksLine(((f"{' ' * _INDENT}{text}", ChecksStyle.DETAIL),), place)
-    yield from _titled("What is asked")
-    yield from (ChecksLine(((text, ChecksStyle.TEXT),)) for text in _wrapped(sheet.asks, width))
+    yield from _titled("What the exercise asks")
+    yield from (ChecksLine(((text, ChecksStyle.TEXT),)) for text in lines_of_text(sheet.asks, width))
     if sheet.faults:
         yield from _titled("What else is wrong with the run")
     for fault in sheet.faults:
@@ -111,11 +118,7 @@ def _titled(title: str) -> Iterator[ChecksLine]:
 
 
 def _signed(standing: CheckStatus, text: str, kind: ChecksStyle, width: int) -> Iterator[ChecksLine]:
-    first, *others = _wrapped(text, width - _INDENT) or [""]
+    first, *others = lines_of_text(text, width - _INDENT) or [""]
     yield ChecksLine(((f"{standing.sign} ", standing.kind), (first, kind)))
     for other in others:
         yield ChecksLine(((" " * _INDENT, kind), (other, kind)))
-
-
-def _wrapped(text: str, width: int) -> list[str]:
-    return wrap(visible(text, Charset.BRAILLE), width, break_on_hyphens=False)

@@ -1,12 +1,14 @@
 """The checks pane: a picked check leads to its moment."""
 
+from collections.abc import Iterator
+from functools import partial
 from typing import ClassVar
 
 from rich.segment import Segment
 from rich.style import Style
 from textual.binding import BindingType
 from textual.events import Click
-from textual.geometry import Size
+from textual.geometry import Offset, Size
 from textual.reactive import var
 from textual.strip import Strip
 
@@ -14,6 +16,7 @@ from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.widgets.checks.sheet import ChecksLine, ChecksSheet, ChecksStyle, CheckStatus, lines_of
 from cbtui.widgets.inked_view import InkedView
+from cbtui.widgets.jump import JumpTarget
 from sim.trace.model import Nanoseconds
 
 _PICKED = "checks--picked"
@@ -97,8 +100,21 @@ class ChecksView(InkedView):
         y = -1 if offset is None else self.scroll_offset.y + offset.y
         row = self._lines[y].row if 0 <= y < len(self._lines) else None
         if row is not None:
-            self._pick(row)
-            self.action_look_there()
+            self._go_to(row)
+
+    def jump_targets(self) -> Iterator[JumpTarget]:
+        """Yield the checks of which the first line is in view."""
+        seen = set[int]()
+        top = self.scroll_offset.y
+        for y, line in enumerate(self._lines[: top + self.size.height]):
+            if line.row is not None and line.row not in seen:
+                seen.add(line.row)
+                if y >= top:
+                    yield JumpTarget(Offset(0, y - top), partial(self._go_to, line.row))
+
+    def _go_to(self, row: int) -> None:
+        self._pick(row)
+        self.action_look_there()
 
     @property
     def _moment(self) -> Nanoseconds | None:

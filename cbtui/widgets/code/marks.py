@@ -4,12 +4,13 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
+from typing import TypeAlias
 
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.lanes.names import short_thread
 from sim.durations import duration
-from sim.trace.descriptions import why_waiting
+from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.events import EntityId
 from sim.trace.model import EntityInfo, Moment, Nanoseconds, Span, Window
 from sim.trace.roster import roster_of
@@ -45,6 +46,52 @@ class CallbackMark:
     letter: str
     number: int
     running_long: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class LineMark:
+    """A line at which a callback is: what it does there, from the longest text to the shortest.
+
+    A line that has called on has no text. ``number`` is that of the callback's group. A ``fault`` is what
+    ended the program.
+    """
+
+    texts: tuple[str, ...]
+    number: int = 0
+    fault: bool = False
+
+
+LineMarks: TypeAlias = dict[int, LineMark]
+"""By line, counted from 1."""
+
+
+def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, LineMarks]:
+    """Return the lines at which callbacks are at a moment, with the calls that led there."""
+    found: defaultdict[SourceFile, LineMarks] = defaultdict(dict)
+    groups = list(timeline.groups)
+    for thread, span in timeline.moment(at).running.items():
+        position = timeline.position_on(thread, at)
+        if position is None:
+            continue
+        number = groups.index(timeline.entities[span.entity].group)
+        *calls, here = position.frames
+        for frame in (*calls, here):
+            file = files.of(frame.file)
+            if file is not None:
+                lasted = duration(at - position.start)
+                texts = (f"▶ {doing_of(position)}, {lasted}", f"▶ {lasted}", "") if frame is here else ()
+                found[file][frame.line] = LineMark(texts, number)
+    return dict(found)
+
+
+def fault_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, LineMarks]:
+    """Return the line at which something ended the program by a moment, such as an error of syntax."""
+    ended = timeline.ended
+    if ended is None or not ended.problem or ended.t > at:
+        return {}
+    path, line = ended.place
+    file = files.of(path) if line else None
+    return {} if file is None else {file: {line: LineMark((f"✗ {ended.problem}",), fault=True)}}
 
 
 def marks_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, list[CallbackMark]]:
@@ -110,9 +157,22 @@ def _blocked_text(running: Sequence[Span], moment: Moment, lasted: str) -> Itera
     for span in running:
         blocked = moment.blocked.get(span.thread)
         if blocked is not None and blocked.entity == span.entity:
-            yield f"▶ {lasted}: stands in the call of {blocked.service}"
+            yield f"▶ {lasted}: blocked in the call of {blocked.service}"
             return
 
 
 def _threads(spans: Sequence[Span], timeline: Timeline) -> str:
     return " ".join(short_thread(timeline.threads[span.thread].name) for span in spans)
+
+
+def changed_lines(before: Sequence[CallbackMark], after: Sequence[CallbackMark]) -> Iterator[tuple[int, int]]:
+    """Yield the first line and the length of each range of lines that must be redrawn."""
+    known = {marked.first_line: marked for marked in before}
+    for marked in after:
+        old = known.pop(marked.first_line, None)
+        if old == marked:
+            continue
+        alike = old is not None and old.doing is marked.doing and old.number == marked.number
+        yield marked.first_line, 1 if alike else marked.last_line - marked.first_line + 1
+    for gone in known.values():
+        yield gone.first_line, gone.last_line - gone.first_line + 1

@@ -69,6 +69,11 @@ class SourceFiles:
             self._found[file] = self._find(file)
         return self._found[file]
 
+    def changed_beside_main(self) -> SourceFile | None:
+        """Return a file that was asked for, other than the program's own, that has changed on disk."""
+        others = (file for path, file in self._by_path.items() if path != self._real_main)
+        return next((file for file in others if file.has_changed()), None)
+
     def read_anew(self) -> None:
         """Read the files again; an unreadable one stays as it was."""
         self._found.clear()

@@ -1,15 +1,15 @@
 """The source pane: it scrolls, follows running callbacks, and draws only visible lines."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 from typing import ClassVar, NamedTuple
 
 from rich.segment import Segment
-from rich.style import Style
 from textual.binding import BindingType
 from textual.events import Click
-from textual.geometry import Size
+from textual.geometry import Offset, Size
 from textual.message import Message
 from textual.reactive import var
 from textual.strip import Strip
@@ -19,15 +19,27 @@ from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role
 from cbtui.text.cells import fit, visible
 from cbtui.widgets.code.highlight import SourceToken, TokenKind
-from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, marks_at
+from cbtui.widgets.code.marks import (
+    CallbackActivity,
+    CallbackMark,
+    LineMark,
+    LineMarks,
+    changed_lines,
+    fault_at,
+    lines_at,
+    marks_at,
+)
 from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.inked_view import InkedView
+from cbtui.widgets.jump import JumpTarget
 from sim.trace.events import EntityId, Reason
 from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
 _GUTTER = 7
 _LEAST_CODE = 20
+_SIDEWAYS = 8
+"""Columns of a step sideways."""
 
 _CURSOR = "code--cursor"
 
@@ -69,6 +81,13 @@ class CodeView(InkedView):
     class EditorWanted(Message):
         """The user wants to open the file in an editor."""
 
+    class ModuleSaved(Message):
+        """Another file of the program than its own, of this name, differs from what runs."""
+
+        def __init__(self, name: str) -> None:
+            super().__init__()
+            self.name = name
+
     class CallbackPicked(Message):
         """The user picked a line of ``entity``'s callback; with ``leaves`` the focus moves to its lane."""
 
@@ -89,14 +108,23 @@ class CodeView(InkedView):
         self._files = SourceFiles(path, source, recorded)
         self._file = self._files.main
         self._marks: dict[SourceFile, list[CallbackMark]] = {}
+        self._lines: dict[SourceFile, LineMarks] = {}
         self._long: set[tuple[Path, int]] = set()
         self._placed = False
+        self._told_fault = False
         self._changed = False
         self._drawn: dict[int, Strip] = {}
         self._open(self._file)
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
         """Mark the callbacks' activities at a moment, and scroll to one that has run for a while."""
+        fault = fault_at(timeline, now, self._files)
+        lines, lines_before = lines_at(timeline, now, self._files) | fault, self._here
+        self._lines = lines
+        for line in {*lines_before, *self._here}:
+            if lines_before.get(line) != self._here.get(line):
+                self.refresh_lines(line - 1)
+        self._go_to_fault(fault)
         marks = marks_at(timeline, now, self._files)
         if marks == self._marks:
             return
@@ -104,6 +132,12 @@ class CodeView(InkedView):
         for line, count in changed_lines(before, self._marked):
             self.refresh_lines(line - 1, count)
         self._follow()
+
+    def _go_to_fault(self, found: Mapping[SourceFile, LineMarks]) -> None:
+        """Go to the line that ended the program, once."""
+        for file, lines in found.items() if not self._told_fault else ():
+            self.show_line(str(file.path.absolute()), next(iter(lines)))
+        self._told_fault = bool(found)
 
     def show_callback(self, entity: EntityInfo) -> None:
         """Pick a callback's first line and scroll to it, if its source is available."""
@@ -129,13 +163,18 @@ class CodeView(InkedView):
     def read_anew(self) -> None:
         """Read the files again, as the next run uses those on disk."""
         self._files.read_anew()
-        self._marks, self._long = {}, set()
+        self._marks, self._lines, self._long = {}, {}, set()
         self._open(self._files.of(str(self._file.path.absolute())) or self._files.main)
 
-    def look_at_disk(self) -> None:
-        """Check whether the file has changed on disk."""
+    def look_at_disk(self, entities: Iterable[EntityInfo] = ()) -> None:
+        """Check whether the files have changed on disk, those of ``entities`` among them."""
+        for entity in entities:
+            self._files.of(entity.file)
         self._changed = self._file.has_changed()
         self._name_it()
+        other = self._files.changed_beside_main()
+        if other is not None:
+            self.post_message(self.ModuleSaved(other.path.name))
 
     def watch_over(self) -> None:
         """Update the note on a changed file."""
@@ -162,6 +201,11 @@ class CodeView(InkedView):
         """The callbacks of the file that is shown."""
         return self._marks.get(self._file, [])
 
+    @property
+    def _here(self) -> LineMarks:
+        """The lines of the file at which callbacks are."""
+        return self._lines.get(self._file, {})
+
     # the picked line
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
@@ -171,6 +215,10 @@ class CodeView(InkedView):
                 return self.picked is not None and self._marked_at(self.picked) is not None
             case "let_go":
                 return self.picked is not None
+            case "sideways_left":
+                return self.scroll_offset.x > 0
+            case "sideways_right":
+                return self.scroll_offset.x < self.max_scroll_x
         return super().check_action(action, parameters)
 
     def action_line_above(self) -> None:
@@ -180,6 +228,14 @@ class CodeView(InkedView):
     def action_line_below(self) -> None:
         """Go to the line below."""
         self._pick_beside(1)
+
+    def action_sideways_left(self) -> None:
+        """Show what stands further to the left."""
+        self.scroll_relative(x=-_SIDEWAYS, animate=False, force=True)
+
+    def action_sideways_right(self) -> None:
+        """Show what stands further to the right."""
+        self.scroll_relative(x=_SIDEWAYS, animate=False, force=True)
 
     def action_pick_callback(self) -> None:
         """Report the line's callback, to move to its lane."""
@@ -205,8 +261,19 @@ class CodeView(InkedView):
         offset = event.get_content_offset(self)
         line = 0 if offset is None else self.scroll_offset.y + offset.y + 1
         if 0 < line <= len(self._file.lines):
-            self._pick(line)
-            self._tell_callback(leaves=False)
+            self._pick_and_tell(line)
+
+    def jump_targets(self) -> Iterator[JumpTarget]:
+        """Yield the callbacks whose first line is in view."""
+        top = self.scroll_offset.y
+        for marked in self._marked:
+            if top < marked.first_line <= top + self.size.height:
+                go = partial(self._pick_and_tell, marked.first_line)
+                yield JumpTarget(Offset(0, marked.first_line - 1 - top), go)
+
+    def _pick_and_tell(self, line: int) -> None:
+        self._pick(line)
+        self._tell_callback(leaves=False)
 
     def _tell_callback(self, leaves: bool) -> None:
         marked = None if self.picked is None else self._marked_at(self.picked)
@@ -239,21 +306,15 @@ class CodeView(InkedView):
         marked = self._marked_at(number + 1)
         code = self._code(number)
         left = self.scroll_offset.x
-        line = Strip([*self._gutter(number + 1, marked), *code.crop(left, left + width - _GUTTER)])
+        code_line = Strip([*self._gutter(number + 1, marked), *code.crop(left, left + width - _GUTTER)])
         if marked is None or marked.first_line != number + 1 or marked.doing is CallbackActivity.IDLE:
-            line = line.adjust_cell_length(width, self.in_class(""))
+            line = code_line.adjust_cell_length(width, self.in_class(""))
         else:
-            line = self._with_mark(line, marked, width)
-        return line if self.picked != number + 1 else self._set_off(line)
-
-    def _set_off(self, line: Strip) -> Strip:
-        """Give a line another background, except where it has its own."""
-        usual, ground = self.in_class("").bgcolor, Style(bgcolor=self.in_class(_CURSOR).bgcolor, bold=True)
-        parts = [
-            Segment(text, style + ground) if style and style.bgcolor == usual else Segment(text, style)
-            for text, style, _ in line
-        ]
-        return Strip(parts, line.cell_length)
+            line = self._with_mark(code_line, marked, width)
+        here = self._here.get(number + 1)
+        if here is not None and here.texts:
+            line = self._with_text(code_line, here.texts, _ink_of(here), width)
+        return line if here is None and self.picked != number + 1 else self.set_off(line, _CURSOR)
 
     def _follow(self) -> None:
         """Scroll to a callback that has newly run for a while; at first, to any.
@@ -280,7 +341,10 @@ class CodeView(InkedView):
             self._open(file)
             here = [line]
         if here:
-            self.call_after_refresh(self._bring_into_view, here[0] - 1)
+            inside = (line for line, mark in self._here.items() if mark.texts)
+            position = next(inside, here[0])
+            seen_with_it = 0 <= position - here[0] < self.size.height - 2
+            self.call_after_refresh(self._bring_into_view, (here[0] if seen_with_it else position) - 1)
 
     def _bring_into_view(self, line: int) -> None:
         top, height = self.scroll_offset.y, self.size.height
@@ -294,21 +358,30 @@ class CodeView(InkedView):
 
     def _gutter(self, line: int, marked: CallbackMark | None) -> list[Segment]:
         number = Segment(f"{line:>4} ", self.in_ink(Ink(Role.FAINT)))
+        here = self._here.get(line)
+        if here is not None and here.fault:
+            return [number, Segment("✗ ", self.in_ink(_ink_of(here)))]
         if marked is None:
             return [number, Segment("  ", self.in_class(""))]
         if marked.first_line == line:
             letter = fit(marked.letter, _GUTTER - 5, Charset.BRAILLE)
             return [number, Segment(letter, self.in_ink(Ink(Role.LETTER, marked.number)))]
+        if here is not None:
+            return [number, Segment("▶ " if here.texts else "▸ ", self.in_ink(Ink(Role.BAR, here.number)))]
         glyph, role = _EDGES.get(marked.doing, (" ", Role.FAINT))
         return [number, Segment(f"{glyph} ", self.in_ink(Ink(role, marked.number)))]
 
     def _with_mark(self, line: Strip, marked: CallbackMark, width: int) -> Strip:
         """Add the text on a callback's activity at the right, as long as it fits beside the code."""
+        return self._with_text(line, marked.texts, Ink(_INKS[marked.doing], marked.number), width)
+
+    def _with_text(self, line: Strip, texts: Sequence[str], ink: Ink, width: int) -> Strip:
+        """Put the longest text that fits beside the code at the right of a line."""
         room = width - line.cell_length - 1
-        texts = [f" {text} " for text in marked.texts]
-        text = next((text for text in texts if len(text) <= room), texts[-1])
-        text = fit(text, min(len(text), max(0, width - _LEAST_CODE)), Charset.BRAILLE)
-        mark = Segment(text, self.in_ink(Ink(_INKS[marked.doing], marked.number)))
+        padded = [f" {text} " for text in texts]
+        text = next((text for text in padded if len(text) <= room), padded[-1])
+        text = fit(text, min(len(text), max(0, width - _LEAST_CODE)), Charset.BRAILLE) if text.strip() else ""
+        mark = Segment(text, self.in_ink(ink))
         return Strip([*line.adjust_cell_length(width - len(text), self.in_class("")), mark], width)
 
     def _code(self, number: int) -> Strip:
@@ -322,14 +395,5 @@ class CodeView(InkedView):
         return Segment(visible(word.text, Charset.BRAILLE), style)
 
 
-def changed_lines(before: Sequence[CallbackMark], after: Sequence[CallbackMark]) -> Iterator[tuple[int, int]]:
-    """Yield the first line and the length of each range of lines that must be redrawn."""
-    known = {marked.first_line: marked for marked in before}
-    for marked in after:
-        old = known.pop(marked.first_line, None)
-        if old == marked:
-            continue
-        alike = old is not None and old.doing is marked.doing and old.number == marked.number
-        yield marked.first_line, 1 if alike else marked.last_line - marked.first_line + 1
-    for gone in known.values():
-        yield gone.first_line, gone.last_line - gone.first_line + 1
+def _ink_of(here: LineMark) -> Ink:
+    return Ink(Role.WARN) if here.fault else Ink(Role.LABEL, here.number)

@@ -1,6 +1,6 @@
 """The signs of the factory in each charset: workers, seats, boxes, belts, walls."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cbtui.looks.theme import Charset
 
@@ -31,9 +31,6 @@ class Figure:
     stool: tuple[str, str]
 
 
-_DRAWN = Figure("/█\\", "/ \\", "< \\", "/ >", ("▐     ▌", "▐▄▄▄▄▄▌"), ("       ", " (___) "))
-
-
 @dataclass(frozen=True, slots=True)
 class FactoryGlyphs:
     """One charset's signs. Seats are pairs: what stands left and right of the worker."""
@@ -56,45 +53,36 @@ class FactoryGlyphs:
     figure: Figure
 
 
-_WALLED = Walls("━", "┃", "┏", "┓", "┣", "┫", "┗", "┛")
-_OPEN = Walls("╌", "╎", "┌", "┐", "├", "┤", "└", "┘")
-
+_BRAILLE = FactoryGlyphs(
+    busy="☻",
+    idle="☺",
+    away="·",
+    seat=("▐", "▌"),
+    open_seat=("(", ")"),
+    comes="◂",
+    leaves="▸",
+    box="■",
+    slot="□",
+    belt="─",
+    door="▸",
+    clock="◷",
+    tick="◆",
+    walled=Walls("━", "┃", "┏", "┓", "┣", "┫", "┗", "┛"),
+    open=Walls("╌", "╎", "┌", "┐", "├", "┤", "└", "┘"),
+    figure=Figure("/█\\", "/ \\", "< \\", "/ >", ("▐     ▌", "▐▄▄▄▄▄▌"), ("       ", " (___) ")),
+)
 FACTORY_GLYPHS = {
-    Charset.BRAILLE: FactoryGlyphs(
-        busy="☻",
-        idle="☺",
-        away="·",
-        seat=("▐", "▌"),
-        open_seat=("(", ")"),
-        comes="◂",
-        leaves="▸",
-        box="■",
-        slot="□",
-        belt="─",
-        door="▸",
-        clock="◷",
-        tick="◆",
-        walled=_WALLED,
-        open=_OPEN,
-        figure=_DRAWN,
-    ),
-    Charset.BLOCK: FactoryGlyphs(
-        busy="☻",
-        idle="☺",
-        away="·",
-        seat=("▐", "▌"),
-        open_seat=("(", ")"),
+    Charset.BRAILLE: _BRAILLE,
+    Charset.BLOCK: replace(
+        _BRAILLE,
         comes="◄",
         leaves="►",
-        box="■",
         slot="·",
-        belt="─",
         door="►",
         clock="○",
         tick="♦",
         walled=Walls("═", "║", "╔", "╗", "╠", "╣", "╚", "╝"),
         open=Walls("·", ":", "·", "·", "·", "·", "·", "·"),
-        figure=_DRAWN,
     ),
     Charset.ASCII: FactoryGlyphs(
         busy="@",

@@ -75,13 +75,7 @@ class Density:
 LARGE = Density(3, 1, 1, 0, seat=3)
 """Workers as figures of three rows, if they have a column of their own."""
 
-DENSITIES = (
-    LARGE,
-    Density(2, 1, 1, 0),
-    Density(2, 1, 0, 1),
-    Density(1, 1, 0, 1),
-    Density(1, 0, 0, 0),
-)
+DENSITIES = (LARGE, Density(2, 1, 1, 0), Density(2, 1, 0, 1), Density(1, 1, 0, 1), Density(1, 0, 0, 0))
 """From large figures to bare rows."""
 
 

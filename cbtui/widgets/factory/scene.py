@@ -7,7 +7,9 @@ from functools import cached_property
 
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, ThreadLane, all_lanes, ever_ran
+from sim.diagnosis.words import thread_count
 from sim.trace.events import EntityKind, GroupKind, ThreadId
+from sim.trace.figures.waiting import waits_for_others
 from sim.trace.model import Blocked, EntityInfo, GroupInfo, Moment, Nanoseconds, Queue, Span, Wait, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
@@ -60,11 +62,8 @@ class Belt:
     queue: Queue
     wait: Wait | None
     tick: TimerTick | None
-
-    @property
-    def waits_for_others(self) -> bool:
-        """Whether something other than its own last call keeps the callback waiting."""
-        return self.wait is not None and self.wait.holder != self.entity.id
+    waits_for_others: bool = False
+    """Whether something other than its own last call keeps the callback waiting."""
 
     @property
     def full(self) -> bool:
@@ -141,6 +140,7 @@ class _SceneBuilder:
         self._now = now
         self._glance = glance
         self._moment: Moment = timeline.moment(now)
+        self._waiting = {wait.entity for wait in waits_for_others(self._moment)}
         self._numbers = {group: place for place, group in enumerate(timeline.groups)}
 
     def scene(self) -> FactoryScene:
@@ -157,7 +157,7 @@ class _SceneBuilder:
                     groups[group.id], members[group.id] = group, [entity]
                 case MemberLane(entity, group):
                     members[group.id].append(entity)
-        hired = sum(executor.threads for executor in self._timeline.executors.values())
+        hired = thread_count(self._timeline)
         workers += [
             FactoryWorker(f"worker {number + 1}", WorkerState.NEVER) for number in range(len(workers), hired)
         ]
@@ -211,7 +211,8 @@ class _SceneBuilder:
     def _belt(self, entity: EntityInfo) -> Belt:
         wait = self._moment.waiting.get(entity.id)
         tick = self._tick(entity) if entity.kind is EntityKind.TIMER else None
-        return Belt(entity, self._moment.queues.get(entity.id, _NO_QUEUE), wait, tick)
+        queue = self._moment.queues.get(entity.id, _NO_QUEUE)
+        return Belt(entity, queue, wait, tick, waits_for_others=entity.id in self._waiting)
 
     def _tick(self, timer: EntityInfo) -> TimerTick:
         """Compute a timer's next due time from its last call, as rcl does: missed ticks are dropped."""

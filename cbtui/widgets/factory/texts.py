@@ -73,12 +73,15 @@ def _trouble(scene: FactoryScene) -> str:
     waits = list(scene.waits())
     held = sum(wait.reason is Reason.GROUP_HELD for wait in waits)
     short_of_workers = sum(wait.reason is Reason.NO_FREE_WORKER for wait in waits)
-    unattended = len(waits) - held - short_of_workers
+    queued = sum(wait.reason is Reason.EVENT_QUEUE for wait in waits)
+    unattended = len(waits) - held - short_of_workers - queued
     parts = []
     if held:
         parts.append(f"{_waiting(held)} for {'it' if len(scene.areas) == 1 else 'a seat'}")
     if short_of_workers:
         parts.append(f"{_waiting(short_of_workers)} for a worker")
+    if queued:
+        parts.append(f"{_waiting(queued)} in the event queue")
     if unattended:
         parts.append(f"{_waiting(unattended)}, nobody spins")
     return ", ".join(parts)
@@ -117,6 +120,7 @@ def _why(belt: Belt, timeline: Timeline) -> tuple[str, ...]:
 _WITHOUT_HOLDER = {
     Reason.GROUP_HELD: ("seat taken", "taken"),
     Reason.NO_FREE_WORKER: ("no free worker", "no worker"),
+    Reason.EVENT_QUEUE: (Reason.EVENT_QUEUE.value, "in the event queue", "queued"),
     Reason.NOBODY_SPINS: ("nobody spins",),
 }
 
@@ -192,12 +196,12 @@ def blocked_texts(worker: FactoryWorker, now: Nanoseconds) -> tuple[str, ...]:
         return ()
     took, service = duration(now - worker.blocked.start), worker.blocked.service
     return (
-        f"stuck in call of {service}, no reply for {took}",
-        f"stuck in call of {service} {took}",
-        f"stuck in {service} {took}",
-        f"stuck in call {took}",
-        f"stuck {took}",
-        "stuck",
+        f"blocked in call of {service}, no reply for {took}",
+        f"blocked in call of {service} {took}",
+        f"blocked in {service} {took}",
+        f"blocked in call {took}",
+        f"blocked {took}",
+        "blocked",
     )
 
 

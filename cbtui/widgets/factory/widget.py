@@ -3,9 +3,11 @@
 from collections.abc import Sequence
 
 from textual.geometry import Size
-from textual.reactive import reactive
+from textual.reactive import reactive, var
 
 from cbtui.looks.theme import Charset, TextRun
+from cbtui.text.cells import fit, lines_of_text
+from cbtui.widgets.factory.canvas import WARN
 from cbtui.widgets.factory.painter import GLANCE, FactoryPainter
 from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.trace.model import Nanoseconds
@@ -24,14 +26,23 @@ class FactoryView(PaintedWidget):
     timeline: reactive[Timeline] = painted(Timeline, always_update=True)
     now: reactive[Nanoseconds] = painted(0)
     glance: reactive[Nanoseconds] = painted(GLANCE)
+    ring: reactive[tuple[str, ...]] = painted(())
+    """Who waits for whom in the deadlock of the moment: ``tick``, ``/add``, ``group A``, ``tick``."""
+    note: var[str] = var("")
+    """That there is a deadlock, for the title."""
     charset: reactive[Charset] = painted(Charset.BRAILLE)
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the factory."""
         painter = FactoryPainter(self.charset)
-        return painter.paint(self.timeline, self.now, size.width, size.height, self.glance)
+        ring = f"deadlock: {' → '.join(self.ring)}" if self.ring else ""
+        told = lines_of_text(ring, max(1, size.width - 1), self.charset)[: size.height // 2]
+        height = size.height - len(told)
+        rows = painter.paint(self.timeline, self.now, size.width, height, self.glance)
+        return [*rows, *([TextRun(fit(f" {line}", size.width, self.charset), WARN)] for line in told)]
 
-    def show(self, timeline: Timeline, now: Nanoseconds, speed: float) -> None:
-        """Show a moment of a run that goes at ``speed`` times real time."""
+    def show(self, timeline: Timeline, now: Nanoseconds, speed: float, ring: tuple[str, ...] = ()) -> None:
+        """Show a moment of a run that goes at ``speed`` times real time, and the deadlock in it."""
         self.now, self.timeline = now, timeline
+        self.ring, self.note = ring, "deadlock" if ring else ""
         self.glance = round(GLANCE * speed)

@@ -1,6 +1,6 @@
 """What lanes look like between label and status: bars, lines, hatching and the words on them."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 
 from cbtui.looks.theme import Glyphs, Ink, Role, texture_of
@@ -12,9 +12,10 @@ from cbtui.widgets.lanes.scale import TimeScale
 from cbtui.widgets.lanes.selection import Bar, end_of, start_of
 from cbtui.widgets.lanes.status import is_late
 from sim.durations import duration
-from sim.trace.descriptions import why_waiting
-from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
-from sim.trace.model import Blocked, EntityInfo, GroupInfo, Nanoseconds, Span, Wait
+from sim.trace.descriptions import doing_of, why_waiting
+from sim.trace.events import Doing, EntityId, EntityKind, GroupKind, Reason
+from sim.trace.figures.chains import ChainStep
+from sim.trace.model import Blocked, EntityInfo, GroupInfo, Nanoseconds, Position, Span, Wait
 from sim.trace.timeline import Timeline
 
 _WAIT_SHOWS_FROM = 2
@@ -22,6 +23,7 @@ _WAIT_SHOWS_FROM = 2
 
 _WORDS = Ink(Role.STRONG)
 _WARN = Ink(Role.WARN)
+_NUMBER = Ink(Role.MARK, selected=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +46,37 @@ class BarPainter:
                 self._label(row, stretch, Ink(Role.LABEL, number))
             self._failure(row, stretch)
 
+    def inside(self, row: CellRow, positions: Sequence[LaneColumn[Position] | None]) -> None:
+        """Draw what a thread's calls do at their lines, where nothing is drawn yet."""
+        for stretch in stretches(positions):
+            if stretch.is_short:
+                continue
+            at = stretch.top
+            number = self._number(at.entity)
+            free = [place for place, _ in stretch.places() if row.blank(place, place + 1)]
+            for place in free:
+                row.put(place, self._doing(at), Ink(Role.LINE, number))
+            doing = doing_of(at)
+            texts = (f"{doing}, line {at.line}", f"{doing} :{at.line}", doing, f":{at.line}")
+            self._words(row, *_longest_part(free), texts)
+
+    def nested(self, row: CellRow, calls: Sequence[tuple[int, int, Span]]) -> None:
+        """Draw calls inside other ones, each from a column to the one before another."""
+        for first, after, span in calls:
+            number = self._number(span.entity)
+            row.fill(first, after, self.glyphs.left[8], Ink(Role.BAR, number))
+            name = self.timeline.entities[span.entity].spoken_name
+            fitting = (text for text in (name, short_name(name)) if len(text) <= after - first)
+            row.write(first, next(fitting, ""), Ink(Role.LABEL, number))
+
+    def _doing(self, position: Position) -> str:
+        match position.doing:
+            case Doing.COMPUTES:
+                return self.glyphs.line
+            case Doing.SLEEPS:
+                return self.glyphs.sleeps
+        return self.glyphs.blocked
+
     def blocked(self, row: CellRow, columns: Sequence[LaneColumn[Blocked] | None]) -> None:
         """Draw where a thread is blocked in a service call, beside the name on its bar."""
         for stretch in stretches(columns):
@@ -65,8 +98,18 @@ class BarPainter:
     def select(self, row: CellRow, bar: Bar, scale: TimeScale) -> None:
         """Make the selected bar stand out."""
         end = end_of(bar)
-        first = max(0, scale.column_of(start_of(bar)))
-        last = scale.column_of(self.now if end is None else max(start_of(bar), end - 1))
+        self._stand_out(row, start_of(bar), self.now + 1 if end is None else end, scale)
+
+    def mark_step(self, row: CellRow, number: int, step: ChainStep, scale: TimeScale) -> None:
+        """Make a step of a chain stand out, with its number where it begins."""
+        self._stand_out(row, step.start, step.end, scale)
+        first = scale.column_of(step.start)
+        if first >= 0:
+            row.write(first, str(number), _NUMBER)
+
+    def _stand_out(self, row: CellRow, start: Nanoseconds, end: Nanoseconds, scale: TimeScale) -> None:
+        first = max(0, scale.column_of(start))
+        last = scale.column_of(max(start, end - 1))
         row.inks[first : last + 1] = [
             ink._replace(selected=True) for ink in row.inks[first : max(first, last + 1)]
         ]
@@ -100,10 +143,18 @@ class BarPainter:
             texts = (f"{most} at once",) if most > 1 else (f"runs {callback}", f"runs {short_name(callback)}")
             self._words(row, stretch.first, stretch.after, texts)
 
-    def calls(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], entity: EntityInfo) -> None:
-        """Draw when a callback runs: a mark for a short call, a line with its thread for a long one."""
+    def calls(
+        self,
+        row: CellRow,
+        columns: Sequence[LaneColumn[Span] | None],
+        entity: EntityInfo,
+        marks: Collection[int] = (),
+    ) -> None:
+        """Draw when a callback runs: a mark for a short call, a line with its thread for a long one.
+
+        No words stand in the columns of ``marks``, which are drawn over them.
+        """
         number = self._number(entity.id)
-        late = []
         for stretch in stretches(columns):
             if stretch.is_short:
                 self._columns(row, stretch, Ink(Role.BAR, number))
@@ -113,20 +164,24 @@ class BarPainter:
                 took = self._took(span)
                 thread = short_thread(self.timeline.threads[span.thread].name)
                 texts = (f"runs {took} on {thread}", f"runs {took}", "runs")
-                self._words(row, stretch.first, stretch.after, texts)
+                free = [place for place, _ in stretch.places() if place not in marks]
+                self._words(row, *_longest_part(free), texts)
             self._failure(row, stretch)
-            if entity.kind is EntityKind.TIMER and is_late(stretch.top, entity):
-                late.append(stretch)
-        for stretch in late:
-            self._late(row, stretch)
+
+    def late(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], entity: EntityInfo) -> None:
+        """Write beside a timer's late calls that they were late, where nothing else is drawn."""
+        for stretch in stretches(columns) if entity.kind is EntityKind.TIMER else ():
+            if is_late(stretch.top, entity):
+                self._late(row, stretch)
 
     def waits(
         self,
         row: CellRow,
         columns: Sequence[LaneColumn[Wait] | None],
         calls: Sequence[LaneColumn[Span] | None],
+        marks: Collection[int] = (),
     ) -> None:
-        """Draw when a callback waits: hatching, and the reason in words."""
+        """Draw when a callback waits: hatching, and the reason in words, ``marks`` as for ``calls``."""
         for stretch in stretches(columns):
             number = self._number(stretch.top.entity)
             hatch = self.glyphs.hatch[stretch.top.reason]
@@ -135,7 +190,7 @@ class BarPainter:
                 del shown[-1]
             for place in shown:
                 row.put(place, hatch, Ink(Role.HATCH, number))
-            first, after = _longest_part(shown)
+            first, after = _longest_part([place for place in shown if place not in marks])
             self._words(row, first, after, self._reasons(stretch.top))
 
     def _reasons(self, wait: Wait) -> tuple[str, ...]:
@@ -154,6 +209,8 @@ class BarPainter:
         return duration(max(0, end - interval.start))
 
     def _words_of(self, wait: Wait) -> tuple[str, ...]:
+        if wait.reason is Reason.EVENT_QUEUE:
+            return (wait.reason.value, "in the event queue")
         if wait.reason is not Reason.GROUP_HELD:
             return (wait.reason.value,)
         if wait.holder == wait.entity:

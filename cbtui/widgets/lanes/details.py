@@ -2,15 +2,16 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from cbtui.widgets.lanes.selection import Bar, Selection
 from sim.durations import duration, timestamp
-from sim.trace.descriptions import name_of, why_waiting
+from sim.trace.descriptions import doing_of, name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind
-from sim.trace.model import Call, EntityInfo, Nanoseconds, Span, Wait, Window
+from sim.trace.model import Call, EntityInfo, Nanoseconds, Position, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 _FIRST_REACH: Nanoseconds = 1_000_000
@@ -66,11 +67,14 @@ def _who_runs(timeline: Timeline, span: Span) -> str:
 
 def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
     if span.end is None or span.end > now >= span.start:
-        yield f"runs since {_seconds(span.start)}, for {duration(max(0, now - span.start))}"
+        yield f"runs since {timestamp(span.start)}, for {duration(max(0, now - span.start))}"
     else:
-        yield f"took {duration(span.end - span.start)} at {_seconds(span.start)}"
+        yield f"took {duration(span.end - span.start)} at {timestamp(span.start)}"
     if span.error:
         yield f"raised {span.error}"
+    position = position_in(timeline, span, now)
+    if position is not None:
+        yield f"{doing_of(position)} at {Path(position.file).name}:{position.line}"
     yield from _blocked(timeline, span, now)
     waits = _waits_before(timeline, span)
     if waits:
@@ -78,6 +82,16 @@ def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
     entity = timeline.entities.get(span.entity)
     if entity is not None:
         yield from _cause(timeline, span, entity)
+
+
+def position_in(timeline: Timeline, span: Span, now: Nanoseconds) -> Position | None:
+    """Where a call is in its code at ``now``; of one that is over, where it was longest."""
+    until = timeline.end if span.end is None else span.end
+    if span.start <= now < until or span.end is None:
+        return timeline.position_on(span.thread, now)
+    positions = timeline.positions_of(span.entity, Window(span.start, until))
+    inside = (each for each in positions if each.thread == span.thread)
+    return max(inside, key=lambda each: (each.end or until) - each.start, default=None)
 
 
 def _blocked(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
@@ -157,10 +171,10 @@ def _who_waits(timeline: Timeline, wait: Wait, now: Nanoseconds) -> str:
 
 def _of_wait(timeline: Timeline, wait: Wait, now: Nanoseconds) -> Iterator[str]:
     until = now if wait.end is None or wait.end > now >= wait.start else wait.end
-    yield f"{duration(max(0, until - wait.start))} from {_seconds(wait.start)}"
+    yield f"{duration(max(0, until - wait.start))} from {timestamp(wait.start)}"
     yield _reason(timeline, wait)
     if wait.since < wait.start:
-        yield f"ready since {_seconds(wait.since)}"
+        yield f"ready since {timestamp(wait.since)}"
     if wait.workers_busy:
         yield "no thread was free either"
     entity = timeline.entities.get(wait.entity)
@@ -172,7 +186,7 @@ def _of_wait(timeline: Timeline, wait: Wait, now: Nanoseconds) -> Iterator[str]:
 
 
 def _of_call(timeline: Timeline, call: Call, now: Nanoseconds) -> Iterator[str]:
-    yield f"{_caller(timeline, call)} at {_seconds(call.sent)}"
+    yield f"{_caller(timeline, call)} at {timestamp(call.sent)}"
     yield call.request
     if call.replied is not None and call.replied <= now:
         yield f"replied after {duration(call.replied - call.sent)}: {call.response}"
@@ -200,7 +214,3 @@ def _with_letter(timeline: Timeline, entity: EntityId) -> str:
     group = None if known is None else timeline.groups.get(known.group)
     name = name_of(entity, timeline)
     return name if group is None else f"{group.letter} {name}"
-
-
-def _seconds(at: Nanoseconds) -> str:
-    return f"{timestamp(at)}"

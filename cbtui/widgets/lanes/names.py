@@ -26,14 +26,15 @@ def thread_name(thread: ThreadInfo, room: int, ellipsis: str) -> str:
     for brief in (rest, rest.replace("MainThread", "Main").replace("Pool-", "P")):
         left = room - len(brief) - 1
         if between and left >= min(len(program), _LEAST_PROGRAM):
-            return f"{_without_middle(program, left, ellipsis)} {brief}"
+            return f"{shortened(program, left, ellipsis)} {brief}"
     return short_thread(thread.name)
 
 
-def _without_middle(text: str, room: int, ellipsis: str) -> str:
-    if len(text) <= room:
+def shortened(text: str, room: int, ellipsis: str) -> str:
+    """Return a name in at most ``room`` columns, without its middle: similar names differ at an end."""
+    if len(text) <= room or room < 3:
         return text
-    before = (room - 1) // 3
+    before = (room - 1) // 2
     return f"{text[:before]}{ellipsis}{text[len(text) - (room - 1 - before) :]}"
 
 
@@ -43,18 +44,18 @@ def group_name(group: GroupInfo, room: int) -> str:
     return full if len(full) <= room else brief
 
 
-def entity_name(entity: EntityInfo, room: int) -> str:
+def entity_name(entity: EntityInfo, room: int, ellipsis: str) -> str:
     """Return the name of a callback in a group of several."""
-    return entity.label if len(entity.label) <= room else short_name(entity.label)
+    return entity.label if len(entity.label) <= room else shortened(short_name(entity.label), room, ellipsis)
 
 
-def sole_name(entity: EntityInfo, group: GroupInfo, room: int) -> str:
+def sole_name(entity: EntityInfo, group: GroupInfo, room: int, ellipsis: str) -> str:
     """Return the name of a group's only callback, behind the group's kind if there is room."""
     names = (entity.label, short_name(entity.label))
     for text in (f"{kind} {name}" for kind in _kinds(group) for name in names):
         if len(text) <= room:
             return text
-    return short_name(entity.label)
+    return shortened(short_name(entity.label), room, ellipsis)
 
 
 def more_lanes(hidden: int, key: str, room: int) -> str:

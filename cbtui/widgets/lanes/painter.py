@@ -1,19 +1,20 @@
 """Paints lanes as rows of text in inks; needs no terminal, so that a picture can be tested as text."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Iterator, Sequence
 from math import inf
-from typing import Any
+from operator import attrgetter
 
-from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun, texture_of
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.text.cells import CellRow, fit
 from cbtui.widgets.lanes.axis import draw_axis
 from cbtui.widgets.lanes.bars import BarPainter
-from cbtui.widgets.lanes.columns import I, InstantColumns, IntervalBudget, LaneColumn, LaneColumns
+from cbtui.widgets.lanes.cache import LaneCache, LaneSummary
+from cbtui.widgets.lanes.columns import I, IntervalBudget, LaneColumn, LaneColumns
 from cbtui.widgets.lanes.keys import USUAL_KEYS
-from cbtui.widgets.lanes.names import entity_name, group_name, more_lanes, sole_name, thread_name
+from cbtui.widgets.lanes.labels import LaneLabels
+from cbtui.widgets.lanes.names import more_lanes
 from cbtui.widgets.lanes.picture import LEAST_WIDTH, LaneLayout, LanePicture, layout_for
+from cbtui.widgets.lanes.room import ROOMY_FROM, has_overview, rows_granted
 from cbtui.widgets.lanes.rows import (
     GroupLane,
     Lane,
@@ -25,13 +26,14 @@ from cbtui.widgets.lanes.rows import (
     choose_lanes,
     lanes_beyond,
 )
-from cbtui.widgets.lanes.scale import TimeScale, scale_for
+from cbtui.widgets.lanes.scale import TimeScale, scale_for, whole_scale
 from cbtui.widgets.lanes.selection import Selection
-from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls
+from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls, marked_columns
 from cbtui.widgets.lanes.status import LaneStatus
 from sim.durations import duration
-from sim.trace.events import EntityId, EntityKind
-from sim.trace.model import AxisMark, Blocked, EntityInfo, GroupInfo, Moment, Nanoseconds, Span, Wait, Window
+from sim.trace.events import EntityKind
+from sim.trace.figures.chains import ChainStep
+from sim.trace.model import AxisMark, Blocked, Moment, Nanoseconds, Span, ThreadInfo, Wait, Window
 from sim.trace.timeline import Timeline
 
 FAINT = Ink(Role.FAINT)
@@ -45,15 +47,8 @@ INTERVALS_PER_FRAME = 500
 zoomed out after some twenty, and keys stay responsive.
 """
 
-_TEXTURED_FROM = 20
-"""The smallest width of the names' column that shows the textures of groups."""
-_SWATCH = 2
-"""Columns of texture beside a group's letter."""
-
-
-def wanted_rows(timeline: Timeline, service: str = "") -> int:
-    """Return the number of rows that show every lane and the axis; ``service`` as for the painter."""
-    return len(all_lanes(timeline, service)) + 1
+_MOST_NESTED = 100
+"""Calls that are examined for nested ones, per stretch."""
 
 
 class LanePainter:
@@ -78,10 +73,7 @@ class LanePainter:
         self.more_key = more_key
         self.service = service
         self.looks = looks
-        self._timeline: Timeline | None = None
-        self._columns: dict[tuple[str, int], LaneColumns[Any]] = {}
-        self._losses: dict[EntityId, InstantColumns] = {}
-        self.painted: dict[Lane, tuple[_LaneSummary, list[TextRun]]] = {}
+        self.cache = LaneCache(Timeline())
 
     def paint(
         self,
@@ -91,70 +83,53 @@ class LanePainter:
         width: int,
         height: int,
         selection: Selection | None = None,
+        whole: Nanoseconds = 0,
+        path: Sequence[ChainStep] = (),
     ) -> LanePicture:
-        """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells."""
-        if timeline is not self._timeline:
-            self._timeline = timeline
-            self._columns.clear()
-            self._losses.clear()
-            self.painted.clear()
+        """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells.
+
+        With ``whole`` there is an overview, up to that end; else only where it takes no room from lanes. The
+        steps of ``path`` stand out on the lanes of their callbacks.
+        """
+        if timeline is not self.cache.timeline:
+            self.cache = LaneCache(timeline)
         layout = layout_for(max(width, LEAST_WIDTH))
         scale = scale_for(window, layout.columns)
         every = all_lanes(timeline, self.service)
         if width < LEAST_WIDTH:
             return LanePicture(((TextRun(" " * width, PLAIN),),) * height, (), layout, scale)
+        room = height - 1 - (whole > 0)
         lanes = choose_lanes(
-            every, height - 1, timeline, scale.window, None if selection is None else selection.lane
+            every, room, timeline, scale.window, None if selection is None else selection.lane
         )
-        frame = _LaneFrame(self, timeline, scale, layout, now, timeline.moment(now), selection)
-        rows = [frame.lane(lane) for lane in lanes] if height > 0 else []
+        frame = _LaneFrame(self, timeline, scale, layout, now, timeline.moment(now), selection, path)
+        rows, shown = [], list[Lane]()
+        more = rows_granted(lanes, timeline, room - len(lanes) if width >= ROOMY_FROM else 0)
+        for lane in lanes if height > 0 else ():
+            rows.append(frame.lane(lane))
+            if isinstance(lane, ThreadLane) and more[lane]:
+                rows += frame.inside(lane, more[lane])
+            shown += [lane] * (len(rows) - len(shown))
         if height > 0:
             hidden = len(every) - len(lanes) + lanes_beyond(every, timeline)
             rows.append(frame.axis(hidden))
+        overview = None
+        if height > len(rows) and (whole or has_overview(timeline, width, window)):
+            overview = whole_scale(max(timeline.end, window.end, whole), layout.columns)
+            rows.append(frame.overview(overview))
         complete = not frame.unseen
-        return LanePicture(tuple(tuple(row) for row in rows), tuple(lanes), layout, scale, complete)
-
-    def spans(self, lane: Lane, timeline: Timeline) -> LaneColumns[Span]:
-        """Return the aggregated calls of a lane."""
-        match lane:
-            case ThreadLane(thread):
-                return self.columns(timeline.spans_on, thread.id)
-            case GroupLane(group):
-                return self.columns(timeline.spans_in, group.id)
-            case MemberLane(entity) | SoleLane(entity):
-                return self.columns(timeline.spans_of, entity.id)
-            case ServiceLane():
-                return LaneColumns(lambda _: ())
-
-    def columns(self, query: Callable[[int, Window], Sequence[I]], subject: int) -> LaneColumns[I]:
-        """Return the cached columns of a query of the timeline for an id."""
-        key = (query.__name__, subject)
-        if key not in self._columns:
-            self._columns[key] = LaneColumns(partial(query, subject))
-        return self._columns[key]
-
-    def losses(self, entity: EntityInfo, timeline: Timeline) -> InstantColumns:
-        """Return when the queue of a callback lost messages."""
-        if entity.id not in self._losses:
-            self._losses[entity.id] = InstantColumns(partial(timeline.losses_of, entity.id))
-        return self._losses[entity.id]
+        return LanePicture(tuple(tuple(row) for row in rows), tuple(shown), layout, scale, complete, overview)
 
 
-@dataclass(frozen=True, slots=True)
-class _LaneSummary:
-    """A lane's content, column by column.
-
-    ``lasting`` is the duration of the open interval, in words; ``unseen`` are the columns that are not
-    aggregated yet.
-    """
-
-    scale: TimeScale
-    calls: list[LaneColumn[Span] | None]
-    waits: list[LaneColumn[Wait] | None]
-    blocks: list[LaneColumn[Blocked] | None]
-    losses: list[int]
-    lasting: tuple[str, ...]
-    unseen: tuple[int, ...]
+def _several(columns: Sequence[LaneColumn[Span] | None]) -> Iterator[tuple[int, int]]:
+    """Yield the stretches of columns in which calls lie inside each other: the first, and the one after."""
+    first = None
+    for place, column in enumerate((*columns, None)):
+        if column is not None and column.at_once > 1:
+            first = place if first is None else first
+        elif first is not None:
+            yield first, place
+            first = None
 
 
 class _LaneFrame:
@@ -169,8 +144,11 @@ class _LaneFrame:
         now: Nanoseconds,
         moment: Moment,
         selection: Selection | None,
+        path: Sequence[ChainStep],
     ) -> None:
         self._painter = painter
+        self._cache = painter.cache
+        self._path = path
         self._selection = selection
         self._timeline = timeline
         self._scale = scale
@@ -183,6 +161,7 @@ class _LaneFrame:
         self._edge = max(now, timeline.end) if timeline.ended is None else timeline.end
         self._calls = LatestCalls(timeline)
         self._numbers = {group: place for place, group in enumerate(timeline.groups)}
+        self._labels = LaneLabels(layout.names, self._glyphs, self._numbers)
         self._bars = BarPainter(timeline, self._glyphs, now, self._numbers)
         self._status = LaneStatus(timeline, scale.window, moment, self._calls, self._charset, layout.statuses)
 
@@ -190,8 +169,11 @@ class _LaneFrame:
         """Paint a lane with its name and status."""
         sums = self._sums(lane)
         chosen = self._selection is not None and self._selection.lane == lane
-        runs = self._painted(lane, sums) if chosen or not self._repeats(lane) else self._kept(lane, sums)
-        return self._framed(self._name(lane), runs, self._status.of(lane, self._latest(sums.calls)), chosen)
+        fresh = chosen or any(self._steps(lane)) or not self._repeats(lane)
+        runs = self._painted(lane, sums) if fresh else self._kept(lane, sums)
+        return self._framed(
+            self._labels.of(lane), runs, self._status.of(lane, self._latest(sums.calls)), chosen
+        )
 
     def _repeats(self, lane: Lane) -> bool:
         """Whether a lane looks the same as long as its aggregates do."""
@@ -204,16 +186,16 @@ class _LaneFrame:
                 return entity.kind is not EntityKind.SERVICE
         return True
 
-    def _kept(self, lane: Lane, sums: _LaneSummary) -> list[TextRun]:
+    def _kept(self, lane: Lane, sums: LaneSummary) -> list[TextRun]:
         """Return a lane's cached row, painted again if the lane has changed."""
-        before = self._painter.painted.get(lane)
+        before = self._cache.painted.get(lane)
         if before is not None and before[0] == sums:
             return before[1]
         runs = self._painted(lane, sums)
-        self._painter.painted[lane] = (sums, runs)
+        self._cache.painted[lane] = (sums, runs)
         return runs
 
-    def _painted(self, lane: Lane, sums: _LaneSummary) -> list[TextRun]:
+    def _painted(self, lane: Lane, sums: LaneSummary) -> list[TextRun]:
         row = CellRow(self._layout.columns, self._charset)
         self._draw(row, lane, sums)
         for place in sums.unseen:
@@ -221,7 +203,93 @@ class _LaneFrame:
         selection = self._selection
         if selection is not None and selection.lane == lane and selection.bar is not None:
             self._bars.select(row, selection.bar, self._scale)
+        for number, step in self._steps(lane):
+            self._bars.mark_step(row, number, step, self._scale)
         self._show_cursor(row)
+        return row.runs()
+
+    def _steps(self, lane: Lane) -> list[tuple[int, ChainStep]]:
+        """The steps of the path on a lane that took time, each with its number among those of all lanes."""
+        if not isinstance(lane, MemberLane | SoleLane):
+            return []
+        shown = self._scale.window
+        steps = enumerate((step for step in self._path if step.entity and step.length), start=1)
+        return [
+            (number, step)
+            for number, step in steps
+            if step.entity == lane.entity.id and step.start < shown.end and step.end >= shown.start
+        ]
+
+    def inside(self, lane: ThreadLane, rows: int) -> list[list[TextRun]]:
+        """Paint what the calls of a thread do at their lines, and the calls inside them, in one row or two.
+
+        While the run is followed that is painted once a column: it is read slower than bars move.
+        """
+        key = (self._scale, self._scale.column_of(self._edge), rows) if self._now >= self._edge else None
+        kept_key, painted = self._cache.inside.get(lane, (None, []))
+        if key is None or key != kept_key:
+            unseen: set[int] = set()
+            painted = self._painted_inside(lane, rows, unseen)
+            self._cache.inside[lane] = (None if unseen else key, painted)
+        nothing = TextRun("", PLAIN)
+        return [self._framed([nothing], runs, nothing, chosen=False) for runs in painted]
+
+    def _painted_inside(self, lane: ThreadLane, count: int, unseen: set[int]) -> list[list[TextRun]]:
+        rows = [CellRow(self._layout.columns, self._charset) for _ in range(count)]
+        columns = self._cache.columns(self._timeline.positions_on, lane.thread.id)
+        calls = self._summed(self._cache.spans(lane), unseen)
+        if not unseen:  # the first rows go first
+            nested = [each for stretch in _several(calls) for each in self._nested(lane.thread, *stretch)]
+            self._bars.nested(rows[-1], nested)
+            self._bars.inside(rows[0], self._summed(columns, unseen))
+        self.unseen = self.unseen or bool(unseen)
+        for row in rows:
+            self._show_cursor(row)
+        return [row.runs() for row in rows]
+
+    def _nested(self, thread: ThreadInfo, first: int, after: int) -> Iterator[tuple[int, int, Span]]:
+        """Yield the calls inside others between two columns, with their own columns."""
+        scale = self._scale
+        window = Window(scale.time_at(first), scale.time_at(after))
+        outer = 0
+        for span in self._timeline.spans_on(thread.id, window)[:_MOST_NESTED]:
+            end = span.end_at(self._edge)
+            if span.start < outer:
+                begins = max(first, scale.column_of(span.start))
+                yield begins, min(after, max(begins, scale.column_of(end - 1)) + 1), span
+            outer = max(outer, end)
+
+    def overview(self, scale: TimeScale) -> list[TextRun]:
+        """Paint how busy the threads were in the whole run, and which part of it is on screen."""
+        shown = self._scale.window
+        first, last = scale.column_of(max(0, shown.start)), scale.column_of(shown.end - 1)
+        key = (scale, scale.column_of(self._edge), first, last, scale.column_of(self._now))
+        if key != self._cache.overview[0]:
+            unseen: set[int] = set()
+            runs = self._painted_overview(scale, first, last, unseen)
+            self._cache.overview = (None if unseen else key, runs)
+        name, unit = TextRun("whole run", FAINT), TextRun(f"{duration(scale.per_column)}/col", FAINT)
+        return self._framed([name], self._cache.overview[1], unit, chosen=False)
+
+    def _painted_overview(self, scale: TimeScale, first: int, last: int, unseen: set[int]) -> list[TextRun]:
+        row = CellRow(self._layout.columns, self._charset)
+        threads = list(self._timeline.threads)
+        lanes = [
+            self._summed(self._cache.columns(self._timeline.spans_on, thread), unseen, scale)
+            for thread in threads
+        ]
+        self.unseen = self.unseen or bool(unseen)
+        for place, columns in enumerate(zip(*lanes, strict=True)):
+            busy = [column for column in columns if column is not None]
+            if busy:
+                top = max(busy, key=attrgetter("eighths")).top
+                height = -(-sum(column.eighths for column in busy) // len(threads))
+                number = self._numbers[self._timeline.entities[top.entity].group]
+                row.put(place, self._glyphs.heights[min(8, height)], Ink(Role.LINE, number))
+        row.put(scale.column_of(self._now), self._glyphs.cursor, NOW)
+        row.inks = [
+            ink if first <= place <= last else ink._replace(later=True) for place, ink in enumerate(row.inks)
+        ]
         return row.runs()
 
     def axis(self, hidden: int) -> list[TextRun]:
@@ -238,19 +306,19 @@ class _LaneFrame:
         """The cursor's column; the last one when the picture ends exactly there."""
         return self._scale.column_of(self._now - (self._now == self._scale.window.end))
 
-    def _sums(self, lane: Lane) -> _LaneSummary:
-        painter, timeline = self._painter, self._timeline
+    def _sums(self, lane: Lane) -> LaneSummary:
+        cache, timeline = self._cache, self._timeline
         unseen: set[int] = set()
-        calls = self._summed(painter.spans(lane, timeline), unseen)
+        calls = self._summed(cache.spans(lane), unseen)
         waits: list[LaneColumn[Wait] | None] = []
         blocks: list[LaneColumn[Blocked] | None] = []
         losses: list[int] = []
         match lane:
             case ThreadLane(thread):
-                blocks = self._summed(painter.columns(timeline.blocks_on, thread.id), unseen)
+                blocks = self._summed(cache.columns(timeline.blocks_on, thread.id), unseen)
             case MemberLane(entity) | SoleLane(entity):
-                waits = self._summed(painter.columns(timeline.waits_of, entity.id), unseen)
-                losses = painter.losses(entity, timeline).over(self._scale, self._edge)
+                waits = self._summed(cache.columns(timeline.waits_of, entity.id), unseen)
+                losses = cache.losses(entity).over(self._scale, self._edge)
         self.unseen = self.unseen or bool(unseen)
         lasting = dict.fromkeys(
             column.top.start
@@ -259,15 +327,17 @@ class _LaneFrame:
             if column is not None and column.top.end is None
         )
         lengths = tuple(duration(self._now - start) for start in lasting)
-        return _LaneSummary(self._scale, calls, waits, blocks, losses, lengths, tuple(sorted(unseen)))
+        return LaneSummary(self._scale, calls, waits, blocks, losses, lengths, tuple(sorted(unseen)))
 
-    def _summed(self, columns: LaneColumns[I], unseen: set[int]) -> list[LaneColumn[I] | None]:
+    def _summed(
+        self, columns: LaneColumns[I], unseen: set[int], scale: TimeScale | None = None
+    ) -> list[LaneColumn[I] | None]:
         """Aggregate within the picture's budget, and add the remaining columns to ``unseen``."""
-        summed = columns.over(self._scale, self._edge, self._ration)
+        summed = columns.over(scale or self._scale, self._edge, self._ration)
         unseen.update(columns.unseen)
         return summed
 
-    def _draw(self, row: CellRow, lane: Lane, sums: _LaneSummary) -> None:
+    def _draw(self, row: CellRow, lane: Lane, sums: LaneSummary) -> None:
         match lane:
             case ThreadLane():
                 self._bars.thread(row, sums.calls)
@@ -275,15 +345,21 @@ class _LaneFrame:
             case GroupLane(group):
                 self._bars.group(row, sums.calls, group)
             case MemberLane(entity) | SoleLane(entity):
-                self._bars.calls(row, sums.calls, entity)
-                self._bars.waits(row, sums.waits, sums.calls)
+                calls = self._calls.of(entity.name) if entity.kind is EntityKind.SERVICE else ()
+                key = self._key_of(entity.name)
+                marks = marked_columns(calls, self._scale, key)
+                self._bars.calls(row, sums.calls, entity, marks)
+                self._bars.waits(row, sums.waits, sums.calls, marks)
+                self._bars.late(row, sums.calls, entity)
                 self._bars.lost(row, sums.losses)
-                if entity.kind is EntityKind.SERVICE:
-                    draw_calls(
-                        row, self._calls.of(entity.name), self._scale, self._edge, self._painter.call_key
-                    )
+                draw_calls(row, calls, self._scale, self._edge, key)
             case ServiceLane(service):
-                draw_calls(row, self._calls.of(service), self._scale, self._edge, self._painter.call_key)
+                calls = self._calls.of(service)
+                draw_calls(row, calls, self._scale, self._edge, self._key_of(service))
+
+    def _key_of(self, service: str) -> str:
+        """The key that calls a service; "" if no key does."""
+        return self._painter.call_key if self._painter.service in ("", service) else ""
 
     def _latest(self, columns: list[LaneColumn[Span] | None]) -> Span | None:
         shown = columns[: max(0, self._now_column + 1)]
@@ -299,7 +375,7 @@ class _LaneFrame:
         self, name: list[TextRun], runs: list[TextRun], status: TextRun, chosen: bool
     ) -> list[TextRun]:
         *before, last = name
-        room = self._room_after(before)
+        room = self._labels.room_after(before)
         frame = TextRun(self._glyphs.frame, FAINT)
         text = f" {status.text}" if self._layout.statuses else ""
         return [
@@ -320,32 +396,3 @@ class _LaneFrame:
         if row.blank(column, column + 1):
             row.put(column, self._glyphs.cursor, NOW)
         row.inks[column + 1 :] = [ink._replace(later=True) for ink in row.inks[column + 1 :]]
-
-    def _name(self, lane: Lane) -> list[TextRun]:
-        match lane:
-            case ThreadLane(thread):
-                name = thread_name(thread, self._layout.names - 1, self._glyphs.ellipsis)
-                return [TextRun(name, PLAIN)]
-            case GroupLane(group):
-                letter = self._letter(group)
-                return [*letter, TextRun(group_name(group, self._room_after(letter)), PLAIN)]
-            case MemberLane(entity):
-                return [TextRun(f"  {entity_name(entity, self._layout.names - 3)}", PLAIN)]
-            case SoleLane(entity, group):
-                letter = self._letter(group)
-                return [*letter, TextRun(sole_name(entity, group, self._room_after(letter)), PLAIN)]
-            case ServiceLane(service):
-                return [TextRun(service, PLAIN)]
-
-    def _room_after(self, runs: list[TextRun]) -> int:
-        """The columns left after a name."""
-        return self._layout.names - sum(len(run.text) for run in runs)
-
-    def _letter(self, group: GroupInfo) -> list[TextRun]:
-        """A group's letter, and its texture where there is room."""
-        number = self._numbers[group.id]
-        letter = TextRun(f"{group.letter} ", Ink(Role.LETTER, number))
-        if self._layout.names < _TEXTURED_FROM:
-            return [letter]
-        texture = texture_of(number, self._glyphs)
-        return [letter, texture._replace(text=texture.text * _SWATCH), TextRun(" ", PLAIN)]

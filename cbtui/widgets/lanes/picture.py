@@ -30,10 +30,10 @@ def layout_for(width: int) -> LaneLayout:
 
 @dataclass(frozen=True, slots=True)
 class LanePicture:
-    """Painted lanes, the axis last.
+    """Painted lanes, then the axis, and the overview of the whole run where there is one.
 
-    ``lanes`` are those of the first ``rows``, one a row. A picture that is not ``complete`` has faint points
-    in the columns beyond its budget.
+    ``lanes`` are those of the first ``rows``, of each row one; a lane may have two. A picture that is not
+    ``complete`` has faint points in the columns beyond its budget. ``overview`` is the scale of the overview.
     """
 
     rows: tuple[tuple[TextRun, ...], ...]
@@ -41,6 +41,7 @@ class LanePicture:
     layout: LaneLayout
     scale: TimeScale
     complete: bool = True
+    overview: TimeScale | None = None
 
     @property
     def time_per_column(self) -> str:

@@ -108,8 +108,7 @@ def choose_lanes(
     worth = _LanePriority(timeline, window)
     middle = lanes.index(selected) if selected in lanes else -_FAR
     places = sorted(
-        range(len(lanes)),
-        key=lambda place: (min(abs(place - middle), _FAR), -worth.of(lanes[place]), place),
+        range(len(lanes)), key=lambda place: (min(abs(place - middle), _FAR), -worth.of(lanes[place]), place)
     )
     return [lanes[place] for place in sorted(places[: max(room, 0)])]
 

@@ -42,6 +42,11 @@ def scale_for(window: Window, columns: int) -> TimeScale:
     return TimeScale(last - columns, per_column, columns)
 
 
+def whole_scale(end: Nanoseconds, columns: int) -> TimeScale:
+    """Return the scale that shows a run from its beginning to its end; it seldom changes as the run grows."""
+    return TimeScale(0, nice_column(end // columns + 1), columns)
+
+
 def nice_column(least: Nanoseconds) -> Nanoseconds:
     """Return the smallest round length of a column that is ``least`` or more."""
     power = 1

@@ -1,6 +1,6 @@
 """Draws service calls: when they were sent and answered, and who made them."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from itertools import islice
 
 from cbtui.looks.theme import GLYPHS, Ink, Role
@@ -46,6 +46,7 @@ class LatestCalls:
 def draw_calls(row: CellRow, calls: Sequence[Call], scale: TimeScale, now: Nanoseconds, key: str) -> None:
     """Mark where calls left (▲, with the person's ``key`` if it was that) and where the reply came (◂)."""
     glyphs = GLYPHS[row.charset]
+    sent_at = {scale.column_of(call.sent) for call in calls}
     for call in calls:
         sent = scale.column_of(call.sent)
         replied = scale.column_of(now if call.replied is None else call.replied)
@@ -55,8 +56,24 @@ def draw_calls(row: CellRow, calls: Sequence[Call], scale: TimeScale, now: Nanos
             if row.blank(column, column + 1):
                 row.put(column, glyphs.point, FAINT)
         row.put(sent, glyphs.up, MARK)
-        name = "" if call.caller else key
+        name = _written(call, sent, key, sent_at)
         for column, letter in enumerate(name, sent + 1):
             row.put(column, letter, MARK)
-        if call.replied is not None:
-            row.put(max(replied, sent + 1 + len(name)), glyphs.back, MARK)
+        back = max(replied, sent + 1 + len(name))
+        if call.replied is not None and back not in sent_at:
+            row.put(back, glyphs.back, MARK)
+
+
+def marked_columns(calls: Sequence[Call], scale: TimeScale, key: str) -> set[int]:
+    """Return the columns in which calls are marked, and those beside them, so that marks stand apart."""
+    marks: set[int] = set()
+    for call in calls:
+        sent, replied = scale.column_of(call.sent), scale.column_of(call.replied or call.sent)
+        marks.update(range(sent - 1, sent + len(key) + 3), range(replied - 1, replied + 2))
+    return marks
+
+
+def _written(call: Call, sent: int, key: str, sent_at: Collection[int]) -> str:
+    """The person's key if it made the call, unless the next call is marked where the key would stand."""
+    taken = any(column in sent_at for column in range(sent + 1, sent + 1 + len(key)))
+    return "" if call.caller or taken else key

@@ -8,6 +8,7 @@ from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, S
 from cbtui.widgets.lanes.service_calls import LatestCalls
 from sim.durations import duration
 from sim.trace.events import EntityKind, GroupKind
+from sim.trace.figures.waiting import waits_for_others
 from sim.trace.model import EntityInfo, GroupInfo, Moment, Span, ThreadInfo, Window
 from sim.trace.timeline import Timeline
 
@@ -61,14 +62,18 @@ class LaneStatus:
 
     def _group(self, group: GroupInfo) -> TextRun:
         entities = self.timeline.entities
-        waiting = sum([entities[entity].group == group.id for entity in self.moment.waiting])
+        waits = waits_for_others(self.moment)
+        waiting = sum([entities[wait.entity].group == group.id for wait in waits])
         holders = len(self.moment.holders.get(group.id, ()))
         if group.kind is GroupKind.REENTRANT:
-            state = f"open, {holders} run" if holders else "open"
+            # One callback may run several times at once.
+            running = sum(entities[span.entity].group == group.id for span in self.moment.running.values())
+            calls = max(holders, running)
+            state = f"{'' if waiting else 'open, '}{calls} run" if calls else "open"
         else:
             state = "held" if holders else "free"
         if waiting:
-            return TextRun(f"{state}, {waiting} wait", WARN)
+            return TextRun(f"{state}, {waiting} wait{'s' if waiting == 1 else ''}", WARN)
         return TextRun(state, PLAIN if holders else FAINT)
 
     def _entity(self, entity: EntityInfo, latest: Span | None) -> TextRun:
@@ -78,9 +83,12 @@ class LaneStatus:
             case EntityKind.SUBSCRIPTION:
                 return self._queue(entity, latest)
             case EntityKind.SERVICE:
-                return TextRun(self.calls.summary(entity.name, self.moment.at), PLAIN)
+                told = self.calls.summary(entity.name, self.moment.at)
+                return TextRun(told if len(told) < self.width else told.replace(",", ""), PLAIN)
             case EntityKind.CLIENT:
                 return self._client(entity)
+            case EntityKind.WAITABLE if entity.name and not entity.callback:
+                return TextRun("action", FAINT)
             case _:
                 return TextRun("", PLAIN)
 

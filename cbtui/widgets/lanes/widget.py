@@ -1,27 +1,43 @@
 """The widget of the lanes: draws what its painter paints, and reports what the pointer picks."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from rich.text import Text
 from textual.events import Click, MouseScrollDown, MouseScrollUp
-from textual.geometry import Size
+from textual.geometry import Offset, Size
 from textual.message import Message
 from textual.reactive import reactive
 
 from cbtui.looks.theme import GLYPHS, Charset, TextRun
+from cbtui.widgets.jump import JumpTarget
 from cbtui.widgets.lanes.details import details_of_selection
 from cbtui.widgets.lanes.details_rows import ROWS, details_rows
 from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
-from cbtui.widgets.lanes.painter import INTERVALS_PER_FRAME, LanePainter, wanted_rows
+from cbtui.widgets.lanes.painter import INTERVALS_PER_FRAME, LanePainter
 from cbtui.widgets.lanes.picture import LanePicture
+from cbtui.widgets.lanes.room import wanted_rows
 from cbtui.widgets.lanes.rows import Lane, all_lanes
-from cbtui.widgets.lanes.selection import Selection, bar_at, bar_up_to, neighbouring_bar, start_of
+from cbtui.widgets.lanes.selection import (
+    Selection,
+    bar_at,
+    bar_up_to,
+    bars_in,
+    end_of,
+    neighbouring_bar,
+    start_of,
+)
 from cbtui.widgets.painted_widget import PaintedWidget, painted
+from sim.trace.figures.chains import ChainStep
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _LEAST_LANES = 3
 """Rows of lanes below which the details of the selection are hidden."""
+
+_JUMP_WIDTH = 4
+"""Columns from which on a bar gets a letter to jump to it."""
+_MOST_JUMPS = 100
+"""The latest bars of a lane that are examined for that."""
 
 _A_FRAME = 1 / 30
 """Seconds between two frames while the lanes fill."""
@@ -33,7 +49,8 @@ class Lanes(PaintedWidget, can_focus=True):
     Set ``timeline`` again (it may be the same one) when it has grown. ``now`` is the cursor that all panes
     share; ``service`` is another program's service that gets a lane before its first call. The selection
     stands out and is described below the axis. The screen sets ``selection``, ``hint`` (what the frame says
-    of keys), ``keys`` and ``changes`` (what a person changed about the run).
+    of keys), ``keys``, ``path`` (the steps of a chain, to be marked) and ``changes`` (what a person changed
+    about the run).
     """
 
     DEFAULT_CSS = "Lanes { height: auto; }"
@@ -44,7 +61,10 @@ class Lanes(PaintedWidget, can_focus=True):
     service: reactive[str] = reactive("", layout=True)
     charset: reactive[Charset] = reactive(Charset.BRAILLE, repaint=False)
     selection: reactive[Selection | None] = painted(None)
+    whole: reactive[Nanoseconds] = reactive(0, layout=True)
+    """The end of an overview that is always there; 0 for one where there is room."""
     hint: reactive[str] = reactive("", repaint=False)
+    path: reactive[Sequence[ChainStep]] = painted(())
     changes: reactive[str] = painted("")
     keys: reactive[LaneKeys] = reactive(USUAL_KEYS, repaint=False)
 
@@ -121,14 +141,37 @@ class Lanes(PaintedWidget, can_focus=True):
         start = max(0, self.now - (self.now == self.timeline.end)) // length * length
         return Window(start, start + length)
 
+    def jump_targets(self) -> Iterator[JumpTarget]:
+        """Yield each lane in view, then the bars on them that are wide enough for a letter and more."""
+        picture = self._picture
+        if picture is None:
+            return
+        rows = [(y, lane) for y, lane in enumerate(picture.lanes) if lane not in picture.lanes[:y]]
+        for y, lane in rows:
+            yield JumpTarget(Offset(0, y), self._picks(self._last_on(lane)))
+        scale, shown = picture.scale, picture.scale.window
+        for y, lane in rows:
+            free = 0
+            for bar in bars_in(self.timeline, lane, shown)[-_MOST_JUMPS:]:
+                first = max(free, scale.column_of(start_of(bar)))
+                end = min(end_of(bar) or self.timeline.end, shown.end)
+                if scale.column_of(end) - first > _JUMP_WIDTH:
+                    free = first + _JUMP_WIDTH
+                    place = Offset(picture.layout.names + 1 + first, y)
+                    yield JumpTarget(place, self._picks(Selection(lane, bar), start_of(bar)))
+
+    def _picks(self, selection: Selection, at: Nanoseconds | None = None) -> Callable[[], object]:
+        return lambda: self.post_message(self.BarPicked(self, self.now if at is None else at, selection))
+
     # the pointer
 
     def on_click(self, event: Click) -> None:
         """Report the moment and the bar under the pointer."""
         offset, picture = event.get_content_offset(self), self._picture
-        if offset is None or picture is None or offset.y >= len(picture.lanes) + 1:
+        if offset is None or picture is None or offset.y >= len(picture.rows):
             return
-        scale = picture.scale
+        on_overview = offset.y > len(picture.lanes)
+        scale = picture.scale if picture.overview is None or not on_overview else picture.overview
         place = offset.x - picture.layout.names - 1
         lane = picture.lanes[offset.y] if offset.y < len(picture.lanes) else None
         if not 0 <= place < scale.columns:
@@ -157,7 +200,9 @@ class Lanes(PaintedWidget, can_focus=True):
         selection = None if self.selection is None else self.selection.renewed(self.timeline)
         told = self._rows_told(size) if selection is not None else 0
         height = size.height - told
-        picture = self._painter.paint(self.timeline, self.window, self.now, size.width, height, selection)
+        picture = self._painter.paint(
+            self.timeline, self.window, self.now, size.width, height, selection, self.whole, self.path
+        )
         self._picture = picture
         if not picture.complete:
             self._go_on_later()
@@ -189,13 +234,22 @@ class Lanes(PaintedWidget, can_focus=True):
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
         """Return the number of rows that show every lane and describe the selected bar."""
-        self._laid_out_for = wanted_rows(self.timeline, self.service)
+        self._laid_out_for = self._rows_of_lanes(width)
         return self._laid_out_for + (0 if self.selection is None else ROWS)
+
+    @property
+    def shows_everything(self) -> bool:
+        """Whether more rows would show no more."""
+        told = 0 if self.selection is None else ROWS
+        return self.size.height >= self._rows_of_lanes(self.size.width) + told
+
+    def _rows_of_lanes(self, width: int) -> int:
+        return wanted_rows(self.timeline, self.service, width, self.window, self.whole)
 
     def watch_timeline(self) -> None:
         """Paint again, in another height if there are new lanes."""
         # Lanes that are out of sight are not laid out: it is asked for again until it was done.
-        if wanted_rows(self.timeline, self.service) != self._laid_out_for:
+        if self._rows_of_lanes(self.size.width) != self._laid_out_for:
             self.refresh(layout=True)
 
     def watch_selection(self, before: Selection | None, after: Selection | None) -> None:

@@ -1,11 +1,14 @@
 """The lines of the log on screen; draws only those in view, however long the log is."""
 
+from collections.abc import Iterator
+from functools import partial
 from typing import ClassVar
 
 from rich.segment import Segment
 from rich.style import Style
 from textual.binding import BindingType
 from textual.events import Click
+from textual.geometry import Offset
 from textual.message import Message
 from textual.reactive import var
 from textual.strip import Strip
@@ -15,6 +18,7 @@ from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role
 from cbtui.text.cells import fit
 from cbtui.widgets.following_view import FollowingView
+from cbtui.widgets.jump import JumpTarget
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.log.filter import Filter, LogEvent
 from cbtui.widgets.log.line import line_of, width_of
@@ -151,6 +155,11 @@ class LogLines(FollowingView):
 
     # the picked line
 
+    @property
+    def picked_text(self) -> str:
+        """The picked line as ROS prints it; "" for none."""
+        return "" if self.picked is None else line_of(self._search.timeline.logs[self.picked])
+
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer what has a meaning for the lines that are shown."""
         match action:
@@ -198,7 +207,7 @@ class LogLines(FollowingView):
         self.stay()
 
     def action_let_go(self) -> None:
-        """Have no line picked."""
+        """Clear the selection."""
         self.picked = None
         self.refresh()
 
@@ -207,8 +216,17 @@ class LogLines(FollowingView):
         offset = event.get_content_offset(self)
         row = None if offset is None else self.scroll_offset.y + offset.y
         if row is not None and row < self._count:
-            self._pick(row)
-            self.action_pick_line()
+            self._go_to(row)
+
+    def jump_targets(self) -> Iterator[JumpTarget]:
+        """Yield the lines in view, the latest first."""
+        top = self.scroll_offset.y
+        for row in reversed(range(top, min(top + self._height, self._count))):
+            yield JumpTarget(Offset(0, row - top), partial(self._go_to, row))
+
+    def _go_to(self, row: int) -> None:
+        self._pick(row)
+        self.action_pick_line()
 
     def _pick_beside(self, step: int) -> None:
         """Pick the line above or below; at first the last one in view."""

@@ -2,6 +2,7 @@
 
 from typing import ClassVar
 
+from rich.cells import cell_len
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
@@ -47,8 +48,9 @@ class LogView(Vertical):
     note: var[str] = var("")
 
     def compose(self) -> ComposeResult:
-        """Lay out lines, what is wrong with the filter, and the filter."""
+        """Lay out lines, the picked one if it is long, what is wrong with the filter, and the filter."""
         yield LogLines()
+        yield Label(id="unfolded", markup=False)
         yield Label(id="fault", markup=False)
         yield LogFilter()
 
@@ -59,6 +61,7 @@ class LogView(Vertical):
         lines = self.query_one(LogLines)
         self.watch(lines, "counts", self._note)
         self.watch(lines, "follows", self._note)
+        self.watch(lines, "picked", self._unfold)
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
         """Show the log of a timeline up to a moment."""
@@ -101,6 +104,13 @@ class LogView(Vertical):
         label = self.query_one("#fault", Label)
         label.update(fault)
         label.display = bool(fault)
+
+    def _unfold(self) -> None:
+        """Show all of the picked line below the others, if it is wider than the pane."""
+        text = self.query_one(LogLines).picked_text
+        label = self.query_one("#unfolded", Label)
+        label.update(text)
+        label.display = cell_len(text) > self.size.width > 0
 
     def _note(self) -> None:
         lines = self.query_one(LogLines)

@@ -4,12 +4,16 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
 from cbtui.looks.theme import Charset
 from cbtui.widgets.dots import DOTS_PER_CELL, Floats
 from sim.trace.events import ArenaShown, RobotMoved
 
 _MARGIN = 0.6
 _GRID = 0.5
+_GRID_STEPS = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0)
+_LEAST_GRID_COLUMNS = 8
 _SPHERE_WITHIN = 3.0
 
 
@@ -95,3 +99,17 @@ class MapView:
         """Return the cell (column, line) at a place in metres."""
         column, line = self.dot(x, y)
         return math.floor(column / self.across), math.floor(line / self.down)
+
+    def grid(self) -> tuple[Floats, Floats]:
+        """Return the coordinates (x and y, metres) of a grid's lines, round and well apart on the map."""
+        columns_per_metre = 1 / (self.metres_across * self.across)
+        wide = (step for step in _GRID_STEPS if step * columns_per_metre >= _LEAST_GRID_COLUMNS)
+        step = next(wide, _GRID_STEPS[-1])
+        right = self.left + self.columns * self.across * self.metres_across
+        bottom = self.top - self.lines * self.down * self.metres_down
+        return _multiples(step, self.left, right), _multiples(step, bottom, self.top)
+
+
+def _multiples(step: float, start: float, end: float) -> Floats:
+    """The multiples of a step after ``start`` and before ``end``."""
+    return np.arange(math.floor(start / step) + 1, math.ceil(end / step), dtype=np.float64) * step

@@ -39,7 +39,7 @@ def _entries(robot: RobotMoved, command: VelocityCommanded | None, charset: Char
     place = f"{_two_places(robot.x)} {_two_places(robot.y)} m"
     front = f"{robot.front:5.2f} m" if math.isfinite(robot.front) else "   free"
     return (
-        (f"pose {place} {math.degrees(robot.yaw):4.0f}{degree}", PLAIN),
+        (f"pose {place} {round(math.degrees(robot.yaw)):4}{degree}", PLAIN),
         (f"front {front}", PLAIN),
         (f"told {told}", PLAIN),
         ("motors on " if robot.motors else "motors OFF", PLAIN if robot.motors else WARN),

@@ -13,9 +13,11 @@ from sim.trace.events import ArenaShown, RobotMoved, Scanned
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
-_BLANK, _WALL, _TRAIL, _SEEN, _TRUE, _SPHERE, _ROBOT, _HURT, _FLASH = 0, 1, 2, 6, 7, 8, 9, 10, 11
+_GRID, _WALL, _TRAIL, _SEEN, _TRUE, _SPHERE, _ROBOT, _HURT, _FLASH = 1, 2, 3, 7, 8, 9, 10, 11, 12
+_FAINT = Ink(Role.FAINT)
 _INKS = (
     Ink(Role.TEXT),
+    _FAINT,
     Ink(Role.WALL),
     *(Ink(Role.TRAIL, age) for age in range(TRAIL_STEPS)),
     Ink(Role.SEEN_SCAN),
@@ -25,7 +27,7 @@ _INKS = (
     Ink(Role.WARN),
     Ink(Role.WARN),
 )
-_SIGNS = " #',:;x.O@!*"
+_SIGNS = " +#',:;x.O@!*"
 _ARROWS = {Charset.ASCII: ">/^\\</v\\"}
 _ARROWS_ROUND = "▶◥▲◤◀◣▼◢"
 
@@ -54,6 +56,8 @@ class RobotScene:
     def picture(self, view: MapView, charset: Charset) -> list[CellRow]:
         """Draw everything in one view."""
         dots = DotGrid(view.columns, view.lines, charset)
+        across, along = view.grid()
+        dots.plot(*view.dots(np.repeat(across, len(along)), np.tile(along, len(across))), _GRID)
         for x0, y0, x1, y1 in self.plan.walls:
             dots.line(view.dot(x0, y0), view.dot(x1, y1), _WALL)
         self._draw_trail(dots, view)
@@ -67,6 +71,11 @@ class RobotScene:
         self._draw_robot(dots, view, layer)
         self._draw_flash(dots, view)
         rows = dots.rows(_INKS, _SIGNS)
+        for x in across:
+            _write_metres(rows[-1], view.cell(x, 0)[0], x)
+        for row, y in ((view.cell(0, y)[1], y) for y in along):
+            if row < len(rows) - 1:
+                _write_metres(rows[row], 0, y)
         column, line = view.cell(self.robot.x, self.robot.y)
         if not view.shows_size(self.plan.robot_radius) and 0 <= line < len(rows):
             rows[line].put(column, _arrow(self.robot.yaw, charset), _INKS[layer])
@@ -104,6 +113,14 @@ class RobotScene:
         angles = robot.yaw - math.pi + np.arange(len(ranges)) * (2 * math.pi / max(1, len(ranges)))
         hit = ranges > 0
         return robot.x + ranges[hit] * np.cos(angles[hit]), robot.y + ranges[hit] * np.sin(angles[hit])
+
+
+def _write_metres(row: CellRow, column: int, metres: float) -> None:
+    """Write a coordinate where nothing but the grid is drawn."""
+    text = f"{metres:g} m"
+    under = list(zip(row.cells, row.inks, strict=True))[column : column + len(text)]
+    if len(under) == len(text) and all(glyph == " " or ink == _FAINT for glyph, ink in under):
+        row.write(column, text, _FAINT)
 
 
 def since_hit(timeline: Timeline, now: Nanoseconds) -> Nanoseconds | None:

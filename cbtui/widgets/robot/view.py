@@ -16,6 +16,8 @@ from cbtui.widgets.painted_widget import PaintedWidget, painted
 from cbtui.widgets.robot.camera_picture import half_blocks, ramp
 from cbtui.widgets.robot.painter import RobotPainter, RobotPainting
 from cbtui.widgets.robot.pane_regions import RobotViewMode
+from cbtui.widgets.scene import paint_scene
+from lessons.description import Actor
 from sim.camera import Camera, Picture, Shot
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -48,6 +50,9 @@ class RobotView(PaintedWidget):
     now: reactive[Nanoseconds] = painted(0)
     charset: reactive[Charset] = painted(Charset.BRAILLE)
     look: reactive[RobotViewMode] = painted(RobotViewMode.MAP)
+    actors: reactive[tuple[Actor, ...]] = painted(())
+    """The figures of the lesson's scene, which come before the robot."""
+    shows_robot: reactive[bool] = painted(False)
 
     class PictureTaken(Message):
         """The camera took a picture."""
@@ -75,14 +80,18 @@ class RobotView(PaintedWidget):
         self._painting = RobotPainting(())
 
     def cycle_camera(self) -> None:
-        """Show the map, the camera's picture, both, and so on; retry a camera that failed."""
+        """Show the scene, the map, the camera's picture, both, and so on; retry a camera that failed."""
         self._why_none = ""
-        self.look = self.look.following
+        if self.shows_robot or not self.actors:
+            self.look = self.look.following
+        self.shows_robot = self.look is not RobotViewMode.MAP or not self.shows_robot
 
     # drawing
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint everything except the picture."""
+        if self.actors and not self.shows_robot:
+            return paint_scene(self.actors, self.timeline, self.now, size.width, size.height, self.charset)
         note = "" if self._fits() else self._why_none or _STARTING
         painter = RobotPainter(self.charset)
         self._painting = painter.paint(self.timeline, self.now, size.width, size.height, self.look, note)

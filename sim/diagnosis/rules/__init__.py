@@ -2,29 +2,34 @@
 
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
-from sim.diagnosis.rules.endless import EndlessWait
-from sim.diagnosis.rules.errors import ExceptionSwallowed
+from sim.diagnosis.rules.endless import EndlessLoop, EndlessWait
+from sim.diagnosis.rules.errors import ExceptionSwallowed, ProgramRaised
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
-from sim.diagnosis.rules.services import NobodyOffers, UnreturnedResponse
+from sim.diagnosis.rules.parameters import ParameterOverruled
+from sim.diagnosis.rules.services import NobodyOffers, ServiceNeverComes, UnreturnedResponse
 from sim.diagnosis.rules.spinning import NestedSpin
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
-from sim.diagnosis.rules.timing import LongCallbackAmongSensors, OverlappingCallback, OverrunTimer
-from sim.diagnosis.rules.waiting import GroupStarvation, NodeNeverSpins, NoFreeWorker
+from sim.diagnosis.rules.timing import OverlappingCallback, OverrunTimer
+from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NodeNeverSpins, NoFreeWorker
 
 RULES: tuple[Rule, ...] = (
     SelfMadeDeadlock(),
     NeedsOneMoreWorker(),
     NestedSpin(),
+    EndlessLoop(),
     EndlessWait(),
+    ServiceNeverComes(),
+    ProgramRaised(),
     NodeNeverSpins(),
     NobodyOffers(),
     QosMismatch(),
+    ParameterOverruled(),
     ExceptionSwallowed(),
     UnreturnedResponse(),
-    LongCallbackAmongSensors(),
     GroupStarvation(),
     NoFreeWorker(),
+    BehindOthers(),
     OverlappingCallback(),
     OverrunTimer(),
     StaleData(),

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator, Sequence
 
-from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
+from sim.diagnosis.cures import Remedy
+from sim.diagnosis.rule import Explanation, Finding, Rule, line_of
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.wait_for_graph import StuckCallback, WaitForGraph
-from sim.diagnosis.words import listed, often, threads_for, who, with_threads
-from sim.trace.events import EntityKind, Reason
-from sim.trace.model import Blocked, Nanoseconds
+from sim.diagnosis.wait_for_graph import LOCK, RATE, StuckCallback, WaitForGraph
+from sim.diagnosis.words import often, threads_for, who, with_threads
+from sim.trace.events import EntityId, EntityKind, Reason
+from sim.trace.model import Blocked, Nanoseconds, Position, Window
 from sim.trace.timeline import Timeline
 
 _SETTLES: Nanoseconds = 100_000_000
@@ -27,27 +28,34 @@ class SelfMadeDeadlock(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each cycle."""
         return (
-            _found(self, deadlock, until)
-            for deadlock, until in _deadlocks(view)
+            _found(self, deadlock, until, stuck, view.timeline)
+            for deadlock, until, stuck in _deadlocks(view)
             if not _lacks_worker(deadlock)
         )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name the callbacks of the cycle."""
         subject = who(found.subject, timeline)
-        cure = (
-            f"use call_async() and return from {subject}, "
-            f"or give client and service of {found.about} callback groups of their own"
-        )
-        if threads_for([found.subject], found.until, timeline) == 1:
-            cure += f", and spin with {with_threads(found.size + 1)}"
-        return Explanation(
-            f"{subject} {_waiting(found, timeline)}: {found.detail}{often(found.count)}",
-            "the reply is brought by the executor, and needs a group that lets it in and a thread",
-            cure,
-            place_of(found.subject, timeline),
-            for_ever=_lasts(found, timeline),
-        )
+        about = _OWN_LOCK if found.about == LOCK and found.size == 1 else found.about
+        if LOCK in found.ring and any(step.startswith("/") for step in found.ring):
+            about = _LOCK_AND_CALL
+        why, cure = _WHY.get(about, _WHY_REPLY), _CURES.get(about, "")
+        if not cure:
+            apart = f"give {subject} a callback group of its own"
+            stands = timeline.positions_of(found.subject, Window(found.at, found.at + 1))
+            if not stands or stands[-1].call in ("", "Client.call"):
+                cure = f"use call_async() and return from {subject}, or {apart}"
+            else:
+                cure = (
+                    f"return from {subject} and go on in future.add_done_callback(), or await the future in "
+                    f"an async def {subject}; to wait inside it, {apart}"
+                )
+        threads = 0
+        if LOCK not in found.ring and threads_for([found.subject], found.until, timeline) == 1:
+            threads = found.size + 1
+            cure += f", and spin with {with_threads(threads)}"
+        apart_too = () if found.about == RATE or LOCK in found.ring else (found.subject,)
+        return _explanation(found, why, cure, Remedy(apart_too, threads), timeline)
 
 
 class NeedsOneMoreWorker(Rule):
@@ -62,30 +70,65 @@ class NeedsOneMoreWorker(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each set of callbacks that block all threads of an executor."""
         return (
-            _found(self, deadlock, until) for deadlock, until in _deadlocks(view) if _lacks_worker(deadlock)
+            _found(self, deadlock, until, stuck, view.timeline)
+            for deadlock, until, stuck in _deadlocks(view)
+            if _lacks_worker(deadlock)
         )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name the number of threads that would do."""
-        subject = who(found.subject, timeline)
-        return Explanation(
-            f"{subject} {_waiting(found, timeline)}: {found.detail}{often(found.count)}",
-            f"{found.size} callbacks in call() at once need at least {found.size + 1} threads",
-            f"spin with MultiThreadedExecutor(num_threads={found.size + 1}), or use call_async()",
-            place_of(found.subject, timeline),
-            for_ever=_lasts(found, timeline),
-        )
+        why = f"{found.size} callbacks in call() at once need at least {found.size + 1} threads"
+        cure = f"spin with {with_threads(found.size + 1)}, or use call_async()"
+        return _explanation(found, why, cure, Remedy(threads=found.size + 1), timeline)
 
 
-def _deadlocks(view: TimelineView) -> Iterator[tuple[Sequence[StuckCallback], Nanoseconds]]:
-    """The sets of callbacks that wait for each other, and the end of their waiting."""
+_WHY_REPLY = "the reply is brought by the executor, and needs a group that lets it in and a thread"
+_OWN_LOCK = "its own lock"
+_LOCK_AND_CALL = "a lock and a reply"
+_WHY = {
+    _OWN_LOCK: "it has the lock already, and a Lock is not given to anybody twice",
+    RATE: "sleep() comes back when the executor has called the rate's timer, which needs a thread",
+    LOCK: "each keeps its lock while it waits for the other's, so neither lets go",
+    _LOCK_AND_CALL: "the lock is kept during a call, and whoever has to answer needs it",
+}
+_CURES = {
+    _OWN_LOCK: "take it once, let go of it before, or use threading.RLock",
+    RATE: "leave sleep() out, and let a timer of the rate's period do one step at each call; or keep it",
+    LOCK: "take locks in the same order everywhere, and let go of one before you take the next",
+    _LOCK_AND_CALL: "let go of the lock before the call, and take it again when the reply is there",
+}
+
+
+def _explanation(found: Finding, why: str, cure: str, remedy: Remedy, timeline: Timeline) -> Explanation:
+    subject, lasts = who(found.subject, timeline), found.until >= timeline.end
+    waits = (
+        f"deadlock: {subject} waits for {found.about} for ever"
+        if lasts
+        else f"{subject} waited in vain for {found.about}"
+    )
+    return Explanation(
+        f"{waits}; {found.detail}{often(found.count)}",
+        why,
+        cure,
+        line_of(found.subject, Window(found.at, found.until + 1), timeline),
+        for_ever=lasts,
+        remedy=remedy,
+    )
+
+
+def _deadlocks(
+    view: TimelineView,
+) -> Iterator[tuple[Sequence[StuckCallback], Nanoseconds, frozenset[EntityId]]]:
+    """The sets of callbacks that wait for each other, the end of their waiting, and all that are stuck."""
     seen: set[tuple[Nanoseconds, ...]] = set()
     for moment, until in _moments(view):
-        for deadlock in WaitForGraph(view.timeline, moment).deadlocks():
+        graph = WaitForGraph(view.timeline, moment)
+        stuck = frozenset(each.entity for each in graph.stuck.values())
+        for deadlock in graph.deadlocks():
             key = tuple(each.since for each in deadlock)
             if key not in seen:
                 seen.add(key)
-                yield deadlock, until
+                yield deadlock, until, stuck
 
 
 def _moments(view: TimelineView) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
@@ -93,15 +136,15 @@ def _moments(view: TimelineView) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
 
     The latest comes first, since it tells how long a cycle lasted.
     """
-    if any(each.end is None and _is_long(each, view.end) for each in view.blocked) or _call_waits_for_group(
-        view
-    ):
+    waits: list[Blocked | Position] = [*view.blocked, *view.positions]
+    stands = any(each.end is None and _is_long(each, view.end) for each in waits)
+    if stands or _call_waits_for_group(view):
         yield view.end, view.end
     ended = {each.end for each in view.blocked if each.end is not None and _is_long(each, each.end)}
     yield from ((end - 1, end) for end in sorted(ended, reverse=True))
 
 
-def _is_long(blocked: Blocked, until: Nanoseconds) -> bool:
+def _is_long(blocked: Blocked | Position, until: Nanoseconds) -> bool:
     return until - blocked.start >= _SETTLES
 
 
@@ -119,22 +162,27 @@ def _lacks_worker(deadlock: Sequence[StuckCallback]) -> bool:
     return any(each.obstacle.needs_worker and len(each.obstacle.by) > 1 for each in deadlock)
 
 
-def _found(rule: Rule, deadlock: Sequence[StuckCallback], until: Nanoseconds) -> Finding:
+def _found(
+    rule: Rule,
+    deadlock: Sequence[StuckCallback],
+    until: Nanoseconds,
+    stuck: frozenset[EntityId],
+    timeline: Timeline,
+) -> Finding:
     closing = deadlock[0]
     detail = "; ".join(dict.fromkeys(each.obstacle.text for each in deadlock))
     others = [each.entity for each in deadlock if each.entity != closing.entity]
     culprit = others[0] if others else closing.entity
-    about = listed(each.obstacle.service for each in deadlock)
+    ring = (step for each in deadlock for step in (who(each.entity, timeline), *each.obstacle.steps))
     return Finding(
-        rule, closing.since, until, closing.entity, culprit, about=about, size=len(deadlock), detail=detail
+        rule,
+        closing.since,
+        until,
+        closing.entity,
+        culprit,
+        about=closing.obstacle.wanted,
+        size=len(deadlock),
+        detail=detail,
+        stuck=stuck,
+        ring=(*ring, who(closing.entity, timeline)),
     )
-
-
-def _lasts(found: Finding, timeline: Timeline) -> bool:
-    return found.until >= timeline.end
-
-
-def _waiting(found: Finding, timeline: Timeline) -> str:
-    if _lasts(found, timeline):
-        return f"waits for {found.about} for ever"
-    return f"waited in vain for {found.about}"

@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_of
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import often, who
-from sim.trace.events import Notice, NoticeKind, Severity
+from sim.trace.events import Doing, Notice, NoticeKind, Severity
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 
@@ -22,11 +22,12 @@ class EndlessWait(Rule):
 
     id = "endless-wait"
     summary = "a callback waits for a lock or an event that does not come"
+    is_effect = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each wait that the engine reported."""
         for notice in view.timeline.notices:
-            if notice.entity:
+            if notice.entity and notice.kind not in (NoticeKind.NO_PROGRESS, NoticeKind.OVERRULED):
                 until = _until(notice, view)
                 yield Finding(self, notice.t, until, notice.entity, detail=notice.text)
 
@@ -39,13 +40,60 @@ class EndlessWait(Rule):
             f"{who(found.subject, timeline)}{what}{often(found.count)}",
             "a thread that waits serves nothing else, and without a timeout it may do so for ever",
             notice.advice or _ADVICE,
-            place_of(found.subject, timeline),
+            line_of(found.subject, _moment(found), timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Irrelevant if the wait ended after all."""
         over = found.until < timeline.end and not _is_deadlock(_notice_of(found, timeline))
         return None if over else Weight.PROBLEM
+
+
+class EndlessLoop(Rule):
+    """A callback neither returns nor waits.
+
+    The engine reports it after a while, also on virtual time, which does not pass meanwhile.
+    """
+
+    id = "endless-loop"
+    summary = "a callback computes without end"
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each call that the engine reported."""
+        for notice in view.timeline.notices:
+            if notice.entity and notice.kind is NoticeKind.NO_PROGRESS and _computes(notice, view):
+                stuck = frozenset([notice.entity])
+                yield Finding(self, notice.t, _until(notice, view), notice.entity, notice.entity, stuck=stuck)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Name the loop, if it is in one."""
+        subject = who(found.subject, timeline)
+        at = timeline.positions_of(found.subject, Window(found.at, found.at + 1))
+        file, line = at[-1].loop if at else ("", 0)
+        place = CodeLocation(file, line, line) if file else line_of(found.subject, _moment(found), timeline)
+        where = f" in the loop of line {line}" if file else ""
+        return Explanation(
+            f"{subject} computes without end{where}",
+            f"while {subject} runs, no other callback of its group or thread does: what the loop waits for "
+            "cannot come",
+            f"keep the state in self and return: {subject} is called again; or do one step of the loop at "
+            "each call of a timer",
+            place,
+            for_ever=found.until >= timeline.end,
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant if it returned after all."""
+        return self.weight if found.until >= timeline.end else None
+
+
+def _computes(notice: Notice, view: TimelineView) -> bool:
+    at = view.timeline.positions_of(notice.entity, Window(notice.t, notice.t + 1))
+    return all(each.doing is Doing.COMPUTES for each in at)
+
+
+def _moment(found: Finding) -> Window:
+    return Window(found.at, found.at + 1)
 
 
 def _notice_of(found: Finding, timeline: Timeline) -> Notice:

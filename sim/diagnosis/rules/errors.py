@@ -2,11 +2,37 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, place_of
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of
 from sim.diagnosis.words import often, who
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
+
+
+class ProgramRaised(Rule):
+    """An exception ended the program."""
+
+    id = "program-raised"
+    summary = "an exception ends the program"
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield the exception; one that another rule explains has been found there."""
+        ended = view.timeline.ended
+        clashes = {(clash.file, clash.line) for clash in view.timeline.spin_clashes}
+        if ended is not None and ended.problem and tuple(ended.place) not in clashes:
+            yield Finding(self, ended.t, ended.t)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Repeat what the engine says of it."""
+        ended = timeline.ended
+        assert ended is not None
+        file, line = ended.place
+        return Explanation(
+            ended.problem,
+            "an exception that no except clause takes ends spin(), and with it the program",
+            ended.advice or "mend the line, or catch the exception there",
+            CodeLocation(file, line, line) if line else None,
+        )
 
 
 class ExceptionSwallowed(Rule):
@@ -38,12 +64,17 @@ class ExceptionSwallowed(Rule):
                     )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the exception."""
-        subject = who(found.subject, timeline)
+        """Name the exception; once the program has ended, nobody is left to raise it."""
+        subject, ended = who(found.subject, timeline), timeline.ended
+        why = "a MultiThreadedExecutor raises only the oldest exception, when it starts the next callback"
+        cure = f"catch exceptions in {subject} and log them"
+        if ended is not None and not ended.failed and not ended.time_was_up:
+            why += "; here none came, for spin() had returned or was about to"
+            cure += f"; let main() wait for {subject} before it shuts down what that uses"
         return Explanation(
             f"{subject} raised {found.detail}, and spin() has not raised it{often(found.count)}",
-            "a MultiThreadedExecutor raises only the oldest exception, when it starts the next callback",
-            f"catch exceptions in {subject} and log them",
+            why,
+            cure,
             place_of(found.subject, timeline),
         )
 

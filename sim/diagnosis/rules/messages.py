@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from operator import attrgetter
 
-from sim.diagnosis.cures import cure_for_waits
+from sim.diagnosis.cures import remedy_for_waits
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, entity_of, place_of
 from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import often, who
@@ -26,6 +26,7 @@ class DroppedMessages(Rule):
 
     id = "dropped-messages"
     summary = "messages are lost because a callback does not take them in time"
+    is_effect = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield the losses of each second as one."""
@@ -36,7 +37,9 @@ class DroppedMessages(Rule):
             for _, each in groupby(losses, key=lambda at: at // SECOND):
                 times = list(each)
                 count = len(times)
-                yield Finding(self, times[0], times[-1], entity.id, size=count, count=count)
+                waits = view.timeline.waits_of(entity.id, Window(times[0], times[0] + 1))
+                holder = waits[-1].holder if waits else 0
+                yield Finding(self, times[0], times[-1], entity.id, holder, size=count, count=count)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Say what the callback waited for while its queue overflowed."""
@@ -44,14 +47,15 @@ class DroppedMessages(Rule):
         subject = who(found.subject, timeline)
         waits = timeline.waits_of(entity.id, Window(found.at, found.at + 1))
         because = f" while it waited ({why_waiting(waits[-1], timeline)})" if waits else ""
-        room = cure_for_waits([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
+        room = remedy_for_waits([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
         messages = "1 message" if found.count == 1 else f"{found.count} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
         return Explanation(
             f"{subject} lost {messages}{because}{holds}",
             "what comes into a full queue pushes the oldest out",
-            f"{room or f'let {subject} return sooner'}; a longer queue only delays it",
+            f"{room.words(timeline) or f'let {subject} return sooner'}; a longer queue only delays it",
             place_of(found.subject, timeline),
+            remedy=room,
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
@@ -64,6 +68,7 @@ class StaleData(Rule):
 
     id = "stale-data"
     summary = "a timer decides on old data while newer messages wait"
+    is_effect = True
     threshold: Nanoseconds = 200_000_000
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
@@ -98,13 +103,15 @@ class StaleData(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name the least age of the data."""
         subject, sensor = who(found.subject, timeline), who(found.culprit, timeline)
+        window = Window(found.at - found.size, found.at)
+        room = remedy_for_waits([found.culprit], found.culprit, window, timeline)
         return Explanation(
             f"{subject} decided on data at least {duration(found.size)} old: "
             f"newer messages waited for {sensor}{often(found.count)}",
             f"the node only knows what {sensor} has taken, and that did not run",
-            cure_for_waits([found.culprit], found.culprit, Window(found.at - found.size, found.at), timeline)
-            or f"let {sensor} return sooner",
+            room.words(timeline) or f"let {sensor} return sooner",
             place_of(found.subject, timeline),
+            remedy=room,
         )
 
 

@@ -2,12 +2,13 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.rule import Explanation, Finding, Rule, entity_of, place_of
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, line_of, place_of
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import often, who
+from sim.diagnosis.words import listed, often, who
 from sim.trace.events import EntityKind
-from sim.trace.model import Span
+from sim.trace.model import Span, Window
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
 
 class UnreturnedResponse(Rule):
@@ -39,7 +40,7 @@ class UnreturnedResponse(Rule):
         subject, service = who(found.subject, timeline), entity_of(found, timeline).name
         if found.detail:
             what = f"{subject} raised {found.detail}"
-            cure = f"mend what raises, or catch it in {subject} and return a response that says so"
+            cure = f"fix what raises, or catch it in {subject} and return a response that says so"
         else:
             what = f"{subject} returned no response"
             cure = f"end {subject} with: return response"
@@ -79,3 +80,45 @@ class NobodyOffers(Rule):
             cure,
             place_of(found.subject, timeline),
         )
+
+
+class ServiceNeverComes(Rule):
+    """A callback waits for a service that nobody of the run offers, and keeps its thread and its group."""
+
+    id = "service-never-comes"
+    summary = "a callback waits for a service that nobody offers"
+    threshold = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each callback that has waited longer than the threshold."""
+        for each in view.positions:
+            if each.call != "Client.wait_for_service" or view.end - each.start < self.threshold:
+                continue
+            known = view.timeline.entities.values()
+            offered = {entity.name for entity in known if entity.kind is EntityKind.SERVICE}
+            clients = {
+                entity.name
+                for entity in known
+                if entity.kind is EntityKind.CLIENT
+                and entity.node == view.timeline.entities[each.entity].node
+            } - offered
+            if clients:
+                about = listed(sorted(clients))
+                stuck = frozenset([each.entity])
+                yield Finding(self, each.start, view.end, each.entity, about=about, stuck=stuck)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Say what waits with it."""
+        subject = who(found.subject, timeline)
+        return Explanation(
+            f"{subject} waits in wait_for_service() for {found.about}, which nobody offers",
+            "while it waits it keeps its thread and its group, and without a timeout it does so for ever",
+            f"start the node that offers {found.about}; wait for it in __init__, before spin(), or ask "
+            f"service_is_ready() in {subject} and return",
+            line_of(found.subject, Window(found.at, found.until + 1), timeline),
+            for_ever=found.until >= timeline.end,
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant if the service came after all."""
+        return self.weight if found.until >= timeline.end else None

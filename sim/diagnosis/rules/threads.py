@@ -21,6 +21,7 @@ class ThreadsNeverUsed(Rule):
     id = "threads-never-used"
     summary = "fewer threads would have done"
     weight = Weight.REMARK
+    is_effect = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Compare the threads needed with those available."""
@@ -31,8 +32,9 @@ class ThreadsNeverUsed(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name both numbers."""
+        were = "was" if found.size == 1 else "were"
         return Explanation(
-            f"{found.size} of {found.detail} threads were ever needed at once",
+            f"{found.size} of {found.detail} threads {were} ever needed at once",
             "a thread is needed only while all the others run callbacks",
             f"num_threads={found.size} would have done for this run",
             None,
@@ -45,6 +47,7 @@ class GroupsChangeNothing(Rule):
     id = "groups-change-nothing"
     summary = "groups or threads make no difference"
     weight = Weight.REMARK
+    is_effect = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Find several groups with one thread, or several threads with one group."""

@@ -2,13 +2,12 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.cures import cure_for_waits
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, place_of
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, line_of
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import group_of, listed, often, threads_for, who, with_threads
+from sim.diagnosis.words import often, threads_for, who, with_threads
 from sim.durations import duration
-from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
-from sim.trace.model import EntityInfo, Nanoseconds, Span, Wait, Window
+from sim.trace.events import EntityKind, GroupKind
+from sim.trace.model import EntityInfo, Window
 from sim.trace.timeline import Timeline
 
 _HABIT = 3
@@ -24,6 +23,7 @@ class OverlappingCallback(Rule):
 
     id = "overlapping-callback"
     summary = "a callback runs several times at once"
+    is_effect = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each call that started while another one was running."""
@@ -51,7 +51,7 @@ class OverlappingCallback(Rule):
             "a reentrant group lets the same callback in again; without a lock, one call can undo what the "
             "other changed",
             cure,
-            place_of(found.subject, timeline),
+            line_of(found.subject, Window(found.at, found.until), timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
@@ -68,6 +68,7 @@ class OverrunTimer(Rule):
 
     id = "overrun-timer"
     summary = "a timer's callback takes longer than its period"
+    is_effect = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each call longer than the period, unless the next one overlaps it."""
@@ -96,7 +97,7 @@ class OverrunTimer(Rule):
             "the timer is not called again before its callback is over; missed ticks are not made up for",
             f"let {subject} return sooner: do long work step by step, or in a callback of another group"
             + threads,
-            place_of(found.subject, timeline),
+            line_of(found.subject, Window(found.at, found.until), timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
@@ -108,58 +109,6 @@ class OverrunTimer(Rule):
         if calls < 2:
             return None
         return Weight.PROBLEM if found.count >= _HABIT and 2 * found.count >= calls else Weight.REMARK
-
-
-class LongCallbackAmongSensors(Rule):
-    """A callback sleeps, or works long, in an exclusive group that subscriptions share."""
-
-    id = "long-callback-among-sensors"
-    summary = "a callback sleeps or works long in a group of subscriptions"
-    threshold: Nanoseconds = 500_000_000
-
-    def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield each call that kept subscriptions of its group waiting longer than the threshold."""
-        told: set[tuple[EntityId, Nanoseconds]] = set()
-        for sensor in view.entities(EntityKind.SUBSCRIPTION):
-            for wait in view.waits(sensor.id):
-                for part in wait.because(Reason.GROUP_HELD):
-                    for span in self._spans_behind(part, part.start + wait.length(part), view):
-                        if (span.entity, span.start) not in told:
-                            told.add((span.entity, span.start))
-                            end = span.end_at(view.end)
-                            size = end - span.start
-                            yield Finding(self, span.start, end, span.entity, span.entity, size=size)
-
-    def _spans_behind(self, part: Wait, until: Nanoseconds, view: TimelineView) -> Iterator[Span]:
-        holder = view.timeline.entities.get(part.holder)
-        if until - part.start < self.threshold or holder is None or holder.id in view.nested_spinners:
-            return
-        if _kind_of_group(holder, view) is GroupKind.EXCLUSIVE:
-            for span in view.spans(holder.id):
-                end = span.end_at(view.end)
-                is_long = min(end, until) - max(span.start, part.start) >= self.threshold
-                if is_long and not view.stood_in_call(holder.id, span.start, end):
-                    yield span
-
-    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the subscriptions."""
-        subject = who(found.subject, timeline)
-        entity = entity_of(found, timeline)
-        sensors = [
-            each
-            for each in timeline.group_members(entity.group)
-            if each.kind is EntityKind.SUBSCRIPTION and each.id != entity.id
-        ]
-        room = cure_for_waits(
-            [each.id for each in sensors], found.subject, Window(found.at, found.until), timeline
-        )
-        return Explanation(
-            f"{subject} slept or worked for {duration(found.lasted)} in {group_of(found.subject, timeline)}, "
-            f"which it shares with {listed(each.spoken_name for each in sensors)}{often(found.count)}",
-            "while it sleeps it holds the group, and nothing comes in from the sensors",
-            f"{room}; or let {subject} return at once, and go on in a timer",
-            place_of(found.subject, timeline),
-        )
 
 
 def _kind_of_group(entity: EntityInfo, view: TimelineView) -> GroupKind | None:

@@ -2,11 +2,12 @@
 
 from collections import defaultdict
 from collections.abc import Iterator
+from typing import ClassVar
 
-from sim.diagnosis.cures import cure_for_waits
-from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
+from sim.diagnosis.cures import NO_REMEDY, Remedy, remedy_for_waits
+from sim.diagnosis.rule import Explanation, Finding, Rule, line_of, place_of
 from sim.diagnosis.timeline_view import LongWait, TimelineView
-from sim.diagnosis.words import group_of, often, threads_for, who
+from sim.diagnosis.words import group_of, listed, often, threads_for, who
 from sim.durations import duration
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import EntityInfo, Nanoseconds, Window
@@ -16,7 +17,63 @@ from sim.units import SECOND
 HALF_A_SECOND = SECOND // 2
 
 
-class GroupStarvation(Rule):
+class _KeptWaiting(Rule):
+    """Others kept a ready callback waiting longer than the threshold in total, for one reason."""
+
+    is_effect = by_culprit = True
+    threshold = HALF_A_SECOND
+    reason: ClassVar[Reason]
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield such waits."""
+        for entity in view.entities():
+            for wait in view.waits(entity.id):
+                parts = wait.because(self.reason)
+                waited = sum(map(wait.length, parts))
+                if waited < self.threshold or _may_wait_for_its_caller(entity, wait, view):
+                    continue
+                shares: defaultdict[EntityId, Nanoseconds] = defaultdict(int)
+                for part in parts:
+                    shares[part.holder] += wait.length(part)
+                culprit = max(shares, key=shares.__getitem__)
+                if culprit not in view.nested_spinners:
+                    yield Finding(self, wait.since, wait.until, entity.id, culprit, size=waited)
+
+    def _waiting(self, found: Finding, timeline: Timeline) -> list[EntityId]:
+        """Who waited for the culprit at the worst time, the one that waited longest first."""
+        at = Window(found.at, found.until)
+        others = (each for each in timeline.entities if each not in (found.subject, found.culprit))
+        return [
+            found.subject,
+            *(
+                each
+                for each in others
+                if any(
+                    wait.holder == found.culprit
+                    and wait.reason is self.reason
+                    and min(wait.end_at(timeline.end), at.end) - wait.start >= HALF_A_SECOND
+                    for wait in timeline.waits_of(each, at)
+                )
+            ),
+        ]
+
+    def _explained(
+        self, found: Finding, timeline: Timeline, cause: str, why: str, cure: str, remedy: Remedy = NO_REMEDY
+    ) -> Explanation:
+        waited = self._waiting(found, timeline)
+        names = listed(who(each, timeline) for each in waited)
+        up_to, times = ("up to ", "") if len(waited) > 1 else ("", often(found.count))
+        place = line_of(found.culprit, Window(found.at, found.until), timeline)
+        return Explanation(
+            f"{names} waited {up_to}{duration(found.lasted)}: {cause}{times}",
+            why,
+            cure,
+            place or place_of(found.subject, timeline),
+            remedy=remedy,
+        )
+
+
+class GroupStarvation(_KeptWaiting):
     """A callback was ready, but another one held its mutually exclusive group.
 
     Source: the ROS 2 how-to guide "Using callback groups".
@@ -24,56 +81,71 @@ class GroupStarvation(Rule):
 
     id = "group-starvation"
     summary = "a callback waits long because its group is held"
-    threshold = HALF_A_SECOND
-
-    def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield the waits in which others held the group longer than the threshold in total."""
-        yield from _kept_waiting(self, view, Reason.GROUP_HELD, self.threshold)
+    reason = Reason.GROUP_HELD
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name the holder of the group."""
-        subject, culprit = who(found.subject, timeline), who(found.culprit, timeline)
-        group = group_of(found.subject, timeline)
-        return Explanation(
-            f"{subject} waited {duration(found.lasted)}: {group} was held by {culprit}{often(found.count)}",
+        culprit = who(found.culprit, timeline)
+        waited = self._waiting(found, timeline)
+        mover = found.subject if len(waited) == 1 else found.culprit
+        room = remedy_for_waits(waited, mover, Window(found.at, found.until), timeline)
+        return self._explained(
+            found,
+            timeline,
+            f"{group_of(found.subject, timeline)} was held by {culprit}",
             f"{_admission(found.subject, timeline)}, however many threads are free",
-            cure_for_waits([found.subject], found.subject, Window(found.at, found.until), timeline),
-            place_of(found.culprit, timeline) or place_of(found.subject, timeline),
+            f"{room.words(timeline)}; or let {culprit} return sooner",
+            room,
         )
 
 
-class NoFreeWorker(Rule):
+class NoFreeWorker(_KeptWaiting):
     """A callback's group was free, but every thread of its executor was busy."""
 
     id = "no-free-worker"
     summary = "a callback waits long because all threads are busy"
-    threshold = HALF_A_SECOND
-
-    def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield the waits in which all threads were busy longer than the threshold in total."""
-        yield from _kept_waiting(self, view, Reason.NO_FREE_WORKER, self.threshold)
+    reason = Reason.NO_FREE_WORKER
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name the callback that occupied a thread."""
-        subject, culprit = who(found.subject, timeline), who(found.culprit, timeline)
+        culprit = who(found.culprit, timeline)
         beside_itself = len(timeline.spans_of(found.culprit, Window(found.at, found.at + 1)))
-        room = cure_for_waits([found.subject], found.subject, Window(found.at, found.until), timeline)
-        cure = f"{room}, or keep {culprit} short"
+        room = remedy_for_waits([found.subject], found.subject, Window(found.at, found.until), timeline)
+        cure = f"{room.words(timeline)}, or keep {culprit} short"
         if threads_for([found.culprit, found.subject], found.until, timeline) == 1:
             busy = f"the only thread ran {culprit}"
         elif beside_itself > 1:
             busy = f"{beside_itself} calls of {culprit} kept a thread each, and no thread was free"
+            room = Remedy((found.culprit,))
             cure = (
                 f"give {culprit} a MutuallyExclusiveCallbackGroup: then its calls wait outside, without a "
-                "thread; for a lock they wait inside, and one thread more would wait there too"
+                "thread; for a lock they wait inside, and one more thread would wait there too"
             )
         else:
             busy = f"all threads were busy, one with {culprit}"
-        return Explanation(
-            f"{subject} waited {duration(found.lasted)}: {busy}{often(found.count)}",
-            "its group would have let it in, but a callback also needs a thread to run on",
-            cure,
-            place_of(found.culprit, timeline) or place_of(found.subject, timeline),
+        why = "its group would have let it in, but a callback also needs a thread to run on"
+        return self._explained(found, timeline, busy, why, cure, room)
+
+
+class BehindOthers(_KeptWaiting):
+    """A callback was ready, but its EventsExecutor was running what came before it.
+
+    Source: rclpy's ``events_executor.cpp``, which keeps one queue and asks no callback group.
+    """
+
+    id = "behind-others"
+    summary = "a callback waits long behind others in the event queue"
+    reason = Reason.EVENT_QUEUE
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Name the callback that ran meanwhile."""
+        culprit = who(found.culprit, timeline)
+        return self._explained(
+            found,
+            timeline,
+            f"the EventsExecutor was running {culprit}",
+            "an EventsExecutor asks no group: it runs one callback at a time, in the order of their arrival",
+            f"keep {culprit} short, or let a MultiThreadedExecutor with more than one thread run both",
         )
 
 
@@ -120,29 +192,12 @@ class NodeNeverSpins(Rule):
         elif ever:
             cure = "keep spinning the node: spin() has returned, or its executor was shut down"
         return Explanation(
-            f"{subject} of {found.about} is ready for {duration(found.lasted)} and does not run: {what}",
+            f"{subject} of {found.about} has been ready for {duration(found.lasted)} "
+            f"and does not run: {what}",
             "callbacks run only inside spin()",
             cure,
             place_of(found.subject, timeline),
         )
-
-
-def _kept_waiting(
-    rule: GroupStarvation | NoFreeWorker, view: TimelineView, reason: Reason, threshold: Nanoseconds
-) -> Iterator[Finding]:
-    for entity in view.entities():
-        for wait in view.waits(entity.id):
-            parts = wait.because(reason)
-            waited = sum(map(wait.length, parts))
-            if waited < threshold or _may_wait_for_its_caller(entity, wait, view):
-                continue
-            shares: defaultdict[EntityId, Nanoseconds] = defaultdict(int)
-            for part in parts:
-                shares[part.holder] += wait.length(part)
-            culprit = max(shares, key=shares.__getitem__)
-            if culprit in view.nested_spinners:
-                continue
-            yield Finding(rule, wait.since, wait.until, entity.id, culprit, size=waited)
 
 
 def _may_wait_for_its_caller(entity: EntityInfo, wait: LongWait, view: TimelineView) -> bool:

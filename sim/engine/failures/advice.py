@@ -2,16 +2,21 @@
 
 import ast
 import builtins
+import inspect
 import sys
 from collections.abc import Iterable
+from dataclasses import dataclass
 from difflib import get_close_matches
+from traceback import walk_tb
 from types import FrameType
 
+from sim.probes.own_code import is_own
 from sim.ros.middleware.process import current_process
+from sim.trace.events import EntityKind
 
 
 def advice_on(error: BaseException, frame: FrameType | None) -> str:
-    """What to add to the text of an exception that came up in ``frame``; empty where that says it all."""
+    """What to do about an exception that came up in ``frame``; empty where its text says it all."""
     match error:
         case ModuleNotFoundError(name=str(name)):
             from sim.engine.failures.missing import on_missing
@@ -27,7 +32,44 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
             advice = "curses draws on a whole terminal, which no run has; print, and read keys with termios"
         case _:
             advice = ""
-    return f"; {advice}" if advice else ""
+    return advice
+
+
+@dataclass(frozen=True, slots=True)
+class RejectedCallback:
+    """A callback that does not take what rclpy hands it: where it is written, and what to do."""
+
+    file: str
+    line: int
+    advice: str
+
+
+def rejected_callback(error: BaseException) -> RejectedCallback | None:
+    """The callback whose parameters were wrong, if that is why an exception came up in rclpy."""
+    frames = [frame for frame, _ in walk_tb(error.__traceback__)]
+    if not frames or not isinstance(error, TypeError | RuntimeError) or is_own(frames[-1]):
+        return None
+    inside = frames[-1].f_locals
+    callback = inside.get("callback", getattr(inside.get("self"), "callback", None))
+    code = getattr(callback, "__code__", None)
+    if code is None or not any(each in str(error) for each in ("positional argument", "callback should")):
+        return None
+    taken = _HANDED_OVER[getattr(inside.get("self"), "kind", EntityKind.SUBSCRIPTION)]
+    own = ["self"] if inspect.ismethod(callback) else []
+    written = f"def {code.co_name}({', '.join([*own, *taken])})"
+    return RejectedCallback(
+        code.co_filename, code.co_firstlineno, f"rclpy calls it otherwise; write {written}"
+    )
+
+
+_HANDED_OVER = {
+    EntityKind.TIMER: [],
+    EntityKind.GUARD: [],
+    EntityKind.SUBSCRIPTION: ["message"],
+    EntityKind.SERVICE: ["request", "response"],
+    EntityKind.CLIENT: ["future"],
+    EntityKind.WAITABLE: [],
+}
 
 
 def _on_unready_node(attribute: str, obj: object) -> str:

@@ -1,28 +1,48 @@
 """Tells in one sentence how a program failed: the learner's own file and line, what came up, what to do."""
 
 import traceback
+from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
-from sim.engine.failures.advice import advice_on
+from sim.engine.failures.advice import advice_on, rejected_callback
 from sim.error_text import error_text
 
 _MODEL = Path(__file__).parents[2]
 
 
-def failure(error: BaseException, path: str, folder: str) -> str:
-    """The sentence for an exception that a program did not catch.
+@dataclass(frozen=True, slots=True)
+class Failure:
+    """How a program failed: the learner's file and line (0: none), what happened there, and what to do."""
+
+    file: str
+    line: int
+    what: str
+    advice: str = ""
+
+    @property
+    def sentence(self) -> str:
+        """All in one sentence."""
+        advice = f"; {self.advice}" if self.advice else ""
+        return f"{_place(self.file, self.line)}: {self.what}{advice}"
+
+
+def failure(error: BaseException, path: str, folder: str) -> Failure:
+    """What to tell of an exception that a program did not catch.
 
     ``path`` is the program's file; files in ``folder`` count as the learner's own too.
     """
     if isinstance(error, SyntaxError) and error.filename and _is_own(error.filename, path, folder):
-        return f"{_place(error.filename, error.lineno or 0)}: {error.msg}"
-    found = _innermost(error, path, folder)
-    place = Path(path).name if found is None else _place(found[0].f_code.co_filename, found[1])
-    frame = None if found is None else found[0]
+        return Failure(error.filename, error.lineno or 0, str(error.msg))
     text = _text(error)
-    what = f"{type(error).__name__}: {text}" if text else type(error).__name__
-    return f"{place}: the program raised {what}{advice_on(error, frame)}"
+    what = f"the program raised {type(error).__name__}{f': {text}' if text else ''}"
+    rejected = rejected_callback(error)
+    if rejected is not None and _is_own(rejected.file, path, folder):
+        return Failure(rejected.file, rejected.line, what, rejected.advice)
+    found = _innermost(error, path, folder)
+    if found is None:
+        return Failure(path, 0, what, advice_on(error, None))
+    return Failure(found[0].f_code.co_filename, found[1], what, advice_on(error, found[0]))
 
 
 def breakdown(error: Exception) -> str:

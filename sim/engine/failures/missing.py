@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 from sim.interfaces import kinds_sentence, packages
+from sim.ros.importing import HOMES
 
 _PIP = {
     "Crypto": "pycryptodome",
@@ -40,7 +41,7 @@ _PIP = {
 _PIP_BY_NAME = """
     PyQt5 PySide6 casadi control cvxpy depthai filterpy flask gpiozero gymnasium keyboard matplotlib mediapipe
     networkx numba open3d pandas plotly pyaudio pygame pymavlink pynput pyproj pyrealsense2 requests scipy
-    seaborn shapely smbus2 sympy tensorflow torch torchvision tqdm transforms3d ultralytics utm websockets
+    seaborn shapely smbus2 sympy tensorflow torch torchvision tqdm ultralytics utm websockets
 """.split()  # noqa: SIM905 -- one to a line they would hide the rest
 """Those whose distributions are named as they are."""
 
@@ -62,18 +63,18 @@ _ROS_1 = {
     "rosservice": "node.get_service_names_and_types() lists services",
     "rostopic": "node.get_topic_names_and_types() lists topics",
     "smach": "py_trees takes its place",
-    "tf": "tf2_ros takes its place, on a ROS 2 machine",
+    "tf": "tf2_ros takes its place, and tf_transformations that of tf.transformations",
 }
 """Packages of ROS 1, with what ROS 2 has in their place."""
 
-_GEOMETRY = "a few lines of math or numpy turn quaternions into angles"
-_TRANSFORMS = "publish tf2_msgs/msg/TFMessage on /tf, or subscribe to it"
-_PICTURES = "numpy.frombuffer(message.data, numpy.uint8) reads a sensor_msgs/msg/Image"
+_GEOMETRY = "tf2_geometry_msgs transforms messages, and tf_transformations has quaternions and matrices"
+_PICTURES = "cv_bridge makes numpy arrays of sensor_msgs/msg/Image"
 _TESTS = "test with pytest, where sim.ros.importing.install() makes rclpy importable"
 _THERE = "run what needs it there"
+_PLANNING = "planning needs MoveIt's own compiled libraries, and a robot's description"
+_LINES = "the lines of ros2 that are known here run without it"
 _ROS_2 = {
     "PyKDL": _GEOMETRY,
-    "cv_bridge": _PICTURES,
     "diagnostic_updater": "publish diagnostic_msgs/msg/DiagnosticArray on /diagnostics",
     "image_geometry": _PICTURES,
     "image_transport": _PICTURES,
@@ -82,36 +83,30 @@ _ROS_2 = {
     "launch_testing": _TESTS,
     "launch_testing_ros": _TESTS,
     "laser_geometry": "a few lines of math or numpy turn ranges into points",
-    "message_filters": "subscribe to each topic and match the stamps in the callbacks",
-    "moveit": _THERE,
-    "moveit_configs_utils": _THERE,
+    "moveit": _PLANNING,
+    "moveit_configs_utils": _PLANNING,
+    "moveit_py": _PLANNING,
     "nav2_common": _THERE,
     "nav2_simple_commander": "send the goals with rclpy.action.ActionClient",
     "py_trees_ros": _THERE,
-    "ros2cli": "the lines of ros2 that are known here run without it",
-    "ros2launch": "the lines of ros2 that are known here run without it",
-    "ros2pkg": "the lines of ros2 that are known here run without it",
-    "rosbag2_py": "cbtui run --events records what happens",
+    "rclcpp": "nodes are Python here, with rclpy",
+    **dict.fromkeys(("ros2action", "ros2bag", "ros2cli", "ros2launch", "ros2node", "ros2param"), _LINES),
+    **dict.fromkeys(("ros2pkg", "ros2run", "ros2service", "ros2topic"), _LINES),
     "rqt_gui": _THERE,
     "rqt_gui_py": _THERE,
-    "tf2_geometry_msgs": _GEOMETRY,
     "tf2_kdl": _GEOMETRY,
-    "tf2_py": _TRANSFORMS,
-    "tf2_ros": _TRANSFORMS,
-    "tf2_sensor_msgs": _GEOMETRY,
-    "tf_transformations": _GEOMETRY,
-    "turtle_tf2_py": _TRANSFORMS,
+    "turtle_tf2_py": "send the turtles' poses with tf2_ros.TransformBroadcaster",
     "urdf_parser_py": _THERE,
     "xacro": "give robot_description as URDF",
 }
 """Python packages of ROS 2 that are not here, with what does the work in their place."""
 
 _INTERFACES = """
-    aruco_msgs autoware_msgs can_msgs cartographer_ros_msgs control_msgs controller_manager_msgs
-    crazyflie_interfaces foxglove_msgs geographic_msgs gps_msgs grid_map_msgs irobot_create_msgs
+    aruco_msgs autoware_msgs cartographer_ros_msgs controller_manager_msgs
+    crazyflie_interfaces foxglove_msgs gps_msgs grid_map_msgs irobot_create_msgs
     mavros_msgs moveit_msgs nmea_msgs novatel_gps_msgs object_recognition_msgs octomap_msgs
     pcl_msgs px4_msgs radar_msgs robot_localization ros_gz_interfaces rtcm_msgs slam_toolbox turtlebot3_msgs
-    ublox_msgs ur_msgs velodyne_msgs vision_msgs webots_ros2_msgs
+    ublox_msgs ur_msgs velodyne_msgs webots_ros2_msgs
 """.split()  # noqa: SIM905 -- as above
 """Packages of interfaces that others publish, and that are not here."""
 
@@ -142,7 +137,7 @@ def on_missing(module: str) -> str:
         parent = sys.modules.get(module.rpartition(".")[0])
         siblings = pkgutil.iter_modules(getattr(parent, "__path__", ()), f"{module.rpartition('.')[0]}.")
         return _nearest(module, (each.name for each in siblings))
-    known = {*packages(), *sys.stdlib_module_names, *_KNOWN, "launch", "launch_ros", "numpy", "rclpy"}
+    known = {*packages(), *sys.stdlib_module_names, *_KNOWN, *HOMES, "launch", "launch_ros", "numpy"}
     return _KNOWN.get(package) or _nearest(package, known) or _on_unknown(package)
 
 

@@ -41,10 +41,20 @@ def report_uncaught(tell: Tell, path: str, folder: str) -> None:
         error = failed.exc_value
         if error is None:
             return
-        where = getattr(failed.object, "__qualname__", None) or type(failed.object).__name__
+        where, heading = _source(failed)
         say(error, f"Python drops what comes out of {where}")
-        sys.stderr.write(f"{failed.err_msg or 'Exception ignored in'}: {where}\n")
+        sys.stderr.write(f"{heading or 'Exception ignored in'}: {where}\n")
         traceback.print_exception(error)
 
     threading.excepthook = of_thread
     sys.unraisablehook = of_other
+
+
+def _source(failed: Any) -> tuple[str, str | None]:
+    """The function or object that an exception came out of, and Python's words for what it was called for.
+
+    From 3.13 on Python may hand over words alone, which hold an address and so differ from run to run.
+    """
+    if failed.object is None and failed.exc_traceback is not None:
+        return failed.exc_traceback.tb_frame.f_code.co_qualname, None
+    return getattr(failed.object, "__qualname__", None) or type(failed.object).__name__, failed.err_msg

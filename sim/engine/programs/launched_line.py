@@ -30,16 +30,10 @@ class LaunchedLine:
         self._line.start()
 
     def interrupt(self) -> None:
-        """End it as Ctrl-C would."""
+        """End it as Ctrl-C would, and as any other signal does."""
         self._line.interrupt()
 
-    def terminate(self) -> None:
-        """End it as SIGTERM would."""
-        self._line.interrupt()
-
-    def kill(self) -> None:
-        """End it as SIGKILL would."""
-        self._line.interrupt()
+    terminate = kill = interrupt
 
     def _take(self, text: str, error: bool) -> None:
         self._programs.record(Printed(self._programs.host.clock.now(), text, error, self.number))

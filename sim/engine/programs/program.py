@@ -15,7 +15,7 @@ from types import CodeType, ModuleType
 from typing import Any
 
 from sim.engine.failures.advice import misplaced, silence
-from sim.engine.failures.failure import failure, place_of
+from sim.engine.failures.failure import Failure, failure, place_of
 from sim.engine.programs.ending import run_thread_exit_functions
 from sim.engine.programs.source import NothingToRunError, read_source
 from sim.engine.stdio.output import finish_lines
@@ -50,12 +50,16 @@ def script(path: str, arguments: tuple[str, ...] = ()) -> ProgramSpec:
 
 @dataclass(frozen=True, slots=True)
 class ProgramOutcome:
-    """How a program ended: a sentence, whether it failed, the exit code, and the exception ("" for none)."""
+    """How a program ended: a sentence, whether it failed, the exit code, and the exception ("" for none).
+
+    ``failure`` tells where that came up, and what to do.
+    """
 
     sentence: str
     failed: bool
     status: int = 0
     error: str = ""
+    failure: Failure | None = None
 
 
 def run_program(program: ProgramSpec) -> ProgramOutcome:
@@ -89,8 +93,8 @@ def _outcome_of(program: ProgramSpec) -> ProgramOutcome:
         return ProgramOutcome(STOPPED, failed=False, status=_INTERRUPTED)
     except BaseException as error:  # noqa: BLE001 -- whatever a learner's program raises ends its run, not the engine
         traceback.print_exception(error)
-        sentence = failure(error, program.path, program.folder)
-        return ProgramOutcome(sentence, failed=True, status=1, error=error_line(error))
+        told = failure(error, program.path, program.folder)
+        return ProgramOutcome(told.sentence, failed=True, status=1, error=error_line(error), failure=told)
     return ProgramOutcome(silence() or _returned(), failed=status != 0, status=status)
 
 
@@ -183,8 +187,13 @@ def _as_short_warning(
 
 
 def _join_left_threads() -> None:
-    if current_process().number == 0:
+    process = current_process()
+    if process.number == 0:
         run_thread_exit_functions()
+        for reference in process.finish_pools:
+            finish = reference()
+            if finish is not None:
+                finish()
     for thread in threads_left_by(current_process()):
         thread.join()
 

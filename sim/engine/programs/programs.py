@@ -8,7 +8,9 @@ import signal
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import count
+from types import FrameType
 
 from sim.clock import AutoResetEvent
 from sim.engine.programs.ending import flush_files
@@ -20,6 +22,9 @@ from sim.ros.context.signals import deliver_sigint
 from sim.ros.middleware.host import Host
 from sim.ros.middleware.process import Process
 from sim.trace.events import AnyEvent, Notice, ProcessAppeared, ProcessEnded, Severity
+
+# Kept from before a clock puts its own in its place.
+_set_handler = signal.signal
 
 Ended = Callable[[ProgramOutcome], None]
 
@@ -75,6 +80,7 @@ class ProgramSupervisor:
         process = Process(self.host, arguments=[program.path, *program.arguments])
         process.enter()
         self._only.append(process)
+        _set_handler(signal.SIGINT, partial(_at_ctrl_c, process))
         return run_program(program)
 
     def start(
@@ -193,4 +199,11 @@ class ProgramSupervisor:
         Several programs are interrupted one by one, in their own main threads.
         """
         for process in self._only:
+            process.finish_pools.clear()  # the run is over, whatever their workers are at
             deliver_sigint(process)
+
+
+def _at_ctrl_c(process: Process, number: int, frame: FrameType | None) -> None:
+    """Do what rclpy does at a SIGINT that a program sends itself, then what Python does."""
+    deliver_sigint(process)
+    signal.default_int_handler(number, frame)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from sim.packages import Packages
 
-_LAUNCH = frozenset(("ament_index_python", "launch", "launch_ros"))
+_LAUNCH = frozenset(("ament_index_python", "launch", "launch_ros", "launch_xml", "launch_yaml"))
 
 
 def use_workspace(packages: Callable[[], Packages], clock: RunClock) -> None:

@@ -78,9 +78,11 @@ class Terminal:
         selects.select = self._selecting(select.select)
         kinds.SelectSelector._select = staticmethod(select.select)
         of_file = self._is_read_by, self._wait_with
-        selects.poll = kinds.PollSelector._selector_cls = partial(Polling, *of_file, select.poll, 1e3)
-        epoll = partial(Polling, *of_file, select.epoll, 1.0)
-        selects.epoll = kinds.EpollSelector._selector_cls = epoll
+        selects.poll = partial(Polling, *of_file, select.poll, 1e3)
+        kinds.PollSelector._selector_cls = staticmethod(selects.poll)
+        if hasattr(select, "epoll"):  # Linux alone has it
+            selects.epoll = partial(Polling, *of_file, select.epoll, 1.0)
+            kinds.EpollSelector._selector_cls = staticmethod(selects.epoll)
 
     def type(self, text: str, *, ends: bool = False, scheduled: bool = False) -> None:
         """Type text, at a moment of the run; ``ends``: it is the last."""

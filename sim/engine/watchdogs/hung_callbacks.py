@@ -9,7 +9,7 @@ from types import FrameType
 from sim.clock import RunClock
 from sim.marks import calls_the_program, waits_for_keyboard, waits_for_time
 from sim.probes.own_code import is_own, outwards, place_of
-from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
+from sim.trace.events import AnyEvent, EntityId, Notice, NoticeKind, Severity
 
 # Kept from before a clock puts its own in their place.
 _Thread = threading.Thread
@@ -17,7 +17,7 @@ _sleep = time.sleep
 
 _LOOK = 0.5
 """Real seconds between two looks."""
-_PATIENCE = 6
+_PATIENCE = 3
 """Looks at which the same call was found hung before the person is told."""
 
 _MODEL = ("sim.ros.", "sim.interfaces.")
@@ -26,9 +26,13 @@ _MODEL = ("sim.ros.", "sim.interfaces.")
 class HungCallbacks:
     """Samples the stacks of all threads, and warns of each call once."""
 
-    def __init__(self, clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
+    def __init__(
+        self, clock: RunClock, record: Callable[[AnyEvent], None], callback_on: Callable[[int], EntityId]
+    ) -> None:
+        """``callback_on`` returns the callback that runs on a thread, by its identifier (0: none)."""
         self._clock = clock
         self._record = record
+        self._callback_on = callback_on
         self._seen: dict[int, tuple[int, int]] = {}
 
     def start(self) -> None:
@@ -50,7 +54,8 @@ class HungCallbacks:
                 seen[thread] = id(call), looks + 1 if before == id(call) else 1
                 if seen[thread][1] == _PATIENCE:
                     text, kind = _sentence(call, top), NoticeKind.NO_PROGRESS
-                    self._record(Notice(self._clock.now(), Severity.WARN, text, kind=kind))
+                    entity = self._callback_on(thread)
+                    self._record(Notice(self._clock.now(), Severity.WARN, text, entity, kind=kind))
         self._seen = seen
 
 

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from sim.clock import VirtualClock
 from sim.engine.watchdogs.thread_positions import place_of
 from sim.probes.own_code import outwards
-from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
+from sim.trace.events import AnyEvent, EntityId, Notice, NoticeKind, Severity
 
 _RealThread = threading.Thread
 _real_sleep = time.sleep
@@ -30,12 +30,17 @@ class Watchdog:
         self,
         clock: VirtualClock,
         record: Callable[[AnyEvent], None],
+        callback_on: Callable[[int], EntityId],
         give_up: Callable[[str], None],
         be_back_in: Callable[[float], None],
     ) -> None:
-        """``be_back_in`` is told before how many real seconds this has to go on: code in C may prevent it."""
+        """``callback_on`` returns the callback that runs on a thread, by its identifier (0: none).
+
+        ``be_back_in`` is told before how many real seconds this has to go on: code in C may prevent it.
+        """
         self._clock = clock
         self._record = record
+        self._callback_on = callback_on
         self._give_up = give_up
         self._be_back_in = be_back_in
 
@@ -52,7 +57,9 @@ class Watchdog:
             steps = self._clock.time.steps
             if still == _PATIENCE:
                 sentence = self._sentence()
-                self._record(Notice(self._clock.now(), Severity.WARN, sentence, kind=NoticeKind.NO_PROGRESS))
+                entity = self._callback_on(self._clock.current.ident)
+                kind, now = NoticeKind.NO_PROGRESS, self._clock.now()
+                self._record(Notice(now, Severity.WARN, sentence, entity, kind=kind))
             elif still == (_PATIENCE_WITH_IMPORTS if self._imports() else _LAST_PATIENCE):
                 self._give_up(sentence)
 

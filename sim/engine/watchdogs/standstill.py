@@ -25,10 +25,7 @@ class StandstillDetector:
     """
 
     def __init__(
-        self,
-        clock: VirtualClock,
-        record: Callable[[AnyEvent], None],
-        give_up: Callable[[str], None],
+        self, clock: VirtualClock, record: Callable[[AnyEvent], None], give_up: Callable[[str], None]
     ) -> None:
         self._clock = clock
         self._record = record

@@ -34,7 +34,7 @@ class WaitProblem:
 
 def deadlock_of_circle(circle: Sequence[VirtualThread]) -> WaitProblem:
     """Describe threads that wait for each other's locks or ends, or one that waits for its own lock."""
-    chain = ", and ".join(_waits(each) for each in circle)
+    chain = ", and ".join(waits(each) for each in circle)
     if any(_waits_for_end(each) for each in circle):
         advice = "let go of locks before you wait for a thread to end"
     elif len(circle) > 1:
@@ -46,17 +46,18 @@ def deadlock_of_circle(circle: Sequence[VirtualThread]) -> WaitProblem:
 
 def deadlock_of_last(thread: VirtualThread) -> WaitProblem:
     """Describe a thread that waits when no other thread of its program is left to end the wait."""
-    problem = f"{_waits(thread)}, and no thread of the program is left that could end that"
+    problem = f"{waits(thread)}, and no thread of the program is left that could end that"
     return WaitProblem(problem, _cure(thread), is_deadlock=True)
 
 
 def long_wait(thread: VirtualThread, lasted: int) -> WaitProblem:
     """Describe a thread that has waited ``lasted`` nanoseconds for what another thread might still do."""
     seconds = f"{lasted / 1e9:.1f}".removesuffix(".0")
-    return WaitProblem(f"{_waits(thread)}, for {seconds} s already", _cure(thread), is_deadlock=False)
+    return WaitProblem(f"{waits(thread)}, for {seconds} s already", _cure(thread), is_deadlock=False)
 
 
-def _waits(thread: VirtualThread) -> str:
+def waits(thread: VirtualThread) -> str:
+    """Say where a thread is, and for which lock or thread it waits."""
     return f"{thread.name} ({place_of(thread)}) {_what(thread)}"
 
 

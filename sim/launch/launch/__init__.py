@@ -1,5 +1,6 @@
 """The launch model: what ``import launch`` gives a launch file. Module names mirror launch's."""
 
+from sim.launch.errors import unsupported
 from sim.launch.launch.action import Action, LaunchDescriptionEntity
 from sim.launch.launch.condition import Condition
 from sim.launch.launch.event import Event
@@ -23,9 +24,4 @@ __all__ = [
     "Substitution",
 ]
 
-
-class LaunchService:
-    """Not supported: a launch file is started from outside."""
-
-    def __init__(self, *_: object, **__: object) -> None:
-        raise NotImplementedError("LaunchService is not supported: start the launch file with 'ros2 launch'")
+LaunchService = unsupported("LaunchService", ": start the launch file with 'ros2 launch'")

@@ -19,11 +19,7 @@ class EventHandler:
     """Gives the entities to visit when an event that it matches happens."""
 
     def __init__(
-        self,
-        *,
-        matcher: Callable[[Event], bool],
-        entities: Reaction = None,
-        handle_once: bool = False,
+        self, *, matcher: Callable[[Event], bool], entities: Reaction = None, handle_once: bool = False
     ) -> None:
         self._matcher = matcher
         self._entities = entities

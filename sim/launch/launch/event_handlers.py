@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
+from sim.launch.errors import unsupported
 from sim.launch.launch.action import Action
 from sim.launch.launch.event import Event
 from sim.launch.launch.event_handler import EventHandler, Reaction
@@ -77,10 +78,4 @@ class OnShutdown(EventHandler):
         )
 
 
-class OnProcessIO(EventHandler):
-    """Not supported: what a process prints does not come by the launch."""
-
-    def __init__(self, *_: object, **__: object) -> None:
-        raise NotImplementedError(
-            "OnProcessIO is not supported: a launch does not read its nodes' output here"
-        )
+OnProcessIO = unsupported("OnProcessIO", ": a launch does not read its nodes' output here")

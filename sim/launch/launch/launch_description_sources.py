@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from sim.launch.errors import LaunchError, LaunchFailure
 from sim.launch.launch.launch_context import LaunchContext
 from sim.launch.launch.launch_description import LaunchDescription
-from sim.launch.launch.substitution import (
-    TextSubstitution,
-    normalize_to_list_of_substitutions,
-    performed,
-)
-from sim.launch.loading import load_description
+from sim.launch.launch.substitution import TextSubstitution, normalize_to_list_of_substitutions, performed
 
 __all__ = [
     "AnyLaunchDescriptionSource",
@@ -26,8 +22,11 @@ __all__ = [
 class LaunchDescriptionSource:
     """A launch file at a path that may be a substitution."""
 
-    def __init__(self, location: Any) -> None:
-        self._location = normalize_to_list_of_substitutions(location)
+    read: ClassVar[Callable[[Path], LaunchDescription]]
+    """Reads a launch file of any kind; set by what loads them, since a file may include others."""
+
+    def __init__(self, launch_file_path: Any) -> None:
+        self._location = normalize_to_list_of_substitutions(launch_file_path)
 
     def load(self, context: LaunchContext) -> tuple[LaunchDescription, Path]:
         """The description and its file.
@@ -39,7 +38,7 @@ class LaunchDescriptionSource:
         path = Path(performed(context, self._location))
         if not path.is_file():
             raise LaunchFailure(f"the included launch file {path} does not exist")
-        return load_description(path), path.absolute()
+        return type(self).read(path), path.absolute()
 
     def known_description(self) -> LaunchDescription | None:
         """The description if its place is known before the launch runs and it can be read."""
@@ -47,7 +46,7 @@ class LaunchDescriptionSource:
             return None
         path = Path("".join(each.text for each in self._location if isinstance(each, TextSubstitution)))
         try:
-            return load_description(path) if path.is_file() else None
+            return type(self).read(path) if path.is_file() else None
         except LaunchError:
             return None
 
@@ -55,21 +54,10 @@ class LaunchDescriptionSource:
 class PythonLaunchDescriptionSource(LaunchDescriptionSource):
     """A launch file in Python."""
 
-    def __init__(self, launch_file_path: Any) -> None:
-        super().__init__(launch_file_path)
-
 
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
-    """A launch file of whatever kind; those in Python can be read."""
-
-    def __init__(self, launch_file_path: Any) -> None:
-        super().__init__(launch_file_path)
+    """A launch file of whatever kind: in Python, XML or YAML."""
 
 
 class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
-    """Not supported: launch files in XML and YAML are not read."""
-
-    def __init__(self, *_: object, **__: object) -> None:
-        raise NotImplementedError(
-            "FrontendLaunchDescriptionSource is not supported: only launch files in Python are read"
-        )
+    """A launch file in XML or YAML."""

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, ClassVar
 
 from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
+from sim.launch.errors import unsupported
 from sim.launch.launch.conditions import evaluate_condition_expression
 from sim.launch.launch.launch_context import LaunchContext
 from sim.launch.launch.substitution import (
@@ -165,11 +166,7 @@ class PythonExpression(Substitution):
         return f"PythonExpr({_described(self.expression)})"
 
 
-class Command(Substitution):
-    """Not supported: other programs' output is not read here."""
-
-    def __init__(self, *_: object, **__: object) -> None:
-        raise NotImplementedError("the substitution Command is not supported: no other programs are run here")
+Command = unsupported("the substitution Command", ": no other programs are run here")
 
 
 class FileContent(Substitution):

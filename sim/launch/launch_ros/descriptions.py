@@ -1,12 +1,8 @@
 """``launch_ros.descriptions``."""
 
+from sim.launch.errors import COMPILED, unsupported
 from sim.launch.launch_ros.parameter_descriptions import Parameter, ParameterFile, ParameterValue
 
 __all__ = ["ComposableNode", "Parameter", "ParameterFile", "ParameterValue"]
 
-
-class ComposableNode:
-    """Not supported: nodes written in C++ cannot be loaded."""
-
-    def __init__(self, *_: object, **__: object) -> None:
-        raise NotImplementedError("ComposableNode is not supported: components are compiled from C++")
+ComposableNode = unsupported("ComposableNode", COMPILED)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from sim.launch.errors import unsupported
 from sim.launch.launch.launch_context import LaunchContext
 from sim.launch.launch.substitution import Substitution, normalize_to_list_of_substitutions, performed
 
@@ -49,8 +50,4 @@ class ExecutableInPackage(FindPackage):
         return str(package.executable(performed(context, self.executable)).path)
 
 
-class Parameter(Substitution):
-    """Not supported."""
-
-    def __init__(self, *_: object, **__: object) -> None:
-        raise NotImplementedError("the substitution launch_ros.substitutions.Parameter is not supported")
+Parameter = unsupported("the substitution launch_ros.substitutions.Parameter", "")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 from weakref import ref
@@ -10,13 +9,12 @@ from weakref import ref
 from sim.ros.actions.cancelling import uuid_of
 from sim.ros.actions.goal_ids import new_goal_id
 from sim.ros.actions.goal_states import TERMINAL, GoalState
-from sim.ros.actions.parts import SubscriptionPart
+from sim.ros.actions.parts import ClientPart, SubscriptionPart
 from sim.ros.actions.waitable import ActionWaitable, await_or_execute
+from sim.ros.entities.client import Reply, wait_until_ready
 from sim.ros.qos.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
-from sim.units import wait_ns
 
 if TYPE_CHECKING:
-    from sim.ros.entities.client import Reply
     from sim.ros.node.node import Node
     from sim.ros.scheduling.callback_groups import CallbackGroup
     from sim.ros.scheduling.task import Future
@@ -24,9 +22,6 @@ if TYPE_CHECKING:
 __all__ = ["ActionClient", "ClientGoalHandle"]
 
 FeedbackCallback = Callable[[Any], Any]
-
-_POLL = 0.25
-"""Seconds between two looks of ``wait_for_server``, as in rclpy."""
 
 
 class ClientGoalHandle:
@@ -210,21 +205,20 @@ class ActionClient(ActionWaitable):
             if key in self._goal_handles:
                 raise RuntimeError(f"Two goals were accepted with the same ID ({goal_handle})")
             self._goal_handles[key] = ref(goal_handle)
-        self._goal_client.settle(future, goal_handle)
+        self._goal_client._settle(future, goal_handle)
 
     def _take_cancel_response(self, reply: Reply) -> None:
-        future = self._cancel_client.awaited(reply)
-        if future is None:
-            self._ignore("cancel")
-        else:
-            self._cancel_client.settle(future, reply.data)
+        self._settle(self._cancel_client, reply, "cancel")
 
     def _take_result(self, reply: Reply) -> None:
-        future = self._result_client.awaited(reply)
+        self._settle(self._result_client, reply, "result")
+
+    def _settle(self, client: ClientPart, reply: Reply, what: str) -> None:
+        future = client.awaited(reply)
         if future is None:
-            self._ignore("result")
+            self._ignore(what)
         else:
-            self._result_client.settle(future, reply.data)
+            client._settle(future, reply.data)
 
     def _ignore(self, what: str) -> None:
         self._logger.warning(
@@ -265,11 +259,7 @@ class ActionClient(ActionWaitable):
 
         It looks four times a second, and so may come back a little after the timeout.
         """
-        left = math.inf if timeout_sec is None else timeout_sec
-        while self._node.context.ok() and not self.server_is_ready() and left > 0:
-            self._host.clock.sleep(wait_ns(_POLL))
-            left -= _POLL
-        return self.server_is_ready()
+        return wait_until_ready(self.server_is_ready, self._node.context, timeout_sec)
 
 
 def _check_is_goal_handle(goal_handle: Any) -> None:

@@ -16,7 +16,7 @@ from sim.ros.entities.event_handler import SubscriptionEventCallbacks
 from sim.ros.entities.service import Service
 from sim.ros.entities.subscription import Subscription
 from sim.ros.qos.qos import QoSProfile
-from sim.ros.scheduling.entity import Entity
+from sim.ros.scheduling.entity import Entity, never_called
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -61,11 +61,6 @@ class Part(Entity):
     _owner: ActionWaitable
     _queue: deque[Any]
 
-    @property
-    def queued(self) -> int:
-        """How much waits in its queue."""
-        return len(self._queue)
-
     def become_ready(self, since: int) -> None:
         """The waitable has something to take. With the host's lock held."""
         self.pending = True
@@ -81,7 +76,7 @@ class ServicePart(Part, Service):
 
     def __init__(self, owner: ActionWaitable, srv_type: Any, name: str, qos_profile: QoSProfile) -> None:
         self._owner = owner
-        super().__init__(owner.node, srv_type, name, _never_called, owner.parts_group, qos_profile)
+        super().__init__(owner.node, srv_type, name, never_called, owner.parts_group, qos_profile)
         self._probe = PartProbe(owner)
 
 
@@ -111,13 +106,6 @@ class ClientPart(Part, Client):
                 self._probe.call_unblocked(call)
         return future.result()
 
-    def settle(self, future: Future[Any], result: Any) -> None:
-        """Give a future its result; its done-callbacks run as tasks of the executor that serves this."""
-        executor = self.node.executor
-        if executor is not None:
-            future._set_executor(executor)
-        future.set_result(result)
-
 
 class SubscriptionPart(Part, Subscription):
     """One of an action client's subscriptions."""
@@ -135,7 +123,3 @@ class SubscriptionPart(Part, Subscription):
         group = owner.parts_group
         super().__init__(owner.node, msg_type, name, callback, group, qos_profile, event_callbacks=silent)
         self._probe = PartProbe(owner)
-
-
-def _never_called(_request: Any, _response: Any) -> None:
-    """Stand in for the callback of a service whose waitable takes the requests."""

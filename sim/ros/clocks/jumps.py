@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Self
 
@@ -33,11 +34,7 @@ class JumpThreshold:
     """
 
     def __init__(
-        self,
-        *,
-        min_forward: Duration | None,
-        min_backward: Duration | None,
-        on_clock_change: bool = True,
+        self, *, min_forward: Duration | None, min_backward: Duration | None, on_clock_change: bool = True
     ) -> None:
         if min_forward is not None and min_forward.nanoseconds <= 0:
             raise ValueError("min_forward must be a positive non-zero duration")
@@ -59,22 +56,12 @@ class JumpThreshold:
         )
 
 
+@dataclass(frozen=True, eq=False)
 class TimeJump:
-    """A jump: how far (0 when the source changed), and whether the source changed."""
+    """A jump: whether the source changed, and how far it was (0 if the source changed)."""
 
-    def __init__(self, clock_change: ClockChange, delta: Duration) -> None:
-        self._clock_change = clock_change
-        self._delta = delta
-
-    @property
-    def clock_change(self) -> ClockChange:
-        """Whether the source changed."""
-        return self._clock_change
-
-    @property
-    def delta(self) -> Duration:
-        """How far it was."""
-        return self._delta
+    clock_change: ClockChange
+    delta: Duration
 
 
 class JumpHandle:

@@ -1,11 +1,25 @@
-"""When a timer falls due while its clock follows ROS time, which somebody sets step by step.
+"""When a timer falls due next, and when while its clock follows ROS time, which somebody sets step by step.
 
-The rules are those of rcl's timers, in nanoseconds of that clock.
+The rules are those of rcl's timers, in nanoseconds of the timer's clock.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+
+
+def next_due(due: int, period: int, now: int) -> int:
+    """When a timer called at ``now``, due at ``due``, is due next. All in nanoseconds.
+
+    A tick at the very moment of a late call is missed like those before it, also where a clock stands still.
+    """
+    following = due + period
+    if following > now:
+        return following
+    if period == 0:
+        return now
+    missed = (now - following) // period + 1
+    return following + missed * period
 
 
 @dataclass(slots=True)
@@ -17,14 +31,9 @@ class RosTimeSchedule:
     credit: int = 0
 
     def called(self, now: int, period: int) -> None:
-        """The timer was called at ``now``.
-
-        Unlike on a clock that runs, a tick at this very moment is not missed, for the clock stands still.
-        """
+        """The timer was called at ``now``."""
         self.last_call = now
-        self.due += period
-        if self.due < now:
-            self.due = now if period == 0 else self.due + -(-(now - self.due) // period) * period
+        self.due = next_due(self.due, period, now)
 
     def time_set(self, now: int, period: int) -> None:
         """The clock was set to ``now``; back by more than the last call, the timer begins anew."""

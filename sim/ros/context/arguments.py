@@ -224,9 +224,7 @@ _FLAGS = {
         "params file", "Couldn't parse trailing {} flag. No file path provided.", _read_parameter_file
     ),
     "--log-level": _Flag(
-        "log level",
-        "Couldn't parse trailing log level flag: '{}'. No log level found.",
-        _read_log_level,
+        "log level", "Couldn't parse trailing log level flag: '{}'. No log level found.", _read_log_level
     ),
     "-e": _ENCLAVE,
     "--enclave": _ENCLAVE,

@@ -6,7 +6,6 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from inspect import ismethod
-from types import TracebackType
 from typing import Any, NamedTuple
 from weakref import WeakMethod, ref
 
@@ -186,9 +185,7 @@ class Context:
             self.init()
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self.try_shutdown()
 
 

@@ -29,7 +29,16 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 """For the type hints of programs, which import these from here as from rclpy."""
 
 _POLL = 0.25
-"""Seconds between two looks of ``wait_for_service``, as in rclpy."""
+"""Seconds between two looks for a service, as in rclpy."""
+
+
+def wait_until_ready(ready: Callable[[], bool], context: Context, timeout_sec: float | None) -> bool:
+    """Ask ``ready`` four times a second until it holds, the context has ended or the timeout is over."""
+    left = math.inf if timeout_sec is None else timeout_sec
+    while context.ok() and not ready() and left > 0:
+        context.host.clock.sleep(wait_ns(_POLL))
+        left -= _POLL
+    return ready()
 
 
 class Reply(msgspec.Struct, frozen=True):
@@ -77,12 +86,17 @@ class Client(ClientOrService, Entity):
         """Call and wait on this thread for the reply, which another thread has to take.
 
         Called inside a callback it waits for ever unless the executor has a thread left and the client's
-        group lets the reply in. None after ``timeout_sec`` seconds without a reply.
+        group lets the reply in. After ``timeout_sec`` seconds without a reply it gives None, in releases that
+        do not raise.
 
         Raises:
-            TypeError: the request is not of the service's type.
+            TimeoutError: time ran out.
+            TypeError: the request is not of the service's type, or the release knows no ``timeout_sec``.
             InvalidHandle: the client was destroyed.
         """
+        profile = self._host.profile
+        if timeout_sec is not None and not profile.call_takes_timeout:
+            raise TypeError("Client.call() got an unexpected keyword argument 'timeout_sec'")
         arrived = self._host.clock.auto_reset_event()
         call, future = self._send(request)
         future.add_done_callback(lambda _: arrived.set())
@@ -92,6 +106,8 @@ class Client(ClientOrService, Entity):
             # In time is also a reply that was taken, though nobody has run what tells this thread.
             if not (future._settled() or arrived.wait(deadline) or future._settled()):
                 self.remove_pending_request(future)
+                if profile.call_raises_timeout:
+                    raise TimeoutError
                 return None
         finally:
             self._probe.call_unblocked(call)
@@ -121,7 +137,7 @@ class Client(ClientOrService, Entity):
                 copy, call, self._host.clock.now(), lambda response: self._arrive(call, response), self.gid
             )
             if self._introspection is not None:
-                self._introspection.request_sent(self.gid, call, copy)
+                self._introspection.tell("REQUEST_SENT", self.gid, call, request=copy)
             if not self.node.context.network.send_request(self.name, self.srv_type, outgoing):
                 self._probe.request_lost(call, self.name)
         return call, future
@@ -144,11 +160,7 @@ class Client(ClientOrService, Entity):
 
         It looks four times a second, and so may come back a little after the timeout.
         """
-        left = math.inf if timeout_sec is None else timeout_sec
-        while self.node.context.ok() and not self.service_is_ready() and left > 0:
-            self._host.clock.sleep(wait_ns(_POLL))
-            left -= _POLL
-        return self.service_is_ready()
+        return wait_until_ready(self.service_is_ready, self.node.context, timeout_sec)
 
     def _arrive(self, call: int, response: Any) -> None:
         if self.destroyed:
@@ -162,6 +174,11 @@ class Client(ClientOrService, Entity):
         """None: the reply goes to a future."""
         return None
 
+    @property
+    def queued(self) -> int:
+        """How much waits in its queue."""
+        return len(self._queue)
+
     def take(self, now: int) -> Taken | None:
         """Take the oldest reply."""
         if not self._queue:
@@ -172,18 +189,22 @@ class Client(ClientOrService, Entity):
         else:
             self.nothing_left()
         if self._introspection is not None:
-            self._introspection.response_received(self.gid, reply.call, reply.data)
+            self._introspection.tell("RESPONSE_RECEIVED", self.gid, reply.call, response=reply.data)
         return Taken(reply, reply.call, now - reply.sent, len(self._queue))
 
     def invoke(self, taken: Taken) -> Any:
         """Give the reply to the future that waits for it."""
         reply: Reply = taken.data
         future = self._pending_requests.get(reply.call)
-        executor = self.node.executor
         if future is not None:
-            if executor is not None:
-                future._set_executor(executor)
-            future.set_result(reply.data)
+            self._settle(future, reply.data)
+
+    def _settle(self, future: Future[Any], result: Any) -> None:
+        """Give a future its result; its done-callbacks run as tasks of the executor that serves the node."""
+        executor = self.node.executor
+        if executor is not None:
+            future._set_executor(executor)
+        future.set_result(result)
 
     def removed(self) -> None:
         """Its node has let it go."""

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
-from enum import IntEnum
-from typing import TYPE_CHECKING, Any
+from enum import Enum, IntEnum
+from typing import TYPE_CHECKING, Any, cast
 
 from sim.ros.logging.logger import get_logger
 from sim.ros.qos.policies import QoSPolicyKind
@@ -51,46 +51,54 @@ class UnsupportedEventTypeError(RuntimeError):
 
 
 @dataclass(slots=True)
-class MatchedInfo:
-    """How many matches there were and are; the changes count from the last event taken."""
+class CountedInfo:
+    """How often something happened, and how often since the last event taken."""
 
     total_count: int = 0
     total_count_change: int = 0
+
+    def count(self, times: int = 1) -> None:
+        """It happened again."""
+        self.total_count += times
+        self.total_count_change += times
+
+
+@dataclass(slots=True)
+class MatchedInfo(CountedInfo):
+    """How many matches there were and are; the changes count from the last event taken."""
+
     current_count: int = 0
     current_count_change: int = 0
 
 
+class _EventPolicyKind(IntEnum):
+    """Base of the kinds of policy as events name them, equal to those of ``QoSPolicyKind``."""
+
+    __str__ = Enum.__str__
+    __format__ = Enum.__format__
+
+
+_KINDS = {f"RMW_QOS_POLICY_{kind.name}": kind.value for kind in QoSPolicyKind}
+rmw_qos_policy_kind_t: Any = cast("Any", _EventPolicyKind)("rmw_qos_policy_kind_t", _KINDS)
+
+
 @dataclass(slots=True)
-class IncompatibleQoSInfo:
+class IncompatibleQoSInfo(CountedInfo):
     """How many matches failed for their quality of service, the last by which policy."""
 
-    total_count: int = 0
-    total_count_change: int = 0
-    last_policy_kind: QoSPolicyKind = QoSPolicyKind.INVALID
+    last_policy_kind: int = rmw_qos_policy_kind_t.RMW_QOS_POLICY_INVALID
 
 
-@dataclass(slots=True)
-class IncompatibleTypeInfo:
+class IncompatibleTypeInfo(CountedInfo):
     """How many matches failed for the type of their messages."""
 
-    total_count: int = 0
-    total_count_change: int = 0
 
-
-@dataclass(slots=True)
-class DeadlineMissedInfo:
+class DeadlineMissedInfo(CountedInfo):
     """How many deadlines passed without a message."""
 
-    total_count: int = 0
-    total_count_change: int = 0
 
-
-@dataclass(slots=True)
-class LivelinessLostInfo:
+class LivelinessLostInfo(CountedInfo):
     """How often a publisher did not say in time that it lives."""
-
-    total_count: int = 0
-    total_count_change: int = 0
 
 
 @dataclass(slots=True)
@@ -103,12 +111,8 @@ class LivelinessChangedInfo:
     not_alive_count_change: int = 0
 
 
-@dataclass(slots=True)
-class MessageLostInfo:
+class MessageLostInfo(CountedInfo):
     """How many messages were lost on the way."""
-
-    total_count: int = 0
-    total_count_change: int = 0
 
 
 QoSRequestedDeadlineMissedInfo = QoSOfferedDeadlineMissedInfo = DeadlineMissedInfo
@@ -190,39 +194,29 @@ class DefaultEventHandler(EventHandler):
         get_logger(self.logger_name).warning(self.warning)
 
 
+@dataclass(kw_only=True, eq=False, repr=False)
 class EventCallbacks:
     """Base of the callbacks for events; without one for it, a match that is refused is warned of,
     unless ``use_default_callbacks`` is false.
     """
 
-    def __init__(
-        self,
-        *,
-        deadline: EventCallback | None = None,
-        liveliness: EventCallback | None = None,
-        incompatible_qos: EventCallback | None = None,
-        incompatible_type: EventCallback | None = None,
-        matched: EventCallback | None = None,
-        use_default_callbacks: bool = True,
-    ) -> None:
-        self.deadline = deadline
-        self.liveliness = liveliness
-        self.incompatible_qos = incompatible_qos
-        self.incompatible_type = incompatible_type
-        self.matched = matched
-        self.use_default_callbacks = use_default_callbacks
+    deadline: EventCallback | None = None
+    liveliness: EventCallback | None = None
+    incompatible_qos: EventCallback | None = None
+    incompatible_type: EventCallback | None = None
+    matched: EventCallback | None = None
+    use_default_callbacks: bool = True
 
 
 class PublisherEventCallbacks(EventCallbacks):
     """What a program wants to hear of a publisher."""
 
 
+@dataclass(kw_only=True, eq=False, repr=False)
 class SubscriptionEventCallbacks(EventCallbacks):
     """What a program wants to hear of a subscription; ``message_lost`` is never called, for none is lost."""
 
-    def __init__(self, *, message_lost: EventCallback | None = None, **callbacks: Any) -> None:
-        super().__init__(**callbacks)
-        self.message_lost = message_lost
+    message_lost: EventCallback | None = None
 
 
 class EndpointEvents:
@@ -271,8 +265,7 @@ class EndpointEvents:
         """One match more."""
         for each in self._told[MatchedInfo]:
             info = each.info
-            info.total_count += 1
-            info.total_count_change += 1
+            info.count()
             info.current_count += 1
             info.current_count_change += 1
             each.changed()
@@ -288,7 +281,7 @@ class EndpointEvents:
     def qos_refused(self, policy: str, warning: str) -> None:
         """No match for ``policy``; without a callback for that, the warning is given while spinning."""
         for each in self._told[IncompatibleQoSInfo]:
-            each.info.last_policy_kind = QoSPolicyKind[policy]
+            each.info.last_policy_kind = rmw_qos_policy_kind_t(QoSPolicyKind[policy])
             _refused(each, warning)
 
     def type_refused(self, warning: str) -> None:
@@ -303,8 +296,7 @@ class EndpointEvents:
 
 
 def _refused(handler: EventHandler, warning: str) -> None:
-    handler.info.total_count += 1
-    handler.info.total_count_change += 1
+    handler.info.count()
     if isinstance(handler, DefaultEventHandler):
         handler.warning = warning
     handler.changed()

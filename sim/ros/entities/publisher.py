@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from types import GenericAlias, TracebackType
+from types import GenericAlias
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from sim.interfaces import Message, copy_message, from_cdr
@@ -110,9 +110,10 @@ class Publisher:
     def publish(self, msg: Any) -> None:
         """Send a message, or the bytes of one, to whoever listens.
 
+        Bytes that hold no such message are sent all the same, and reach only who takes them raw.
+
         Raises:
             TypeError: it is not a message of this publisher's type.
-            ValueError: the bytes hold no such message.
             InvalidHandle: the publisher was destroyed.
             RCLError: its context has ended.
         """
@@ -130,7 +131,8 @@ class Publisher:
             )
         with self._host.lock:
             message = self._probe.message_id()
-            self._probe.published(message, self.topic_name, self.node.trace_id, copy, self.qos_profile)
+            told = self.msg_type() if isinstance(copy, bytes) else copy
+            self._probe.published(message, self.topic_name, self.node.trace_id, told, self.qos_profile)
             reached = self._reached
             shared = len(reached) > 1 or self._kept is not None or self._probe.keeps_messages
             self._sent += 1
@@ -143,11 +145,14 @@ class Publisher:
                 subscription.deliver(delivery)
         return message
 
-    def _copy(self, msg: Any) -> Message:
+    def _copy(self, msg: Any) -> Message | bytes:
         if isinstance(msg, self.msg_type):
             return copy_message(msg)
         if isinstance(msg, bytes):
-            return from_cdr(self.msg_type, msg)
+            try:
+                return from_cdr(self.msg_type, msg)
+            except ValueError:
+                return msg
         raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
 
     def wait_for_all_acked(self, timeout: Duration = _FOR_EVER) -> bool:
@@ -227,7 +232,5 @@ class Publisher:
     def __enter__(self) -> Publisher:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self.destroy()

@@ -66,8 +66,7 @@ class DeadlineHandler(EventHandler):
         assert self._began is not None
         missed = max(now - 1 - self._began, 0) // self._deadline
         self._began += missed * self._deadline
-        self.info.total_count += missed
-        self.info.total_count_change += missed
+        self.info.count(missed)
         return missed > 0
 
 
@@ -132,8 +131,7 @@ class LivelinessLostHandler(EventHandler):
 
     def lost(self) -> None:
         """It is lost."""
-        self.info.total_count += 1
-        self.info.total_count_change += 1
+        self.info.count()
         self.changed()
 
     def count_until(self, now: int) -> None:

@@ -70,6 +70,11 @@ class Service(ClientOrService, Entity):
         """The callback."""
         return self.callback
 
+    @property
+    def queued(self) -> int:
+        """How much waits in its queue."""
+        return len(self._queue)
+
     def take(self, now: int) -> Taken | None:
         """Take the oldest request."""
         if not self._queue:
@@ -80,7 +85,7 @@ class Service(ClientOrService, Entity):
         else:
             self.nothing_left()
         if self._introspection is not None:
-            self._introspection.request_received(request.client, request.call, request.data)
+            self._introspection.tell("REQUEST_RECEIVED", request.client, request.call, request=request.data)
         return Taken(request, request.call, now - request.sent, len(self._queue))
 
     def invoke(self, taken: Taken) -> Any:
@@ -109,7 +114,7 @@ class Service(ClientOrService, Entity):
         with self.node.context.host.lock:
             self._probe.service_replied(request.call, self.name, copy)
             if self._introspection is not None:
-                self._introspection.response_sent(request.client, request.call, copy)
+                self._introspection.tell("RESPONSE_SENT", request.client, request.call, response=copy)
             request.answer(copy)
 
     def removed(self) -> None:

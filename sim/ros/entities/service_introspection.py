@@ -44,23 +44,8 @@ class ServiceIntrospection:
         """Publish no more."""
         self._publisher.node.destroy_publisher(self._publisher)
 
-    def request_sent(self, client: bytes, call: int, request: Any) -> None:
-        """The client sent a request."""
-        self._tell("REQUEST_SENT", client, call, request=request)
-
-    def request_received(self, client: bytes, call: int, request: Any) -> None:
-        """The service took a request."""
-        self._tell("REQUEST_RECEIVED", client, call, request=request)
-
-    def response_sent(self, client: bytes, call: int, response: Any) -> None:
-        """The service answered a request."""
-        self._tell("RESPONSE_SENT", client, call, response=response)
-
-    def response_received(self, client: bytes, call: int, response: Any) -> None:
-        """The client took the answer to its request."""
-        self._tell("RESPONSE_RECEIVED", client, call, response=response)
-
-    def _tell(self, step: str, client: bytes, call: int, **contents: Any) -> None:
+    def tell(self, step: str, client: bytes, call: int, **contents: Any) -> None:
+        """Publish a step such as ``REQUEST_SENT``, with its ``request`` or ``response`` if that is wanted."""
         info_type: Any = message("service_msgs", "ServiceEventInfo")
         event: Any = self._event_type()
         event.info = info_type(

@@ -176,6 +176,11 @@ class Subscription(Entity):
         """The callback."""
         return self._callback
 
+    @property
+    def queued(self) -> int:
+        """How much waits in its queue."""
+        return len(self._queue)
+
     def take(self, now: int) -> Taken | None:
         """Take the oldest message."""
         if self._timing is not None:
@@ -188,9 +193,15 @@ class Subscription(Entity):
         else:
             self.nothing_left()
         self._received += 1
-        data: Any = copy_message(delivery.data) if delivery.shared else delivery.data
-        if self.raw:
+        data: Any = delivery.data
+        if isinstance(data, bytes):  # they hold no message
+            if not self.raw:
+                self._probe.dropped(self, len(self._queue), delivery.message)
+                return None
+        elif self.raw:
             data = to_cdr(data)
+        elif delivery.shared:
+            data = copy_message(data)
         if self._with_info:
             data = (data, self._info_of(delivery, now))
         return Taken(data, delivery.message, now - delivery.published, len(self._queue))

@@ -11,7 +11,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from sim.ros.clocks.clock import Clock, ROSClock
-from sim.ros.clocks.ros_time_schedule import RosTimeSchedule, after_change
+from sim.ros.clocks.ros_time_schedule import RosTimeSchedule, after_change, next_due
 from sim.ros.exceptions import RCLError, ROSInterruptException
 from sim.ros.scheduling.entity import NEVER, Entity, OwnerNode, Taken
 from sim.ros.time.clock_type import ClockType
@@ -22,21 +22,6 @@ if TYPE_CHECKING:
     from sim.clock import AutoResetEvent
     from sim.ros.context.context import Context
     from sim.ros.scheduling.callback_groups import CallbackGroup
-
-
-def next_due(due: int, period: int, now: int) -> int:
-    """When a timer called at ``now``, due at ``due``, is due next. All in nanoseconds.
-
-    A tick at the very moment of a late call is missed like those before it: on a real machine the call is
-    always a little later than the moment that set it free.
-    """
-    following = due + period
-    if following > now:
-        return following
-    if period == 0:
-        return now
-    missed = (now - following) // period + 1
-    return following + missed * period
 
 
 class TimerInfo:
@@ -66,7 +51,7 @@ class TimerInfo:
 class Timer(Entity):
     """Calls back every ``timer_period_ns`` nanoseconds, the first time one period after its creation.
 
-    A callback with a parameter annotated as TimerInfo gets one.
+    A callback with a parameter annotated as TimerInfo gets one, in releases that have it.
 
     Whatever is asked of it or done with it after it was destroyed raises InvalidHandle.
 
@@ -90,10 +75,10 @@ class Timer(Entity):
         if timer_period_ns < 0:
             raise RCLError("failed to create timer: timer period must be non-negative")
         super().__init__(node, "", callback_group)
+        self._host = node.context.host
         self.callback = callback
         self.clock = clock
         self.period = timer_period_ns
-        self._host = node.context.host
         self._last_call = self._host.clock.now()
         self._canceled = True
         self._ros_schedule: RosTimeSchedule | None = None
@@ -109,7 +94,7 @@ class Timer(Entity):
 
     @callback.setter
     def callback(self, value: Callable[..., Any] | None) -> None:
-        self._info_parameter = _info_parameter(value)
+        self._info_parameter = _info_parameter(value) if self._host.profile.gives_timer_info else None
         self._callback = value
 
     @property
@@ -191,7 +176,7 @@ class Timer(Entity):
         A timer that was reset while it waited for its turn is called all the same, one period too early.
         """
         if self._canceled or self.destroyed:
-            return None
+            return None if self.destroyed or self._is_skipped() else Taken(_CANCELLED, 0, 0, 0)
         late = max(now - self.due, 0)
         if self._ros_schedule is not None:
             return Taken(self._take_of_ros_time(self._ros_schedule), 0, late, 0)
@@ -201,6 +186,12 @@ class Timer(Entity):
         self.nothing_left()
         self.node._agenda.timer_set(self)
         return Taken(info, 0, late, 0)
+
+    def _is_skipped(self) -> bool:
+        """Whether nobody hears of it that it was cancelled since it was found due."""
+        executor = self.node._agenda.executor
+        asks_groups = executor is not None and executor._runner.asks_groups
+        return self._host.profile.skips_cancelled_timers or not asks_groups
 
     # While its clock follows ROS time; with the host's lock held
 
@@ -267,12 +258,21 @@ class Timer(Entity):
         return info
 
     def invoke(self, taken: Taken) -> Any:
-        """Run the callback."""
-        if self._callback is None:
-            return None
+        """Run the callback.
+
+        Raises:
+            TypeError, UnboundLocalError: there is none, which is found only now.
+            RCLError: it was cancelled since it was found due.
+        """
+        if taken.data is _CANCELLED:
+            raise RCLError("failed to call timer: timer is canceled")
+        if self._callback is None and self._host.profile.gives_timer_info:
+            raise UnboundLocalError(
+                "cannot access local variable 'arg_name' where it is not associated with a value"
+            )
         if self._info_parameter is None:
-            return self._callback()
-        return self._callback(**{self._info_parameter: taken.data})
+            return self._callback()  # type: ignore[misc]
+        return self._callback(**{self._info_parameter: taken.data})  # type: ignore[misc]
 
     def _info(self, now: int) -> TimerInfo:
         return TimerInfo(
@@ -288,9 +288,13 @@ def _info_parameter(callback: Callable[..., Any] | None) -> str | None:
         return None
     try:
         parameters = inspect.signature(callback).parameters.values()
-    except ValueError:  # some functions written in C do not tell theirs
+    except (TypeError, ValueError):  # it cannot be called, or is written in C and does not tell them
         return None
     return next((each.name for each in parameters if each.annotation is TimerInfo), None)
+
+
+_CANCELLED = object()
+"""Stands for what is taken from a timer that was cancelled meanwhile."""
 
 
 class Rate:

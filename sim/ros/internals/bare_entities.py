@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from sim.ros.clocks.ros_time_schedule import next_due
 from sim.ros.entities.client import Client
 from sim.ros.entities.event_handler import SubscriptionEventCallbacks
 from sim.ros.entities.service import Service
 from sim.ros.entities.subscription import Subscription
-from sim.ros.entities.timer import next_due
 from sim.ros.qos.qos import QoSProfile, RmwQoSProfile
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.entity import never_called
 from sim.ros.scheduling.watched import BareEntity, Watcher
 
 if TYPE_CHECKING:
@@ -34,7 +35,7 @@ class BareSubscription(BareEntity, Subscription):
         silent = SubscriptionEventCallbacks(use_default_callbacks=False)
         with owner.context.host.lock:
             super().__init__(
-                owner, msg_type, name, _never_called, ReentrantCallbackGroup(), _as_profile(qos_profile),
+                owner, msg_type, name, never_called, ReentrantCallbackGroup(), _as_profile(qos_profile),
                 topic=topic, event_callbacks=silent,
             )  # fmt: skip
             owner.context.network.join_subscription(self)
@@ -86,7 +87,7 @@ class BareService(BareEntity, Service):
         name, profile = owner.resolve_service_name(srv_name), _as_profile(qos_profile)
         group = ReentrantCallbackGroup()
         with owner.context.host.lock:
-            super().__init__(owner, srv_type, name, _never_called, group, profile, srv_name=srv_name)
+            super().__init__(owner, srv_type, name, never_called, group, profile, srv_name=srv_name)
             owner.context.network.join_service(self)
 
     def service_take_request(self, request_type: type) -> tuple[Any, ServiceInfo | None]:
@@ -166,10 +167,6 @@ class BareTimer(BareEntity):
     def time_since_last_call(self) -> int:
         """How long since it was called, or made."""
         return self._host.clock.now() - self._last_call
-
-
-def _never_called(_data: Any, _more: Any = None) -> None:
-    """Stand in for a callback: what arrives is taken by the program."""
 
 
 def _as_profile(profile: RmwQoSProfile) -> QoSProfile:

@@ -21,6 +21,7 @@ from sim.ros.entities.qos_timing import limit
 from sim.ros.entities.subscription import Subscription
 from sim.ros.handle import Handle
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.entity import never_called
 from sim.ros.scheduling.watched import BareEntity
 
 _PUBLISHER_INFOS: dict[QoSPublisherEventType, type] = {
@@ -53,7 +54,7 @@ class BareEvent(BareEntity, EventHandler):
         node = endpoint.node
         _demand_no_limit(endpoint, info)
         with node.context.host.lock:
-            super().__init__(node, endpoint.topic_name, _never_called, ReentrantCallbackGroup(), info)
+            super().__init__(node, endpoint.topic_name, never_called, ReentrantCallbackGroup(), info)
             self._endpoint = endpoint
             endpoint.events.tell(self)
             if isinstance(info, MatchedInfo):
@@ -151,7 +152,3 @@ def _demand_no_limit(endpoint: Publisher | Subscription, info: Any) -> None:
         raise NotImplementedError("EventHandle: a deadline is told to deadline callbacks only")
     if isinstance(info, LivelinessLostInfo) and isinstance(endpoint, Publisher) and endpoint.lease:
         raise NotImplementedError("EventHandle: a lost lease is told to liveliness callbacks only")
-
-
-def _never_called(_info: Any) -> None:
-    """Stand in for a callback: the state is taken by the program."""

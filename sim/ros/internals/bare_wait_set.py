@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from sim.ros.entities.guard_condition import NodeGuardCondition
 from sim.ros.exceptions import RCLError
@@ -22,27 +22,13 @@ class BareWaitSet(ProgramWaitSet):
     Entities of a node can only be waited for while no executor serves that node.
     """
 
-    def __init__(
-        self,
-        number_of_subscriptions: int,
-        number_of_guard_conditions: int,
-        number_of_timers: int,
-        number_of_clients: int,
-        number_of_services: int,
-        number_of_events: int,
-        context: Handle,
-    ) -> None:
-        super().__init__(
-            NumberOfEntities(
-                number_of_subscriptions,
-                number_of_guard_conditions,
-                number_of_timers,
-                number_of_clients,
-                number_of_services,
-                number_of_events,
-            )
-        )
-        owner: Context = context.owner
+    def __init__(self, *room: int | Handle) -> None:
+        """``room``: how many subscriptions, guard conditions, timers, clients, services and events there are,
+        then the context's handle.
+        """
+        *numbers, context = room
+        super().__init__(NumberOfEntities(*cast("list[int]", numbers)))
+        owner: Context = cast("Handle", context).owner
         self._host = owner.host
         self._more = owner.host.clock.auto_reset_event()
 

@@ -27,14 +27,6 @@ __all__ = [
     "shutdown",
 ]
 
-_SHOWN = {
-    LoggingSeverity.DEBUG: Severity.DEBUG,
-    LoggingSeverity.INFO: Severity.INFO,
-    LoggingSeverity.WARN: Severity.WARN,
-    LoggingSeverity.ERROR: Severity.ERROR,
-    LoggingSeverity.FATAL: Severity.FATAL,
-}
-
 
 class Rosout(Protocol):
     """What takes the lines of a node's logger to ``/rosout``."""
@@ -103,7 +95,7 @@ class RcutilsLogger:
         for the logger's own.
 
         Raises:
-            TypeError: an unknown option.
+            TypeError: an unknown option, or a message to be written that is no text.
             ValueError: the place asked for another severity, name or filter before.
         """
         if not self.is_enabled_for(severity):
@@ -118,7 +110,7 @@ class RcutilsLogger:
             place.require_same(name, level, options)
         if not place.lets_pass():
             return False
-        self._write(LogRecord(level, name, str(message), _stamp(), where))
+        self._write(LogRecord(level, name, _text_of(message), _stamp(), where))
         return True
 
     def _write(self, record: LogRecord) -> None:
@@ -129,7 +121,7 @@ class RcutilsLogger:
             if process.take_output is not None:
                 process.keep(_Console).hand_to(process.take_output, record)
             elif probe.visible:
-                probe.logged(_SHOWN[record.severity], record.logger, record.text)
+                probe.logged(Severity[record.severity.name], record.logger, record.text)
             else:
                 process.keep(_Console).write(record)
         rosout = loggers.rosout.get(self._rosout_name)
@@ -159,6 +151,20 @@ class RcutilsLogger:
     def fatal(self, message: object, **options: Any) -> bool:
         """Write a FATAL line."""
         return self.log(message, LoggingSeverity.FATAL, **options)
+
+
+def _text_of(message: object) -> str:
+    """What is written of a message, as rclpy hands it on to C."""
+    if isinstance(message, str):
+        return message
+    if message is None:
+        return "(null)"
+    if isinstance(message, bytes):
+        return message.decode()
+    raise TypeError(
+        f"rclpy_logging_rcutils_log(): incompatible function arguments: the message has to be a str, not "
+        f"{type(message).__name__}; write str(...) or an f-string around it"
+    )
 
 
 def get_logger(name: str) -> RcutilsLogger:

@@ -14,6 +14,7 @@ from weakref import ref
 
 from sim.clock import PacedClock, RunClock
 from sim.probes.probe import Probe, SilentProbe
+from sim.profiles import Profile
 from sim.ros.middleware.callback_overrides import CallbackOverrides
 from sim.ros.middleware.domain import domain_of_machine
 from sim.ros.middleware.host_lock import lock_on
@@ -30,7 +31,7 @@ class Host:
     ``lock`` guards all state of executors, groups and queues; it is never held during a wait or a callback.
     ``threads`` replaces the number of threads of every executor (None: the program's own), ``overrides`` has
     the other changes to the programs. ``default_domain`` is used outside programs. ``takes_signals``: the
-    whole process is the program's, so rclpy's signal handlers may be installed.
+    whole process is the program's, so rclpy's signal handlers may be installed. ``profile``: what it is like.
     """
 
     clock: RunClock
@@ -40,12 +41,13 @@ class Host:
     lock: AbstractContextManager[bool] = field(init=False)
     default_domain: int = field(default_factory=domain_of_machine)
     takes_signals: bool = False
+    profile: Profile = field(default_factory=Profile)
     _gids: Iterator[int] = field(default_factory=lambda: count(1))
     _networks: dict[int, Network] = field(default_factory=dict)
     _waiters: "list[ref[WaitsExplained]]" = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self.lock = lock_on(self.clock)
+        self.lock = lock_on(self.clock, self.probe.callback_here)
 
     @property
     def network(self) -> Network:

@@ -2,10 +2,12 @@
 
 import threading
 import time
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from types import TracebackType
 
 from sim.clock import RunClock, VirtualClock
+from sim.clock.played import NO_ACCESSES
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _RLock = threading.RLock
@@ -33,15 +35,18 @@ class SwitchedLock:
     """A host's lock on a virtual clock that explores orders: threads switch before and after it.
 
     They never switch while one holds it: a thread that finds it taken waits outside virtual time. Reentrant.
+    ``in_callback`` tells whether the calling thread runs a callback: then it is a step of the program's own.
     """
 
-    def __init__(self, clock: VirtualClock) -> None:
+    def __init__(self, clock: VirtualClock, in_callback: Callable[[], object]) -> None:
         self._clock = clock
+        self._in_callback = in_callback
         self._lock = HostLock()
 
     def __enter__(self) -> bool:
-        self._clock.switch_point()
+        self._clock.switch_point({self: True} if self._in_callback() else NO_ACCESSES)
         self._lock.__enter__()
+        self._clock.did(self)
         if self._clock.owns_current_thread():
             self._clock.no_switching += 1
         return True
@@ -55,6 +60,8 @@ class SwitchedLock:
         self._clock.switch_point()
 
 
-def lock_on(clock: RunClock) -> AbstractContextManager[bool]:
-    """Make the lock of a host with that clock."""
-    return SwitchedLock(clock) if isinstance(clock, VirtualClock) and clock.explores else HostLock()
+def lock_on(clock: RunClock, in_callback: Callable[[], object]) -> AbstractContextManager[bool]:
+    """Make the lock of a host with that clock; ``in_callback`` is that of ``SwitchedLock``."""
+    if isinstance(clock, VirtualClock) and clock.explores:
+        return SwitchedLock(clock, in_callback)
+    return HostLock()

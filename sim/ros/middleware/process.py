@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator, Mapping, MutableMapping
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Any, Self, SupportsIndex, TypeVar
+from weakref import WeakMethod
 
 from sim.probes.probe import Probe
 from sim.ros.middleware.endpoints import ContextLifetime
@@ -34,6 +35,7 @@ class Process:
     it reads the run's terminal. ``default_context`` is None before its first use and after its end.
     ``pool_numbers`` numbers its thread pools; ``callbacks`` and ``spins`` count the callbacks made and the
     spins started; ``shut_down_at`` is the place of the callback that shut rclpy down, or empty.
+    ``finish_pools`` wait for what the workers of its pools are at.
     """
 
     host: Host
@@ -50,6 +52,7 @@ class Process:
     callbacks: int = 0
     spins: int = 0
     shut_down_at: str = ""
+    finish_pools: list[WeakMethod[Callable[[], None]]] = field(default_factory=list)
     _kept: dict[Callable[[], Any], Any] = field(default_factory=dict)
 
     def keep(self, make: Callable[[], KeptT]) -> KeptT:

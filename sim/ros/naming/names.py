@@ -7,17 +7,6 @@ import re
 
 from sim.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from sim.ros.naming.rules import full_topic_name_problem, topic_name_problem
-from sim.ros.naming.validate_namespace import validate_namespace
-from sim.ros.naming.validate_node_name import validate_node_name
-
-__all__ = [
-    "UnknownSubstitutionError",
-    "expand_service",
-    "expand_topic",
-    "full_name",
-    "validate_namespace",
-    "validate_node_name",
-]
 
 _SUBSTITUTION = re.compile(r"\{([^{}]*)\}")
 _NameError = type[InvalidTopicNameException] | type[InvalidServiceNameException]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from sim.ros.naming.names import expand_service, expand_topic, validate_namespace, validate_node_name
+from sim.ros.naming.names import expand_service, expand_topic
 from sim.ros.naming.remapping import Remapping
+from sim.ros.naming.validate_namespace import validate_namespace
+from sim.ros.naming.validate_node_name import validate_node_name
 
 
 class NodeNames:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from sim.ros.clocks.clock import Clock, ROSClock
@@ -28,9 +27,7 @@ from sim.ros.parameters.checks import PARAM_REL_TOL
 from sim.ros.parameters.parameter import Parameter
 from sim.ros.parameters.store import ParameterChange, ParameterStore
 from sim.ros.scheduling.agenda import Agenda
-from sim.ros.scheduling.callback_groups import (
-    CallbackGroup,
-)
+from sim.ros.scheduling.callback_groups import CallbackGroup
 
 if TYPE_CHECKING:
     from sim.ros.scheduling.executors import Executor
@@ -82,6 +79,7 @@ class Node:
         self._parameter_store = ParameterStore(
             [*overrides, *(parameter_overrides or ())],
             self._tell_parameter_change,
+            self._context.probe.parameter_overruled,
             allow_undeclared=allow_undeclared_parameters,
         )
         self._graph_queries = Graph(self)
@@ -304,9 +302,7 @@ class Node:
     def __enter__(self) -> Node:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self.destroy_node()
 
     def __repr__(self) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from sim.probes.probe import callback_name
+from sim.probes.callbacks import callback_name
 from sim.ros.clocks.clock import Clock
 from sim.ros.entities.client import Client
 from sim.ros.entities.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks

@@ -19,6 +19,7 @@ from sim.ros.naming.validate_parameter_name import validate_parameter_name
 from sim.ros.parameters.checks import WRONG_TYPE, objection
 from sim.ros.parameters.declaration import read_declaration
 from sim.ros.parameters.listing import listed
+from sim.ros.parameters.overruled import Overruled
 from sim.ros.parameters.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
 
 AnyParameter: TypeAlias = Parameter[Any]
@@ -46,17 +47,19 @@ class ParameterChange:
 class ParameterStore:
     """The parameters of a node, by name. Callbacks run on the thread that sets, the newest first.
 
-    ``tell`` hears of every change.
+    ``tell`` hears of every change, ``overruled`` of what an on-set callback sets in vain.
     """
 
     def __init__(
         self,
         overrides: Iterable[AnyParameter],
         tell: Callable[[ParameterChange], None],
+        overruled: Callable[[str], None],
         *,
         allow_undeclared: bool,
     ) -> None:
         self._tell = tell
+        self._overruled = Overruled(overruled)
         self._parameters: dict[str, AnyParameter] = {}
         self._descriptors: dict[str, Any] = {}
         self._parameter_overrides = {each.name: each for each in overrides}
@@ -269,10 +272,11 @@ class ParameterStore:
         return ""
 
     def _ask_callbacks(self, parameters: list[AnyParameter]) -> Any:
-        for callback in tuple(self._on_set_parameters_callbacks):
-            result = callback(parameters)
-            if not result.successful:
-                return result
+        with self._overruled.setting(each.name for each in parameters):
+            for callback in tuple(self._on_set_parameters_callbacks):
+                result = callback(parameters)
+                if not result.successful:
+                    return result
         return _result("")
 
     def _store(self, parameter: AnyParameter, change: ParameterChange) -> None:

@@ -89,8 +89,9 @@ class QoSProfile:
     avoid_ros_namespace_conventions: bool = False
 
     def __init__(self, **settings: Any) -> None:
-        known = {each.name for each in fields(QoSProfile)}
-        assert settings.keys() <= known, f"Invalid arguments passed to constructor: {settings.keys()!r}"
+        assert settings.keys() <= _DEFAULTS.keys(), (
+            f"Invalid arguments passed to constructor: {settings.keys()!r}"
+        )
         if "history" not in settings:
             if "depth" not in settings:
                 raise InvalidQoSProfileException("History and/or depth settings are required.")
@@ -173,17 +174,7 @@ _CHECKS: dict[str, Any] = {
     "liveliness_lease_duration": _duration,
     "avoid_ros_namespace_conventions": _truth,
 }
-_DEFAULTS: dict[str, Any] = {
-    "history": HistoryPolicy.KEEP_LAST,
-    "depth": 10,
-    "reliability": ReliabilityPolicy.RELIABLE,
-    "durability": DurabilityPolicy.VOLATILE,
-    "lifespan": _UNSPECIFIED,
-    "deadline": _UNSPECIFIED,
-    "liveliness": LivelinessPolicy.SYSTEM_DEFAULT,
-    "liveliness_lease_duration": _UNSPECIFIED,
-    "avoid_ros_namespace_conventions": False,
-}
+_DEFAULTS: dict[str, Any] = {each.name: each.default for each in fields(QoSProfile)}
 
 qos_profile_unknown = QoSProfile(
     history=HistoryPolicy.UNKNOWN,

@@ -7,7 +7,8 @@ it is not part of their names.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Generator, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -178,21 +179,26 @@ def spin(node: Node, executor: Executor | None = None) -> None:
 
 def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
     """Run one of the node's callbacks, waiting at most ``timeout_sec`` seconds for it."""
-    chosen = get_global_executor() if executor is None else executor
-    try:
-        chosen.add_node(node)
+    with _attached(node, executor) as chosen:
         chosen.spin_once(timeout_sec=timeout_sec)
-    finally:
-        chosen.remove_node(node)
 
 
 def spin_until_future_complete(
     node: Node, future: Future[Any], executor: Executor | None = None, timeout_sec: float | None = None
 ) -> None:
     """Run the node's callbacks until the future is done, for at most ``timeout_sec`` seconds."""
-    chosen = get_global_executor() if executor is None else executor
-    try:
-        chosen.add_node(node)
+    with _attached(node, executor) as chosen:
         chosen.spin_until_future_complete(future, timeout_sec)
+
+
+@contextmanager
+def _attached(node: Node, executor: Executor | None) -> Generator[Executor, None, None]:
+    """The executor, which serves the node meanwhile."""
+    chosen = get_global_executor() if executor is None else executor
+    added = False
+    try:
+        added = chosen.add_node(node)
+        yield chosen
     finally:
-        chosen.remove_node(node)
+        if added or not chosen.context.host.profile.keeps_attached_nodes:
+            chosen.remove_node(node)

@@ -138,6 +138,12 @@ class Agenda:
         else:
             self._wake_watchers()
 
+    def entity_has_more(self, entity: Entity) -> None:
+        """An entity that is ready has more to take."""
+        executor = self.executor
+        if executor is not None:
+            executor._entity_has_more(entity)
+
     def entity_idle(self, entity: Entity) -> None:
         """An entity has nothing more to take."""
         self._pending.pop(entity, None)

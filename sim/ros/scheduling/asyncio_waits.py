@@ -6,18 +6,12 @@ import inspect
 import sys
 from collections.abc import Callable, Generator
 from types import FrameType
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from asyncio import AbstractEventLoop, Future
 
 _SUSPENDABLE = inspect.CO_COROUTINE | inspect.CO_GENERATOR | inspect.CO_ASYNC_GENERATOR
-
-
-class Resumable(Protocol):
-    """Something that waits for a future."""
-
-    def _resume_soon(self) -> None: ...
 
 
 def driven_by_asyncio() -> bool:
@@ -30,17 +24,19 @@ def driven_by_asyncio() -> bool:
     return frame is not None and str(frame.f_globals.get("__name__", "")).startswith("asyncio.")
 
 
-def wait_in_asyncio(wake_when_done: Callable[[Resumable], None]) -> Generator[Any, None, None]:
+def wait_in_asyncio(wake_when_done: Callable[[AsyncioWaiter], None]) -> Generator[Any, None, None]:
     """Suspend the running asyncio task until the future whose ``wake_when_done`` this is has a result."""
     import asyncio
 
     loop = asyncio.get_running_loop()
     waiter: Future[None] = loop.create_future()
-    wake_when_done(_Waiter(loop, waiter))
+    wake_when_done(AsyncioWaiter(loop, waiter))
     yield from waiter
 
 
-class _Waiter:
+class AsyncioWaiter:
+    """A task of asyncio that waits for a future."""
+
     def __init__(self, loop: AbstractEventLoop, waiter: Future[None]) -> None:
         self._loop = loop
         self._waiter = waiter

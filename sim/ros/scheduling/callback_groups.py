@@ -10,7 +10,6 @@ from sim.ros.scheduling.entity import Entity
 from sim.trace.events import GroupKind
 
 if TYPE_CHECKING:
-    from sim.ros.scheduling.entity import OwnerNode
     from sim.ros.scheduling.waitable import Waitable
 
 Member: TypeAlias = "Entity | Waitable[Any]"
@@ -29,20 +28,10 @@ class CallbackGroup(ABC):
     def __init__(self) -> None:
         super().__init__()
         self.entities: dict[weakref.ref[Member], None] = {}
-        self._nodes: list[weakref.ref[OwnerNode]] = []
 
     def add_entity(self, entity: Member) -> None:
         """Make an entity a member."""
         self.entities[weakref.ref(entity)] = None
-        # A program's waitable may have no node, or one of another kind; the entity that stands for it has.
-        if isinstance(entity, Entity) and all(node() is not entity.node for node in self._nodes):
-            self._nodes.append(weakref.ref(entity.node))
-
-    def other_nodes(self, than: OwnerNode) -> list[OwnerNode]:
-        """The other nodes that have members: a group is seldom shared, and then by few."""
-        if len(self._nodes) == 1:
-            return []
-        return [node for each in self._nodes if (node := each()) is not None and node is not than]
 
     def has_entity(self, entity: Member) -> bool:
         """Whether an entity is a member."""

@@ -9,8 +9,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable
+from enum import Enum, auto
+from itertools import count
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from sim.profiles import Profile
+from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.wait_set import snapshot
 
@@ -21,6 +25,23 @@ if TYPE_CHECKING:
 
 Work: TypeAlias = "Entity | Task[Any]"
 """What a cycle yields."""
+_gatherings = count(1)
+"""Each gathering of any executor has a number of its own, for entities move between executors."""
+
+
+class _Following(Enum):
+    """What comes once all that was found is served."""
+
+    TASKS = auto()
+    """A new cycle, which begins with its tasks."""
+    GATHERING = auto()
+    """What can run is gathered, for the tasks of this cycle are served."""
+    WAITING = auto()
+    """What was gathered is waited for."""
+
+
+# Asked for several times a callback, and a member of an enumeration is slow to find.
+_TASKS, _GATHERING, _WAITING = _Following
 
 
 class Cycle:
@@ -36,6 +57,7 @@ class Cycle:
         clock: RunClock,
         entity_of: Callable[[Task[Any]], Entity | None],
         chosen: Callable[[Entity], bool] | None,
+        profile: Profile,
     ) -> None:
         self.view = nodes
         """The nodes that are waited for."""
@@ -45,6 +67,8 @@ class Cycle:
         self._clock = clock
         self._entity_of = entity_of
         self._is_chosen = chosen
+        self._newest_task_first = profile.newest_task_first
+        self._asks_tasks_again = not profile.resumes_at_once
         self.wanted: tuple[Any, ...] = ()
         """What is waited for: how long, over which nodes, and until which condition holds."""
         self._snapshot: deque[Entity] = deque()
@@ -52,20 +76,25 @@ class Cycle:
         self._due_tasks: deque[Task[Any]] = deque()
         self.foreign_awaits: list[Task[Any]] = []
         """Tasks that await something unknown: they ask again after the executor is next woken."""
-        self._gathers_next = False
+        self._following = _TASKS
         self._held = False
+        self._found_all = False
+        """Whether what ``next`` gave is of a snapshot of all that was ready when it was asked."""
         self._yielded = False
-        self.waits = False
-        """Whether all that was found is served, and what was gathered is waited for."""
-        self._gatherings = 0
-        self._left_out: set[object] = set()
+        self._gathering = next(_gatherings)
+        self._groups_left_out: set[CallbackGroup] = set()
         self._woken_in: int | None = None
 
     @property
     def about_to_look(self) -> bool:
         """Whether the next thing to do is to take a new snapshot."""
         is_served = not (self._due_tasks or self._snapshot)
-        return is_served and (self.waits or self._gathers_next or not self._tasks)
+        return is_served and not (self._tasks and self._following is _TASKS)
+
+    @property
+    def waits(self) -> bool:
+        """Whether all that was found is served, and what was gathered is waited for."""
+        return self._following is _WAITING
 
     def want(self, wanted: tuple[Any, ...], nodes: Iterable[OwnerNode] | None) -> None:
         """Wait for something else than until now: the rest of the snapshot is let go.
@@ -78,8 +107,8 @@ class Cycle:
         self._tasks.extendleft(reversed(self._due_tasks))
         self._due_tasks.clear()
         self._snapshot.clear()
-        self._gathers_next = self._yielded = False
-        self.stop_waiting()
+        self._following = _TASKS
+        self._held = self._yielded = False
 
     def _chosen(self, nodes: Iterable[OwnerNode]) -> list[OwnerNode]:
         chosen = list(nodes)
@@ -94,22 +123,24 @@ class Cycle:
 
     def next(self, now: int) -> Work | None:
         """The next to serve, an entity marked as handed out; None: nothing is ready, or may be served yet."""
-        if self._held:
-            if self.may_serve is not None and not self.may_serve():
-                return None
-            self._held = False
+        self._found_all = False
+        if self._held and not self._released():
+            return None
         for _ in _STAGES:
             work = self._serve(now)
             if work is not None:
                 return work
-            if not self._find(now):
-                return None
-            if self.may_serve is not None and not self.may_serve():
-                self._held = True
+            if not (self._find(now) and self._released()):
                 return None
         work = self._serve(now)
-        self.waits = work is None
+        if work is None:
+            self._following = _WAITING
         return work
+
+    def _released(self) -> bool:
+        """Whether what was found may be served; else it is held until it may."""
+        self._held = self.may_serve is not None and not self.may_serve()
+        return not self._held
 
     def rest(self, now: int) -> Work | None:
         """The next to serve of what is found already; None: that is served, or may not be served yet."""
@@ -122,7 +153,7 @@ class Cycle:
         """
         if self._due_tasks:
             return False
-        if self._gathers_next:
+        if self._following is _GATHERING:
             return not self._gather(self._ready(now))
         ends = self._yielded and not self._holds(now)
         if ends:
@@ -132,8 +163,8 @@ class Cycle:
     def gather(self, now: int) -> bool:
         """Gather at once if all that was found is served; whether something is to be served."""
         if not (self._due_tasks or self._snapshot):
-            self._held = self._find(now)
-        return not self.waits
+            self._held = self._gather(deque()) if self._found_all and not self._tasks else self._find(now)
+        return self._following is not _WAITING
 
     def would_find(self, now: int) -> bool:
         """Whether there is something to serve, or would be after gathering now."""
@@ -168,22 +199,20 @@ class Cycle:
 
     def _find(self, now: int) -> bool:
         """Find what is served next: what was waited for, else tasks, else what a new gathering finds."""
-        waited, self.waits = self.waits, False
-        tasks_first = not self._gathers_next
-        if self._tasks and tasks_first and not waited and self._take_tasks():
+        following, self._following = self._following, _TASKS
+        if following is _TASKS and self._take_tasks():
             return True
         found = self._ready(now)
-        if waited and found and (awaited := self._awaited(found)):
-            found = awaited
-        elif self._tasks and tasks_first and waited and self._take_tasks():
-            return True
-        elif not self._gather(found) and self._tasks and self._take_tasks():
-            self.waits = False  # those that came meanwhile end the waiting as it begins
-            return True
-        else:
-            return not self.waits
-        self._name(found)
-        return True
+        if following is _WAITING:
+            awaited = self._awaited(found)
+            if awaited:
+                self._name(awaited)
+                self._found_all = len(awaited) == len(found)
+                return True
+            if self._take_tasks():
+                return True
+        # Tasks that came meanwhile end the waiting as it begins.
+        return self._gather(found) or self._take_tasks()
 
     def _ready(self, now: int) -> deque[Entity]:
         found = snapshot(self.view, now)
@@ -191,11 +220,12 @@ class Cycle:
 
     def _gather(self, found: deque[Entity]) -> bool:
         """Wait for all that can run, of which ``found`` is ready; whether that is something."""
-        self._gathers_next = self._yielded = False
+        self._following = _TASKS if found else _WAITING
+        self._yielded = False
+        self._found_all = True
         self._regather()
         self._name(found)
-        self.waits = not found
-        return not self.waits
+        return bool(found)
 
     def _name(self, found: deque[Entity]) -> None:
         for each in found:
@@ -204,18 +234,25 @@ class Cycle:
 
     def _awaited(self, found: deque[Entity]) -> deque[Entity]:
         """Those of what is ready that the waiting in progress has not left out."""
-        left_out = self._left_out
-        if not left_out:
-            return found
-        return deque(each for each in found if each not in left_out and each.callback_group not in left_out)
+        gathering, groups = self._gathering, self._groups_left_out
+        return deque(
+            each for each in found if each.entered_in != gathering and each.callback_group not in groups
+        )
 
     def _take_tasks(self) -> bool:
         """Serve the tasks that are there now, those of nodes in view; whether there are any of these."""
+        if not self._tasks:
+            return False
         self._due_tasks, self._tasks = self._tasks, self._due_tasks
         if self.view is not self._nodes:
             self._put_tasks_off()
-        self._gathers_next = bool(self._due_tasks)
-        return self._gathers_next
+        if self._asks_tasks_again and len(self._due_tasks) > 1:  # they stay in one list until they are done
+            self._due_tasks = deque(sorted(self._due_tasks, key=lambda task: task.number))
+        if self._newest_task_first:
+            self._due_tasks.reverse()
+        if self._due_tasks:
+            self._following = _GATHERING
+        return bool(self._due_tasks)
 
     def _put_tasks_off(self) -> None:
         """Leave the callbacks of nodes that are out of view for another cycle."""
@@ -230,31 +267,33 @@ class Cycle:
 
     def stop_waiting(self) -> None:
         """Wait no longer for what was gathered."""
-        self.waits = self._held = False
+        self._held = False
+        if self.waits:
+            self._following = _TASKS
 
     def entered(self, entity: Entity) -> None:
         """A handler has begun to run: what it is for was handed out, and the executor is woken."""
-        if self._clock.turn != self._woken_in:
-            self.woken()
-        self._left_out.add(entity)
-        entity.entered_in = self._gatherings
+        self.woken()
+        entity.entered_in = self._gathering
 
     def leaves(self, entity: Entity) -> None:
         """A callback is about to free its group, and to wake the executor."""
-        if self._clock.turn != self._woken_in:
-            self.woken()
-        if entity.entered_in != self._gatherings:
+        self.woken()
+        if entity.entered_in != self._gathering:
             group = entity.callback_group
             if not group.can_execute(entity):
-                self._left_out.add(group)
+                self._groups_left_out.add(group)
 
     def woken(self) -> None:
         """The executor gathers again as soon as the running thread lets it.
 
         Where it did so unseen, because there was nothing to find, this catches up on it.
         """
-        self.catch_up()
-        self._woken_in = self._clock.turn
+        turn = self._clock.turn
+        if turn != self._woken_in:
+            if self._woken_in is not None:
+                self._regather()
+            self._woken_in = turn
 
     def catch_up(self) -> None:
         """Gather again if the executor was woken since, and the running thread has let it."""
@@ -262,9 +301,10 @@ class Cycle:
             self._regather()
 
     def _regather(self) -> None:
-        self._gatherings += 1
-        self._left_out.clear()
-        self._woken_in = None
+        if self.may_serve is not None:
+            self._gathering = next(_gatherings)
+            self._groups_left_out.clear()
+            self._woken_in = None
 
     # Tasks
 

@@ -80,8 +80,8 @@ class Entity:
 
     All attributes are guarded by the host's lock. ``handed_out`` is set from the moment an executor yields
     the entity until its handler runs; meanwhile no executor yields it again. ``entered_in`` is the number of
-    the executor's last gathering when its callback last began. ``pending`` tells that there is something to
-    take.
+    its executor's gathering in which its callback last began, which leaves it out. ``pending`` tells that
+    there is something to take.
     """
 
     kind: ClassVar[EntityKind]
@@ -168,15 +168,26 @@ class Entity:
         """Whether a snapshot that names this entity still holds when its turn comes."""
         return not self.destroyed
 
+    @property
+    def queued(self) -> int:
+        """How often there is something to take."""
+        return int(self.pending)
+
     def become_ready(self, since: int) -> None:
-        """There is something to take from now on. With the host's lock held."""
+        """There is something to take from now on, or more. With the host's lock held."""
         if not self.pending:
             self.pending = True
             self.ready_since = since
             self.node._agenda.entity_ready(self)
+        else:
+            self.node._agenda.entity_has_more(self)
 
     def nothing_left(self) -> None:
         """There is nothing more to take. With the host's lock held."""
         if self.pending:
             self.pending = False
             self.node._agenda.entity_idle(self)
+
+
+def never_called(_data: Any, _more: Any = None) -> None:
+    """Stand in for the callback of an entity from which somebody takes what arrives."""

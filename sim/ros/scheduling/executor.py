@@ -6,9 +6,8 @@ threads. Whoever changes what is ready wakes the executor if it waits.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator, Iterable
+from collections.abc import Callable, Coroutine, Generator, Iterable
 from contextlib import contextmanager
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from sim.ros.context.context import Context
@@ -42,17 +41,25 @@ class Executor:
     threads = 1
     """How many callbacks can run at once."""
 
+    already_spinning = "Executor is already spinning"
+    """What is raised when it is spun while it spins."""
+
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = get_default_context() if context is None else context
         self._host = self._context.host
         self._lock = self._host.lock
         self._clock = self._host.clock
+        self._profile = self._host.profile
         self._probe = self._context.probe
         self._nodes: list[OwnerNode] = []
         self._runner = Runner(self)
         chooses = type(self).can_execute is not Executor.can_execute
         self._cycle = self._runner.cycle = Cycle(
-            self._nodes, self._clock, self._runner.entity_of, self.can_execute if chooses else None
+            self._nodes,
+            self._clock,
+            self._runner.entity_of,
+            self.can_execute if chooses else None,
+            self._profile,
         )
         self._signal = self._clock.auto_reset_event()
         self._asks_waitables = False
@@ -116,16 +123,13 @@ class Executor:
         return task
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Yield nothing more and wait for what runs; False if ``timeout_sec`` seconds were not enough.
+        """Yield nothing more; True.
 
-        A callback that shuts its own executor down waits for nothing.
+        As in rclpy, what runs is not waited for, whatever ``timeout_sec`` says.
         """
         with self._lock:
             self._is_shutdown = self._runner.refuses = True
             self.wake()
-        timeout = timeout_sec_to_nsec(timeout_sec)
-        if not self._runner.runs_here() and not self._runner.wait_until_idle(timeout):
-            return False
         for node in self.get_nodes():
             self.remove_node(node)
         return True
@@ -149,17 +153,16 @@ class Executor:
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run callbacks until the future is done, for at most ``timeout_sec`` seconds."""
         with self._enter_spin():
-            future._set_executor(self)
-            future.add_done_callback(lambda _: self.wake())
+            self._wake_by(future)
             nanoseconds = timeout_sec_to_nsec(timeout_sec)
             if nanoseconds < 0:
                 while self._context.ok() and not future._settled() and not self._is_shutdown:
-                    self._spin_once_impl(timeout_sec, future._settled)
+                    self._spin_for(future, timeout_sec)
                 return
             end = self._clock.now() + nanoseconds
             left = TimeoutObject(nanoseconds / 1e9)
             while self._context.ok() and not future._settled() and not self._is_shutdown:
-                self._spin_once_impl(left, future._settled)
+                self._spin_for(future, left)
                 now = self._clock.now()
                 if now >= end:
                     return
@@ -168,9 +171,16 @@ class Executor:
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run one callback, unless the future is done first."""
         with self._enter_spin():
-            future._set_executor(self)
-            future.add_done_callback(lambda _: self.wake())
+            self._wake_by(future)
             self._spin_once_impl(timeout_sec, future._settled)
+
+    def _spin_for(self, future: Future[Any], timeout_sec: Timeout) -> None:
+        if not self._profile.wakes_once_for_a_future:
+            self._wake_by(future)
+        self._spin_once_impl(timeout_sec, future._settled)
+
+    def _wake_by(self, future: Future[Any]) -> None:
+        future.add_done_callback(lambda _: self.wake())
 
     # Waiting for work
 
@@ -185,15 +195,20 @@ class Executor:
     @contextmanager
     def _enter_spin(self) -> Generator[None, None, None]:
         with self._lock:
-            if self._spinning:
+            outer = self._spinning
+            if outer:
                 self._probe.spin_clashed()
-                raise RuntimeError("Executor is already spinning")
+                if self._refuses_second_spin():
+                    raise RuntimeError(self.already_spinning)
             self._spinning = True
             self._context.process.spins += 1
         try:
             yield
         finally:
-            self._spinning = False
+            self._spinning = outer
+
+    def _refuses_second_spin(self) -> bool:
+        return self._profile.refuses_second_spin
 
     def _want(
         self, timeout_sec: Timeout, nodes: Iterable[OwnerNode] | None, condition: Callable[[], bool]
@@ -204,12 +219,11 @@ class Executor:
             with self._lock:
                 self._cycle.want(wanted, nodes)
                 self._wake()
+        elif self._waiting:  # another thread does, which has to be in a release that lets it
+            raise ValueError("generator already executing")
 
     def _await_work(
-        self,
-        timeout_sec: Timeout,
-        condition: Callable[[], bool],
-        on_found: Callable[[Work, int], FoundT],
+        self, timeout_sec: Timeout, condition: Callable[[], bool], on_found: Callable[[Work, int], FoundT]
     ) -> FoundT:
         """Wait for the next thing to run, marked as handed out, and return what ``on_found`` makes of it.
 
@@ -282,6 +296,9 @@ class Executor:
         if self._waiting and not entity.handed_out and entity.callback_group.can_execute(entity):
             self._work_came()
 
+    def _entity_has_more(self, entity: Entity) -> None:
+        """Something more arrived for an entity that is ready already."""
+
     def _timer_set(self, timer: Entity) -> None:
         if not self._waiting:
             return
@@ -314,6 +331,14 @@ class Executor:
     def _resume_at_wake_up(self, task: Task[Any]) -> None:
         with self._lock:
             self._cycle.foreign_awaits.append(task)
+
+    def _coroutine_came(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
+        """A callback has returned a coroutine, and ``outer`` ran on its thread before."""
+        self._runner.drive(entity, coroutine, outer)
+
+    def _failed_after_await(self, task: Task[Any], _error: Exception) -> None:
+        """A coroutine raised after an await: whoever asks its task for the error gets it, and nobody else."""
+        task._exception_fetched = False
 
     def _workers_busy(self) -> bool:
         return self._runner.at_work >= self.threads
@@ -363,9 +388,7 @@ class Executor:
     def __enter__(self) -> Executor:
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         self.shutdown()
 
 

@@ -14,7 +14,7 @@ from sim.ros.scheduling.cycle import Work
 from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.executor import Executor
 from sim.ros.scheduling.running import Started
-from sim.ros.scheduling.task import Future
+from sim.ros.scheduling.task import Future, Task
 from sim.ros.scheduling.waiting_ends import (
     ConditionReachedException,
     ExternalShutdownException,
@@ -88,7 +88,7 @@ class MultiThreadedExecutor(Executor):
         self.threads = override or (get_available_threads() if num_threads is None else num_threads)
         if self.threads < 1:
             raise ValueError("max_workers must be greater than 0")
-        if self.threads == 1:
+        if self.threads == 1 and chosen.host.profile.warns_of_one_thread:
             warnings.warn(
                 "MultiThreadedExecutor is used with a single thread.\n"
                 "Use the SingleThreadedExecutor instead.",
@@ -104,16 +104,20 @@ class MultiThreadedExecutor(Executor):
         """The pool, by the name that rclpy has for it."""
         return self._pool
 
-    def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
-        """Yield nothing more, wait for what runs, and end the workers.
+    def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool | None = None) -> bool:
+        """Yield nothing more; in releases that know of workers, wait for these to end, unless told not to.
 
-        False if what ran took longer than ``timeout_sec`` seconds. Even then it waits for the end of all
-        workers, as rclpy does, unless ``wait_for_threads`` is False.
+        Raises:
+            TypeError: the release has no ``wait_for_threads``.
         """
+        ends_workers = self._profile.ends_workers
+        if wait_for_threads is not None and not ends_workers:
+            raise TypeError("Executor.shutdown() got an unexpected keyword argument 'wait_for_threads'")
         done = super().shutdown(timeout_sec)
-        self._pool.dismiss()
-        if wait_for_threads:
-            self._pool.wait_for_end()
+        if ends_workers:
+            self._pool.dismiss()
+            if wait_for_threads is not False:
+                self._pool.wait_for_end()
         return done
 
     def spin(self) -> None:
@@ -181,6 +185,10 @@ class MultiThreadedExecutor(Executor):
         """Workers look for themselves while ``spin`` runs."""
         if not self._pool.dispatches_itself:
             self._wake()
+
+    def _failed_after_await(self, _task: Task[Any], error: Exception) -> None:
+        with self._lock:
+            self._pool.keep(error)
 
     def _workers_busy(self) -> bool:
         return self._pool.all_busy()

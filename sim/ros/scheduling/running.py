@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import weakref
-from threading import get_ident
+from collections.abc import Coroutine
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from sim.marks import calls_the_program
@@ -14,7 +14,6 @@ from sim.ros.scheduling.task import Task
 from sim.trace.events import Reason
 
 if TYPE_CHECKING:
-    from sim.clock import AutoResetEvent
     from sim.ros.scheduling.cycle import Cycle, Work
     from sim.ros.scheduling.executor import Executor
 
@@ -37,12 +36,12 @@ class Runner:
         self._probe = executor.context.probe
         self._coroutines: dict[Task[Any], Entity] = {}
         self._running: list[Entity] = []
-        self._task_threads: list[int] = []
         self.at_work = 0
         """How many callbacks and tasks have begun and not ended."""
         self.refuses = False
         """Whether nothing may begin any more."""
-        self._idle_signals: list[AutoResetEvent] = []
+        self.asks_groups = True
+        """Whether groups have a say in what may run."""
 
     @property
     def executor(self) -> Executor:
@@ -74,17 +73,23 @@ class Runner:
         if self.refuses or entity.destroyed or not entity.callback_group.beginning_execution(entity):
             self.executor.wake()
             return None
-        taken = entity.take(now)
+        taken = self.take(entity, now)
         if taken is None:
             entity.callback_group.ending_execution(entity)
             self.executor.wake()
             return None
-        self._running.append(entity)
-        self.at_work += 1
-        if entity.wait_shown is not None:
-            self._probe.wait_ended(entity)
         if entity.pending and entity.callback_group.can_execute(entity):
             self.executor._wake()
+        return taken
+
+    def take(self, entity: Entity, now: int) -> Taken | None:
+        """Take what is there, for a callback that needs to ask no group; None: nothing is."""
+        taken = entity.take(now)
+        if taken is not None:
+            self._running.append(entity)
+            self.at_work += 1
+            if entity.wait_shown is not None:
+                self._probe.wait_ended(entity)
         return taken
 
     def start(self, begun: Begun) -> Started:
@@ -112,22 +117,36 @@ class Runner:
             self.fail(entity, error, outer)
             raise
         if outcome is not None and inspect.iscoroutine(outcome):
-            task: Task[Any] = Task(outcome, executor=self.executor)
-            self._coroutines[task] = entity
-            self._step(task, entity, outer)
+            self.executor._coroutine_came(entity, outcome, outer)
         else:
             self.end(entity, outer)
+
+    def drive(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
+        """Run a callback's coroutine as far as it gets; it goes on as a task."""
+        self._step(self._task_of(entity, coroutine), entity, outer)
+
+    def postpone(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
+        """Have a callback's coroutine begin as a task."""
+        self.suspend(entity, outer)
+        self.executor._resume(self._task_of(entity, coroutine))
+
+    def _task_of(self, entity: Entity, coroutine: Coroutine[Any, Any, Any]) -> Task[Any]:
+        task: Task[Any] = Task(coroutine, executor=self.executor)
+        self._coroutines[task] = entity
+        return task
 
     def _run_task(self, task: Task[Any]) -> None:
         """Run a task as far as it gets."""
         entity = self._coroutines.get(task)
-        if entity is None:
-            self._task_threads.append(get_ident())
+        if task._waits_still:
+            task._arm(task._awaited)
+            with self.lock:
+                self._leave()
+        elif entity is None:
             try:
                 task()
             finally:
                 with self.lock:
-                    self._task_threads.remove(get_ident())
                     self._leave()
             error = task.exception() if task._settled() else None
             if error is not None:
@@ -138,15 +157,26 @@ class Runner:
                 outer = self._probe.callback_resumed(entity)
             self._step(task, entity, outer)
 
+    def go_on(self, task: Task[Any]) -> None:
+        """Run a task on, on this thread and inside another task, which does not raise what it raises."""
+        with self.lock:
+            self.at_work += 1
+        try:
+            self._run_task(task)
+        except Exception as error:  # noqa: BLE001 -- kept for the thread that spins, or lost
+            self.executor._failed_after_await(task, error)
+
     def _step(self, task: Task[Any], entity: Entity, outer: int) -> None:
         awaited = task._advance()
         if not task._settled():
             with self.lock:
                 self._running.remove(entity)
                 self._probe.callback_suspended(entity, outer)
-            task._arm(awaited)
-            with self.lock:
-                self._leave()
+            try:
+                task._arm(awaited)
+            finally:
+                with self.lock:
+                    self._leave()
             return
         del self._coroutines[task]
         error = task.exception()
@@ -163,26 +193,25 @@ class Runner:
         self.end(entity, outer)
 
     def end(self, entity: Entity, outer: int) -> None:
-        """A callback has ended: free its group, and wake whoever waits for that."""
+        """A callback has ended: free its group, and have its executor look again.
+
+        Another executor that serves members of the group is not told, in rclpy neither.
+        """
         with self.lock:
             self._running.remove(entity)
             self._probe.callback_ended(entity, outer)
-            cycle = self.cycle
-            if cycle.may_serve is not None:
-                cycle.leaves(entity)
-            entity.callback_group.ending_execution(entity)
-            executor = self._executor()
-            if executor is not None and (executor._waiting or cycle.foreign_awaits):
-                executor._look_again()
-            self._wake_sharers(entity)
+            if self.asks_groups:
+                self._free_group_of(entity)
             self._leave()
 
-    def _wake_sharers(self, entity: Entity) -> None:
-        """Wake the other executors that serve members of the entity's group."""
-        for node in entity.callback_group.other_nodes(entity.node):
-            executor = node._agenda.executor
-            if executor is not None and executor._runner is not self:
-                executor.wake()
+    def _free_group_of(self, entity: Entity) -> None:
+        cycle = self.cycle
+        if cycle.may_serve is not None:
+            cycle.leaves(entity)
+        entity.callback_group.ending_execution(entity)
+        executor = self._executor()
+        if executor is not None and (executor._waiting or cycle.foreign_awaits):
+            executor._look_again()
 
     def suspend(self, entity: Entity, outer: int) -> None:
         """A coroutine callback awaits something and leaves this thread."""
@@ -201,10 +230,6 @@ class Runner:
     def _leave(self) -> None:
         """A thread is done with its work. With the lock held."""
         self.at_work -= 1
-        if self.at_work == 0 and self._idle_signals:
-            signals, self._idle_signals = self._idle_signals, []
-            for signal in signals:
-                signal.set()
 
     # What is shown as running though it runs inside a task
 
@@ -220,30 +245,22 @@ class Runner:
 
     # Questions
 
-    def runs_here(self) -> bool:
-        """Whether the calling thread runs a callback or a task of this executor."""
-        here = self._probe.callback_here()
-        is_callback = here != 0 and any(each.trace_id == here for each in self._running)
-        return is_callback or get_ident() in self._task_threads
-
-    def wait_until_idle(self, nanoseconds: int) -> bool:
-        """Wait until nothing runs, for so long at most (negative: for ever); whether nothing does."""
-        with self.lock:
-            if self.at_work == 0:
-                return True
-            signal = self.clock.auto_reset_event()
-            self._idle_signals.append(signal)
-        return signal.wait(None if nanoseconds < 0 else self.clock.now() + nanoseconds)
-
     def explain_wait(self, entity: Entity) -> None:
         """Record why a ready callback of this executor does not run; nothing if it is about to."""
         executor = self.executor
         busy = executor._workers_busy()
         if not executor._spinning and not entity.handed_out:
             self._probe.waits(entity, Reason.NOBODY_SPINS, None, workers_busy=False)
+        elif not self.asks_groups:
+            if busy:
+                self._probe.waits(entity, Reason.EVENT_QUEUE, self._first_running(), workers_busy=True)
         elif not entity.callback_group.can_execute(entity):
             holder: Entity | None = getattr(entity.callback_group, "holder", None)
             self._probe.waits(entity, Reason.GROUP_HELD, holder, workers_busy=busy)
         elif busy:
-            culprit = self._running[0] if self._running else None
-            self._probe.waits(entity, Reason.NO_FREE_WORKER, culprit, workers_busy=True)
+            self._probe.waits(entity, Reason.NO_FREE_WORKER, self._first_running(), workers_busy=True)
+        elif entity.wait_shown is not None:  # another executor has freed its group, and woken nobody
+            self._probe.wait_ended(entity)
+
+    def _first_running(self) -> Entity | None:
+        return self._running[0] if self._running else None

@@ -8,15 +8,17 @@ import threading
 import warnings
 import weakref
 from collections.abc import Callable, Coroutine, Generator
+from itertools import count
 from types import CodeType
-from typing import TYPE_CHECKING, Any, Generic, TypeGuard, TypeVar
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeGuard, TypeVar
 
-from sim.ros.scheduling.asyncio_waits import Resumable, driven_by_asyncio, wait_in_asyncio
+from sim.ros.scheduling.asyncio_waits import AsyncioWaiter, driven_by_asyncio, wait_in_asyncio
 
 if TYPE_CHECKING:
     from sim.ros.scheduling.executors import Executor
 
 T = TypeVar("T")
+_numbers = count(1)
 _allocate_lock = threading.Lock
 
 
@@ -33,8 +35,7 @@ class Future(Generic[T]):
         self._result: T | None = None
         self._exception: BaseException | None = None
         self._exception_fetched = False
-        self._callbacks: list[Callable[[Future[T]], None]] = []
-        self._waiting_tasks: list[Resumable] = []
+        self._callbacks: list[_Listener[T]] = []
         self._lock = _allocate_lock()
         self._executor: weakref.ref[Executor] | None = None
         if executor is not None:
@@ -103,11 +104,7 @@ class Future(Generic[T]):
 
     def add_done_callback(self, callback: Callable[[Future[T]], None]) -> None:
         """Have ``callback(future)`` run when it is done; at once if it is."""
-        with self._lock:
-            if not self._settled():
-                self._callbacks.append(callback)
-                return
-        self._run_callbacks([callback])
+        self._wake_when_done(callback)
 
     def remove_done_callback(self, callback: Callable[[Future[T]], None]) -> bool:
         """Forget every registration of ``callback``; whether there was one."""
@@ -117,30 +114,39 @@ class Future(Generic[T]):
             self._callbacks = kept
         return found
 
+    def _belong_to(self, executor: Executor) -> None:
+        own = self._live_executor()
+        if own is None:
+            self._set_executor(executor)
+        elif own is not executor:
+            raise RuntimeError("A task can only await futures associated with the same executor")
+
     def _set_executor(self, executor: Executor) -> None:
         self._executor = weakref.ref(executor)
 
-    def _wake_when_done(self, task: Resumable) -> None:
+    def _live_executor(self) -> Executor | None:
+        return None if self._executor is None else self._executor()
+
+    def _wake_when_done(self, waiting: _Listener[T]) -> None:
         with self._lock:
             if not self._settled():
-                self._waiting_tasks.append(task)
+                self._callbacks.append(waiting)
                 return
-        task._resume_soon()
+        self._run_callbacks([waiting])
 
     def _finish(self) -> None:
-        if not (self._callbacks or self._waiting_tasks):
+        if not self._callbacks:
             return  # nobody listens, and from now on nobody can begin to
         with self._lock:
             callbacks, self._callbacks = self._callbacks, []
-            tasks, self._waiting_tasks = self._waiting_tasks, []
         self._run_callbacks(callbacks)
-        for task in tasks:
-            task._resume_soon()
 
-    def _run_callbacks(self, callbacks: list[Callable[[Future[T]], None]]) -> None:
-        executor = None if self._executor is None else self._executor()
+    def _run_callbacks(self, callbacks: list[_Listener[T]]) -> None:
+        executor = self._live_executor()
         for callback in callbacks:
-            if executor is not None and not getattr(executor, "_is_shutdown", False):
+            if isinstance(callback, Task | AsyncioWaiter):
+                callback._resume_soon()
+            elif executor is not None and not getattr(executor, "_is_shutdown", False):
                 executor.create_task(callback, self)
             else:
                 self._run_here(callback)
@@ -163,6 +169,8 @@ class Task(Future[T]):
         executor: Executor | None = None,
     ) -> None:
         super().__init__(executor=executor)
+        self.number = next(_numbers)
+        """Its place in the order in which tasks are made."""
         arguments, named = args or (), kwargs or {}
         if _makes_coroutines(handler):
             handler = handler(*arguments, **named)
@@ -172,6 +180,7 @@ class Task(Future[T]):
         self._kwargs = named
         self._executing = False
         self._was_suspended = False
+        self._awaited: object | None = None
         self._step_lock = _allocate_lock()
 
     def __call__(self) -> None:
@@ -192,15 +201,38 @@ class Task(Future[T]):
     def _arm(self, awaited: object | None) -> None:
         """Have the task go on once ``awaited`` is done.
 
-        Something foreign is asked again in the next cycle, and then at each wake-up of the executor.
+        Releases that do not resume it ask it in the next cycle, and then at each wake-up of the executor.
+
+        Raises:
+            RuntimeError: the future belongs to another executor.
+            TypeError: it is something that an executor cannot wait for.
         """
         was_suspended, self._was_suspended = self._was_suspended, True
-        if isinstance(awaited, Future):
-            awaited._wake_when_done(self)
-        elif awaited is not None:
-            executor = None if self._executor is None else self._executor()
-            if executor is not None:
-                (executor._resume_at_wake_up if was_suspended else executor._resume)(self)
+        self._awaited = awaited
+        executor = self._live_executor()
+        if awaited is None or executor is None:
+            return
+        profile = executor._profile
+        if not profile.resumes_at_once:
+            (executor._resume_at_wake_up if was_suspended else executor._resume)(self)
+        elif isinstance(awaited, Future):
+            awaited._belong_to(executor)
+            awaited._wake_when_done(self._go_on if profile.loses_errors_after_await else self)
+        elif awaited is _NOTHING_NAMED:
+            executor._resume(self)
+        else:
+            raise TypeError(f"Expected coroutine to yield a Future or None, got: {type(awaited)}")
+
+    def _go_on(self, _: Future[Any]) -> None:
+        """Run on, here and now, as a done-callback of what was awaited."""
+        executor = self._live_executor()
+        if executor is not None:
+            executor._runner.go_on(self)
+
+    @property
+    def _waits_still(self) -> bool:
+        """Whether there is no use in asking it again: the future that it awaits is not done."""
+        return isinstance(self._awaited, Future) and not self._awaited._settled()
 
     def executing(self) -> bool:
         """Whether it runs right now."""
@@ -227,9 +259,13 @@ class Task(Future[T]):
         return None
 
     def _resume_soon(self) -> None:
-        executor = None if self._executor is None else self._executor()
+        executor = self._live_executor()
         if executor is not None:
             executor._resume(self)
+
+
+_Listener: TypeAlias = Callable[[Future[T]], None] | Task[Any] | AsyncioWaiter
+"""What hears of a future's end: a callback, or what awaits it."""
 
 
 def _makes_coroutines(handler: object) -> TypeGuard[Callable[..., Coroutine[Any, Any, Any]]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from types import TracebackType
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 if TYPE_CHECKING:
@@ -47,9 +46,7 @@ class Waitable(Generic[T]):
     def __enter__(self) -> None:
         """Hold what it waits for while it is waited for; InvalidHandle leaves it out of this cycle."""
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *_error: object) -> None:
         """Hold it no more."""
 
     def add_future(self, future: Future[Any]) -> None:

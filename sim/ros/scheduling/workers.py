@@ -12,6 +12,7 @@ import threading
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING
+from weakref import WeakMethod
 
 from sim.clock import AutoResetEvent
 from sim.ros.scheduling.cycle import Work
@@ -35,7 +36,7 @@ class Worker:
         self.signal = signal
         self.called = False
         self.began_in = -1
-        """The clock's turn in which it began its first callback."""
+        """The clock's turn in which it began its first callback, while that runs."""
         self.thread: threading.Thread | None = None
 
 
@@ -66,6 +67,7 @@ class WorkerPool:
         self._dismissed = False
         self._living = 0
         self._end_signals: list[AutoResetEvent] = []
+        executor._context.process.finish_pools.append(WeakMethod(self._finish))
 
     @property
     def _max_workers(self) -> int:
@@ -128,6 +130,10 @@ class WorkerPool:
         self._coming += 1
         self._called_at = now
 
+    def keep(self, error: BaseException) -> None:
+        """Keep a callback's exception until the next callback is handed over. With the lock held."""
+        self._errors.append(error)
+
     def _surface_errors(self) -> None:
         if self._errors:
             self.error_surfaces = True
@@ -163,10 +169,11 @@ class WorkerPool:
                         self._idle.append(worker)
             if others_go_first:
                 self._clock.sleep(0)
-                may_find = True
             else:
                 worker.signal.wait(None)
-                may_find = True
+            if self.error_surfaces:
+                self._clock.sleep(0)  # the thread that spins raises before the next callback begins
+            may_find = True
 
     def _begin_claimed(self, worker: Worker, now: int) -> Begun | None:
         """Begin what this worker was called for, or what others were called for and are late for."""
@@ -214,10 +221,14 @@ class WorkerPool:
         own = cycle.next(now)
         if own is None:
             return None
-        self._surface_errors()
-        while not (self.error_surfaces or self._starting) and (work := cycle.rest(now)) is not None:
+        if self._errors:  # they come out of what hands it over, before it begins
+            self._queue.append(own)
+            self._surface_errors()
+            self._executor.wake()
+            return None
+        while not self._starting and (work := cycle.rest(now)) is not None:
             self.submit(work, now)
-        if self.error_surfaces or cycle.gather(now):
+        if cycle.gather(now):
             self._executor.wake()
         return self._runner.begin(own, now)
 
@@ -236,11 +247,14 @@ class WorkerPool:
             self._runner.run(started)
         except Exception as error:  # noqa: BLE001 -- kept for the thread that spins
             with self._lock:
-                self._errors.append(error)
-                # Who started the worker has been waiting for it, and only now looks for errors.
-                self.error_surfaces |= worker.began_in == self._clock.turn
+                self.keep(error)
+                # Who started the worker has been waiting for it, and only now looks for errors, unless the
+                # worker has taken over what others were called for before.
+                self.error_surfaces |= worker.began_in == self._clock.turn and not self._claimed()
         except (KeyboardInterrupt, SystemExit):
             return  # lost, as in rclpy: a pool's thread has nobody to tell
+        finally:
+            worker.began_in = -1
 
     def raise_surfacing(self) -> None:
         """Raise the oldest exception of a callback, if one is due to surface."""
@@ -257,6 +271,12 @@ class WorkerPool:
             self._dismissed = True
             for worker in self._workers:
                 worker.signal.set()
+
+    def _finish(self) -> None:
+        """Wait for what is begun or queued, as Python does for a pool once the main thread has ended."""
+        if self._queue or len(self._idle) < len(self._workers):
+            self.dismiss()
+            self.wait_for_end()
 
     def _leave(self) -> None:
         """A worker has nothing more to do; whoever waits for the end of the last goes on."""

@@ -14,7 +14,7 @@ from sim.ros.actions.graph import (
     get_action_server_names_and_types_by_node,
 )
 from sim.ros.node.node import Node
-from sim.shell.graph import NamesAndTypes, known_topics
+from sim.shell.graph import NamesAndTypes, known_topics, shown
 from sim.shell.messages import NO_DICTIONARY, Outgoing, action_class, given_values, prototype_word
 from sim.shell.parser import LineParser, Surroundings
 from sim.shell.session import CommandFailed, CommandInterrupted, ShellSession
@@ -22,15 +22,10 @@ from sim.shell.verbs.interface import type_names
 from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
 
 _FEEDBACK, _FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
-_STATUS_WORDS = {
-    0: "UNKNOWN",
-    1: "ACCEPTED",
-    2: "EXECUTING",
-    3: "CANCELING",
-    4: "SUCCEEDED",
-    5: "CANCELED",
-    6: "ABORTED",
-}
+
+
+_STATUS_WORDS = ("UNKNOWN", "ACCEPTED", "EXECUTING", "CANCELING", "SUCCEEDED", "CANCELED", "ABORTED")
+"""By the numbers of ``action_msgs/msg/GoalStatus``."""
 
 
 def _known_actions(surroundings: Surroundings) -> dict[str, list[str]]:
@@ -54,27 +49,19 @@ def _goal_prototype(surroundings: Surroundings) -> list[str]:
 
 def _add_list(parser: LineParser) -> None:
     add_graph_options(parser)
-    parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the action type")
-    parser.add_argument(
-        "-c", "--count-actions", action="store_true", help="Only display the number of actions discovered"
-    )
+    parser.flag("-t", "--show-types", help="Additionally show the action type")
+    parser.flag("-c", "--count-actions", help="Only display the number of actions discovered")
 
 
 def _list(session: ShellSession, arguments: Namespace) -> None:
     actions = get_action_names_and_types(session.node)
-    if arguments.count_actions:
-        session.say(str(len(actions)))
-        return
-    for name, types in actions:
-        session.say(f"{name} [{', '.join(types)}]" if arguments.show_types else name)
+    session.say_each(shown(actions, arguments.show_types), arguments.count_actions)
 
 
 def _add_action(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.argument(
-        "action_name",
-        help="Name of the ROS action to get info (e.g. '/fibonacci')",
-        completer=_known_actions,
+        "action_name", help="Name of the ROS action to get info (e.g. '/fibonacci')", completer=_known_actions
     )
 
 
@@ -82,8 +69,7 @@ def _type(session: ShellSession, arguments: Namespace) -> None:
     types = dict(get_action_names_and_types(session.node)).get(_full(session, arguments.action_name))
     if types is None:
         raise CommandFailed(f"Unknown action '{arguments.action_name}'")
-    for each in types:
-        session.say(each)
+    session.say_each(types)
 
 
 def _full(session: ShellSession, name: str) -> str:
@@ -92,13 +78,8 @@ def _full(session: ShellSession, name: str) -> str:
 
 def _add_info(parser: LineParser) -> None:
     _add_action(parser)
-    parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the action type")
-    parser.add_argument(
-        "-c",
-        "--count",
-        action="store_true",
-        help="Only display the number of action clients and action servers",
-    )
+    parser.flag("-t", "--show-types", help="Additionally show the action type")
+    parser.flag("-c", "--count", help="Only display the number of action clients and action servers")
 
 
 def _info(session: ShellSession, arguments: Namespace) -> None:
@@ -110,9 +91,8 @@ def _info(session: ShellSession, arguments: Namespace) -> None:
     ):
         found = _nodes_with(session.node, full, ask)
         session.say(f"{title}: {len(found)}")
-        for node, types in [] if arguments.count else found:
-            shown = f" [{', '.join(types)}]" if arguments.show_types else ""
-            session.say(f"    {node}{shown}")
+        if not arguments.count:
+            session.say_each(f"    {line}" for line in shown(found, arguments.show_types))
 
 
 def _nodes_with(node: Node, action: str, ask: Callable[[Node, str, str], NamesAndTypes]) -> NamesAndTypes:
@@ -138,11 +118,9 @@ def _add_send_goal(parser: LineParser) -> None:
         completer=_types,
     )
     parser.argument(
-        "goal",
-        help="Goal request values in YAML format (e.g. '{order: 10}')",
-        completer=_goal_prototype,
+        "goal", help="Goal request values in YAML format (e.g. '{order: 10}')", completer=_goal_prototype
     )
-    parser.add_argument("-f", "--feedback", action="store_true", help="Echo feedback messages for the goal")
+    parser.flag("-f", "--feedback", help="Echo feedback messages for the goal")
 
 
 def _send_goal(session: ShellSession, arguments: Namespace) -> None:
@@ -179,7 +157,7 @@ def _await_result(session: ShellSession, goal_handle: Any) -> None:
         raise
     response = asked.result()
     session.say(f"Result:\n    {message_to_yaml(response.result)}")
-    session.say(f"Goal finished with status: {_STATUS_WORDS.get(response.status, 'UNKNOWN')}")
+    session.say(f"Goal finished with status: {_STATUS_WORDS[response.status]}")
 
 
 def _cancel(session: ShellSession, goal_handle: Any) -> None:

@@ -57,16 +57,15 @@ def service_prototype(surroundings: Surroundings) -> list[str]:
 
 
 def _add_list(parser: LineParser) -> None:
-    parser.add_argument("-m", "--only-msgs", action="store_true", help="Print out only the message types")
-    parser.add_argument("-s", "--only-srvs", action="store_true", help="Print out only the service types")
-    parser.add_argument("-a", "--only-actions", action="store_true", help="Print out only the action types")
+    parser.flag("-m", "--only-msgs", help="Print out only the message types")
+    parser.flag("-s", "--only-srvs", help="Print out only the service types")
+    parser.flag("-a", "--only-actions", help="Print out only the action types")
 
 
 def _list(session: ShellSession, arguments: Namespace) -> None:
     for kind in _chosen_kinds(arguments):
         session.say(f"{_TITLES[kind]}:")
-        for name in type_names(kind):
-            session.say(f"    {name}")
+        session.say_each(f"    {name}" for name in type_names(kind))
 
 
 def _add_package(parser: LineParser) -> None:
@@ -80,15 +79,12 @@ def _package(session: ShellSession, arguments: Namespace) -> None:
     if arguments.package_name not in packages():
         raise CommandFailed(f"Unknown package '{arguments.package_name}'")
     for kind in _chosen_kinds(arguments):
-        for name in type_names(kind, arguments.package_name):
-            session.say(name)
+        session.say_each(type_names(kind, arguments.package_name))
 
 
 def _packages(session: ShellSession, arguments: Namespace) -> None:
     kinds = _chosen_kinds(arguments)
-    for package in sorted(packages()):
-        if any(names(package, kind) for kind in kinds):
-            session.say(package)
+    session.say_each(each for each in sorted(packages()) if any(names(each, kind) for kind in kinds))
 
 
 def _chosen_kinds(arguments: Namespace) -> list[Kind]:
@@ -134,7 +130,7 @@ def _add_proto(parser: LineParser) -> None:
         help="Show an interface definition (e.g. 'example_interfaces/msg/String')",
         completer=_known_interfaces,
     )
-    parser.add_argument("--no-quotes", action="store_true", help="if true output has no outer quotes.")
+    parser.flag("--no-quotes", help="if true output has no outer quotes.")
 
 
 def _proto(session: ShellSession, arguments: Namespace) -> None:

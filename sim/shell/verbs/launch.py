@@ -15,13 +15,10 @@ _ASSIGNED = ":="
 
 
 def _add_arguments(parser: LineParser) -> None:
-    parser.add_argument(
-        "-n",
-        "--noninteractive",
-        action="store_true",
-        help="Run the launch system non-interactively, with no terminal associated",
+    parser.flag(
+        "-n", "--noninteractive", help="Run the launch system non-interactively, with no terminal associated"
     )
-    parser.add_argument("-d", "--debug", action="store_true", help="Put the launch system in debug mode")
+    parser.flag("-d", "--debug", help="Put the launch system in debug mode")
     parser.add_argument(
         "-p",
         "--print",
@@ -38,10 +35,9 @@ def _add_arguments(parser: LineParser) -> None:
         dest="show_args",
         help="Show arguments that may be given to the launch file.",
     )
-    parser.add_argument(
+    parser.flag(
         "-a",
         "--show-all-subprocesses-output",
-        action="store_true",
         help="Show all launched subprocesses' output by overriding their output configuration",
     )
     parser.add_argument("--launch-prefix", help="Prefix command, which should go before all executables")
@@ -100,7 +96,5 @@ def _check(argument: str) -> None:
 
 
 LAUNCH = ShellCommand(
-    "launch",
-    "Run a launch file",
-    itself=Verb("launch", "Run a launch file", _add_arguments, _launch),
+    "launch", "Run a launch file", itself=Verb("launch", "Run a launch file", _add_arguments, _launch)
 )

@@ -25,28 +25,24 @@ def _managed(session: ShellSession) -> list[str]:
 
 def _add_nodes(parser: LineParser) -> None:
     add_graph_options(parser)
-    parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
-    parser.add_argument("-c", "--count-nodes", action="store_true", help="Only display the number of nodes")
+    parser.flag("-a", "--all", help="Display all nodes even hidden ones")
+    parser.flag("-c", "--count-nodes", help="Only display the number of nodes")
 
 
 def _nodes(session: ShellSession, arguments: Namespace) -> None:
     names = [name for name in _managed(session) if arguments.all or not is_hidden(name)]
-    if arguments.count_nodes:
-        session.say(str(len(names)))
-        return
-    for name in names:
-        session.say(name)
+    session.say_each(names, arguments.count_nodes)
 
 
 def _add_hidden(parser: LineParser) -> None:
     add_graph_options(parser)
-    parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
+    parser.flag("--include-hidden-nodes", help="Consider hidden nodes as well")
 
 
 def _add_get(parser: LineParser) -> None:
     _add_hidden(parser)
     parser.argument("node_name", nargs="?", help="Name of the ROS node to query", completer=known_nodes)
-    parser.add_argument("--transitions", action="store_true", help="Output possible transitions")
+    parser.flag("--transitions", help="Output possible transitions")
 
 
 def _get(session: ShellSession, arguments: Namespace) -> None:
@@ -64,9 +60,7 @@ def _get(session: ShellSession, arguments: Namespace) -> None:
 def _add_list(parser: LineParser) -> None:
     _add_hidden(parser)
     parser.argument("node_name", help="Name of the ROS node to query", completer=known_nodes)
-    parser.add_argument(
-        "-a", "--all", action="store_true", help="Display all existing transitions, not only available ones"
-    )
+    parser.flag("-a", "--all", help="Display all existing transitions, not only available ones")
 
 
 def _list(session: ShellSession, arguments: Namespace) -> None:
@@ -75,7 +69,7 @@ def _list(session: ShellSession, arguments: Namespace) -> None:
 
 
 def _say_transitions(session: ShellSession, node: str, kind: str) -> None:
-    found = _call(session, node, kind, _service(session, "GetAvailableTransitions").Request())
+    found = _call(session, node, kind, "GetAvailableTransitions")
     for each in found.available_transitions:
         session.say(
             f"- {each.transition.label} [{each.transition.id}]\n"
@@ -95,15 +89,14 @@ def _add_set(parser: LineParser) -> None:
 
 def _set(session: ShellSession, arguments: Namespace) -> None:
     node = _chosen(session, arguments)
-    request_type = _service(session, "GetAvailableTransitions").Request
-    found = _call(session, node, "get_available_transitions", request_type())
+    found = _call(session, node, "get_available_transitions", "GetAvailableTransitions")
     known = {each.transition.label: each.transition for each in found.available_transitions}
     by_number = {str(each.id): each for each in known.values()}
     chosen = known.get(arguments.transition) or by_number.get(arguments.transition)
     if chosen is None:
         lines = "".join(f"\n- {each.label} [{each.id}]" for each in known.values())
         raise CommandFailed(f"Unknown transition requested, available ones are:{lines}")
-    answer = _call(session, node, "change_state", _service(session, "ChangeState").Request(transition=chosen))
+    answer = _call(session, node, "change_state", "ChangeState", transition=chosen)
     if not answer.success:
         raise CommandFailed("Transitioning failed")
     session.say("Transitioning successful")
@@ -117,28 +110,16 @@ def _chosen(session: ShellSession, arguments: Namespace) -> str:
 
 
 def _state(session: ShellSession, node: str) -> Any:
-    return _call(session, node, "get_state", _service(session, "GetState").Request()).current_state
+    return _call(session, node, "get_state", "GetState").current_state
 
 
 def _described(state: Any) -> str:
     return f"{state.label} [{state.id}]"
 
 
-_TYPES = {
-    "change_state": "ChangeState",
-    "get_available_transitions": "GetAvailableTransitions",
-    "get_state": "GetState",
-    "get_transition_graph": "GetAvailableTransitions",
-}
-
-
-def _service(session: ShellSession, name: str) -> Any:
-    return session.ground.interface("srv", "lifecycle_msgs", name)
-
-
-def _call(session: ShellSession, node: str, name: str, request: Any) -> Any:
-    client = session.node.create_client(_service(session, _TYPES[name]), f"{node}/{name}")
-    future = client.call_async(request)
+def _call(session: ShellSession, node: str, name: str, srv_name: str, **request: Any) -> Any:
+    srv_type: Any = session.ground.interface("srv", "lifecycle_msgs", srv_name)
+    future = session.node.create_client(srv_type, f"{node}/{name}").call_async(srv_type.Request(**request))
     session.spin(future)
     if (error := future.exception()) is not None:
         raise CommandFailed(f"Exception while calling service of node '{node}': {error}")

@@ -17,33 +17,25 @@ from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
 
 def _add_list(parser: LineParser) -> None:
     add_graph_options(parser)
-    parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
-    parser.add_argument(
-        "-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered"
-    )
+    parser.flag("-a", "--all", help="Display all nodes even hidden ones")
+    parser.flag("-c", "--count-nodes", help="Only display the number of nodes discovered")
 
 
 def _list(session: ShellSession, arguments: Namespace) -> None:
     every = sorted(session.node.get_fully_qualified_node_names())
     names = [name for name in every if arguments.all or not is_hidden(name)]
-    if arguments.count_nodes:
-        session.say(str(len(names)))
-        return
-    if any(count > 1 for count in Counter(names).values()):
+    if not arguments.count_nodes and any(count > 1 for count in Counter(names).values()):
         session.complain(
             "WARNING: Be aware that there are nodes in the graph that share an exact name, "
             "which can have unintended side effects."
         )
-    for name in names:
-        session.say(name)
+    session.say_each(names, arguments.count_nodes)
 
 
 def _add_info(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.argument("node_name", help="Node name to request information", completer=known_nodes)
-    parser.add_argument(
-        "--include-hidden", action="store_true", help="Display hidden topics, services, and actions as well"
-    )
+    parser.flag("--include-hidden", help="Display hidden topics, services, and actions as well")
 
 
 def _info(session: ShellSession, arguments: Namespace) -> None:

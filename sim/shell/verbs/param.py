@@ -28,31 +28,6 @@ _SERVICES_PATIENCE = 5.0
 _REPLY_PATIENCE = 1.0
 """Seconds that ``list`` waits for a node's services, and for its reply."""
 
-_KINDS = Parameter.Type
-_TYPE_WORDS = {
-    _KINDS.NOT_SET: "not set",
-    _KINDS.BOOL: "boolean",
-    _KINDS.INTEGER: "integer",
-    _KINDS.DOUBLE: "double",
-    _KINDS.STRING: "string",
-    _KINDS.BYTE_ARRAY: "byte array",
-    _KINDS.BOOL_ARRAY: "boolean array",
-    _KINDS.INTEGER_ARRAY: "integer array",
-    _KINDS.DOUBLE_ARRAY: "double array",
-    _KINDS.STRING_ARRAY: "string array",
-}
-_LABELS = {
-    _KINDS.BOOL: "Boolean value is:",
-    _KINDS.INTEGER: "Integer value is:",
-    _KINDS.DOUBLE: "Double value is:",
-    _KINDS.STRING: "String value is:",
-    _KINDS.BYTE_ARRAY: "Byte values are:",
-    _KINDS.BOOL_ARRAY: "Boolean values are:",
-    _KINDS.INTEGER_ARRAY: "Integer values are:",
-    _KINDS.DOUBLE_ARRAY: "Double values are:",
-    _KINDS.STRING_ARRAY: "String values are:",
-}
-
 
 def _add_node(parser: LineParser) -> None:
     add_graph_options(parser)
@@ -61,12 +36,26 @@ def _add_node(parser: LineParser) -> None:
 
 
 def _add_hidden(parser: LineParser) -> None:
-    parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
+    parser.flag("--include-hidden-nodes", help="Consider hidden nodes as well")
 
 
 def _add_parameter(parser: LineParser) -> None:
     _add_node(parser)
     parser.argument("parameter_name", help="Name of the parameter", completer=known_parameters)
+
+
+# Types and their words
+
+
+def _type_word(kind: int) -> str:
+    name: str = Parameter.Type(kind).name
+    return name.lower().replace("bool", "boolean").replace("_", " ")
+
+
+def _label(kind: int) -> str:
+    """``Boolean value is:``, ``Integer values are:``."""
+    element, array, _ = _type_word(kind).partition(" array")
+    return f"{element.capitalize()} {'values are' if array else 'value is'}:"
 
 
 # Asking
@@ -106,14 +95,9 @@ def _add_list(parser: LineParser) -> None:
     parser.argument("node_name", nargs="?", help="Name of the ROS node", completer=known_nodes)
     _add_hidden(parser)
     parser.add_argument(
-        "--param-prefixes",
-        nargs="+",
-        default=[],
-        help="Only list parameters with the provided prefixes",
+        "--param-prefixes", nargs="+", default=[], help="Only list parameters with the provided prefixes"
     )
-    parser.add_argument(
-        "--param-type", action="store_true", help="Print parameter types with parameter names"
-    )
+    parser.flag("--param-type", help="Print parameter types with parameter names")
     parser.add_argument("--filter", help="Only list parameters matching the provided regex")
 
 
@@ -134,8 +118,8 @@ def _list(session: ShellSession, arguments: Namespace) -> None:
             continue
         if arguments.node_name is None:
             session.say(f"{name}:")
-        for each in _with_types(session, client, filter(wanted.match, found), arguments.param_type):
-            session.say(f"  {each}")
+        lines = _with_types(session, client, filter(wanted.match, found), arguments.param_type)
+        session.say_each(f"  {line}" for line in lines)
 
 
 def _listed(session: ShellSession, client: AsyncParameterClient, prefixes: list[str]) -> list[str] | None:
@@ -159,7 +143,7 @@ def _with_types(
     if not with_types or not names:
         return names
     types = _reply(session, client.get_parameter_types(names)).types
-    return [f"{name} (type: {_TYPE_WORDS[_KINDS(of)]})" for name, of in zip(names, types, strict=True)]
+    return [f"{name} (type: {_type_word(of)})" for name, of in zip(names, types, strict=True)]
 
 
 # get, set, delete
@@ -167,7 +151,7 @@ def _with_types(
 
 def _add_get(parser: LineParser) -> None:
     _add_parameter(parser)
-    parser.add_argument("--hide-type", action="store_true", help="Hide the type information")
+    parser.flag("--hide-type", help="Hide the type information")
 
 
 def _get(session: ShellSession, arguments: Namespace) -> None:
@@ -181,7 +165,7 @@ def _get(session: ShellSession, arguments: Namespace) -> None:
     elif arguments.hide_type:
         session.say(str(value))
     else:
-        session.say(f"{_LABELS[_KINDS(message.type)]} {value}")
+        session.say(f"{_label(message.type)} {value}")
 
 
 def _add_set(parser: LineParser) -> None:
@@ -222,13 +206,12 @@ def _describe(session: ShellSession, arguments: Namespace) -> None:
     if not descriptors:
         raise CommandFailed(f"Parameter not declared: {', '.join(arguments.parameter_names)}")
     for descriptor in descriptors:
-        for line in _description(descriptor):
-            session.say(line)
+        session.say_each(_description(descriptor))
 
 
 def _description(descriptor: Any) -> Iterable[str]:
     yield f"Parameter name: {descriptor.name}"
-    yield f"  Type: {_TYPE_WORDS[_KINDS(descriptor.type)]}"
+    yield f"  Type: {_type_word(descriptor.type)}"
     if descriptor.description:
         yield f"  Description: {descriptor.description}"
     yield "  Constraints:"
@@ -282,11 +265,7 @@ def _put(tree: dict[str, Any], parts: list[str], value: Any) -> None:
 def _add_load(parser: LineParser) -> None:
     _add_node(parser)
     parser.argument("parameter_file", help="Parameter file")
-    parser.add_argument(
-        "--no-use-wildcard",
-        action="store_true",
-        help="Do not load parameters in the '/**' namespace into the node",
-    )
+    parser.flag("--no-use-wildcard", help="Do not load parameters in the '/**' namespace into the node")
 
 
 def _load(session: ShellSession, arguments: Namespace) -> None:

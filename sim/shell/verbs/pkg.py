@@ -30,15 +30,12 @@ def _add_package(parser: LineParser) -> None:
 
 
 def _list(session: ShellSession, _: Namespace) -> None:
-    for name in session.tools.packages().names:
-        session.say(name)
+    session.say_each(session.tools.packages().names)
 
 
 def _add_prefix(parser: LineParser) -> None:
     _add_package(parser)
-    parser.add_argument(
-        "--share", action="store_true", help="Show share directory for the package instead of the prefix"
-    )
+    parser.flag("--share", help="Show share directory for the package instead of the prefix")
 
 
 def _prefix(session: ShellSession, arguments: Namespace) -> None:
@@ -50,7 +47,7 @@ def _add_executables(parser: LineParser) -> None:
     parser.argument(
         "package_name", nargs="?", help="Only list executables of this package", completer=known_packages
     )
-    parser.add_argument("--full-path", action="store_true", help="Show the full path of the executable")
+    parser.flag("--full-path", help="Show the full path of the executable")
 
 
 def _executables(session: ShellSession, arguments: Namespace) -> None:

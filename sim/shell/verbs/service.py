@@ -9,7 +9,7 @@ from sim import plain_yaml
 from sim.interfaces.rosidl_runtime_py import message_to_csv, message_to_ordereddict
 from sim.ros.entities.client import Client
 from sim.ros.qos.qos import qos_profile_services_default
-from sim.shell.graph import known_services, type_of_given, without_hidden
+from sim.shell.graph import known_services, shown, type_of_given, without_hidden
 from sim.shell.messages import Outgoing, given_values, service_class
 from sim.shell.parser import LineParser, Surroundings, positive_float
 from sim.shell.session import CommandFailed, ShellSession
@@ -80,31 +80,23 @@ def _add_service(parser: LineParser) -> None:
 
 
 def _add_hidden(parser: LineParser) -> None:
-    parser.add_argument(
-        "--include-hidden-services", action="store_true", help="Consider hidden services as well"
-    )
+    parser.flag("--include-hidden-services", help="Consider hidden services as well")
 
 
 def _add_count(parser: LineParser) -> None:
-    parser.add_argument(
-        "-c", "--count-services", action="store_true", help="Only display the number of services discovered"
-    )
+    parser.flag("-c", "--count-services", help="Only display the number of services discovered")
 
 
 def _add_list(parser: LineParser) -> None:
     add_graph_options(parser)
-    parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the service type")
+    parser.flag("-t", "--show-types", help="Additionally show the service type")
     _add_count(parser)
     _add_hidden(parser)
 
 
 def _list(session: ShellSession, arguments: Namespace) -> None:
     services = without_hidden(session.node.get_service_names_and_types(), arguments.include_hidden_services)
-    if arguments.count_services:
-        session.say(str(len(services)))
-        return
-    for name, types in services:
-        session.say(f"{name} [{', '.join(types)}]" if arguments.show_types else name)
+    session.say_each(shown(services, arguments.show_types), arguments.count_services)
 
 
 def _types_of(session: ShellSession, service: str) -> list[str]:
@@ -117,8 +109,7 @@ def _types_of(session: ShellSession, service: str) -> list[str]:
 
 
 def _type(session: ShellSession, arguments: Namespace) -> None:
-    for each in _types_of(session, arguments.service_name):
-        session.say(each)
+    session.say_each(_types_of(session, arguments.service_name))
 
 
 def _info(session: ShellSession, arguments: Namespace) -> None:
@@ -142,11 +133,7 @@ def _add_find(parser: LineParser) -> None:
 def _find(session: ShellSession, arguments: Namespace) -> None:
     services = without_hidden(session.node.get_service_names_and_types(), arguments.include_hidden_services)
     found = [name for name, types in services if arguments.service_type in types]
-    if arguments.count_services:
-        session.say(str(len(found)))
-        return
-    for name in found:
-        session.say(name)
+    session.say_each(found, arguments.count_services)
 
 
 def _add_echo(parser: LineParser) -> None:
@@ -157,8 +144,8 @@ def _add_echo(parser: LineParser) -> None:
         help="Type of the ROS service (e.g. 'example_interfaces/srv/AddTwoInts')",
         completer=_types,
     )
-    parser.add_argument("--csv", action="store_true", help="Output all recursive fields separated by commas")
-    parser.add_argument("--flow-style", action="store_true", help="Print collections in the block style")
+    parser.flag("--csv", help="Output all recursive fields separated by commas")
+    parser.flag("--flow-style", help="Print collections in the block style")
 
 
 def _echo(session: ShellSession, arguments: Namespace) -> None:

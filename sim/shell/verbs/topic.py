@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from sim.shell.graph import NamesAndTypes, full_topic_name, known_topics, topic_types, without_hidden
+from sim.shell.graph import NamesAndTypes, full_topic_name, known_topics, shown, topic_types, without_hidden
 from sim.shell.parser import LineParser
 from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.interface import known_messages
@@ -22,17 +22,15 @@ def _add_topic(parser: LineParser) -> None:
 
 
 def _add_hidden(parser: LineParser) -> None:
-    parser.add_argument("--include-hidden-topics", action="store_true", help="Consider hidden topics as well")
+    parser.flag("--include-hidden-topics", help="Consider hidden topics as well")
 
 
 def _add_list(parser: LineParser) -> None:
     add_graph_options(parser)
-    parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the topic type")
-    parser.add_argument(
-        "-c", "--count-topics", action="store_true", help="Only display the number of topics discovered"
-    )
+    parser.flag("-t", "--show-types", help="Additionally show the topic type")
+    parser.flag("-c", "--count-topics", help="Only display the number of topics discovered")
     _add_hidden(parser)
-    parser.add_argument("-v", "--verbose", action="store_true", help="List full details about each topic")
+    parser.flag("-v", "--verbose", help="List full details about each topic")
 
 
 def _list(session: ShellSession, arguments: Namespace) -> None:
@@ -45,8 +43,7 @@ def _list(session: ShellSession, arguments: Namespace) -> None:
         session.say(_details("Published", "publisher", topics, publishers))
         session.say(_details("Subscribed", "subscriber", topics, subscribers))
     else:
-        for name, types in topics:
-            session.say(f"{name} [{', '.join(types)}]" if arguments.show_types else name)
+        session.say_each(shown(topics, arguments.show_types))
 
 
 def _details(what: str, who: str, topics: NamesAndTypes, counts: dict[str, int]) -> str:
@@ -60,10 +57,9 @@ def _details(what: str, who: str, topics: NamesAndTypes, counts: dict[str, int])
 
 def _add_info(parser: LineParser) -> None:
     _add_topic(parser)
-    parser.add_argument(
+    parser.flag(
         "-v",
         "--verbose",
-        action="store_true",
         help="Prints detailed information like the node name, node namespace, topic type, topic type hash, "
         "GUID and QoS Profile of the publishers and subscribers to this topic",
     )
@@ -78,20 +74,17 @@ def _info(session: ShellSession, arguments: Namespace) -> None:
     session.say(f"Type: {types[0] if len(types) == 1 else types}{end}")
     session.say(f"Publisher count: {node.count_publishers(full)}{end}")
     if arguments.verbose:
-        for publisher in node.get_publishers_info_by_topic(full):
-            session.say(f"{publisher}{end}")
+        session.say_each(f"{each}\n" for each in node.get_publishers_info_by_topic(full))
     session.say(f"Subscription count: {node.count_subscribers(full)}{end}")
     if arguments.verbose:
-        for subscription in node.get_subscriptions_info_by_topic(full):
-            session.say(f"{subscription}{end}")
+        session.say_each(f"{each}\n" for each in node.get_subscriptions_info_by_topic(full))
 
 
 def _type(session: ShellSession, arguments: Namespace) -> None:
     types = topic_types(session, arguments.topic_name)
     if types is None:
         raise CommandFailed(_UNKNOWN.format(arguments.topic_name))
-    for each in types:
-        session.say(each)
+    session.say_each(types)
 
 
 def _add_find(parser: LineParser) -> None:
@@ -101,20 +94,14 @@ def _add_find(parser: LineParser) -> None:
         completer=known_messages,
     )
     add_graph_options(parser)
-    parser.add_argument(
-        "-c", "--count-topics", action="store_true", help="Only display the number of topics discovered"
-    )
+    parser.flag("-c", "--count-topics", help="Only display the number of topics discovered")
     _add_hidden(parser)
 
 
 def _find(session: ShellSession, arguments: Namespace) -> None:
     topics = without_hidden(session.node.get_topic_names_and_types(), arguments.include_hidden_topics)
     found = [name for name, types in topics if arguments.topic_type in types]
-    if arguments.count_topics:
-        session.say(str(len(found)))
-    else:
-        for name in found:
-            session.say(name)
+    session.say_each(found, arguments.count_topics)
 
 
 TOPIC = ShellCommand(

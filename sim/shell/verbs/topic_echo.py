@@ -25,9 +25,7 @@ _DEFAULT_LENGTH = 128
 
 def _add_arguments(parser: LineParser) -> None:
     parser.argument(
-        "topic_name",
-        help="Name of the ROS topic to listen to (e.g. '/chatter')",
-        completer=known_topics,
+        "topic_name", help="Name of the ROS topic to listen to (e.g. '/chatter')", completer=known_topics
     )
     parser.argument(
         "message_type",
@@ -37,11 +35,7 @@ def _add_arguments(parser: LineParser) -> None:
     )
     add_qos_options(parser, "subscribe", "sensor_data")
     add_graph_options(parser)
-    parser.add_argument(
-        "--csv",
-        action="store_true",
-        help="Output all recursive fields separated by commas (e.g. for plotting)",
-    )
+    parser.flag("--csv", help="Output all recursive fields separated by commas (e.g. for plotting)")
     parser.add_argument(
         "--field",
         metavar="FIELD_NAME",
@@ -49,10 +43,9 @@ def _add_arguments(parser: LineParser) -> None:
         "position field of a nav_msgs/msg/Odometry message: 'ros2 topic echo /odom --field "
         "pose.pose.position'",
     )
-    parser.add_argument(
+    parser.flag(
         "--full-length",
         "-f",
-        action="store_true",
         help="Output all elements for arrays, bytes, and string with a length > '--truncate-length', by "
         "default they are truncated after '--truncate-length' elements with '...'",
     )
@@ -63,19 +56,17 @@ def _add_arguments(parser: LineParser) -> None:
         default=_DEFAULT_LENGTH,
         help="The length to truncate arrays, bytes, and string to (default: %(default)d)",
     )
-    parser.add_argument("--no-arr", action="store_true", help="Don't print array fields of messages")
-    parser.add_argument("--no-str", action="store_true", help="Don't print string fields of messages")
-    parser.add_argument("--flow-style", action="store_true", help="Print collections in the block style")
-    parser.add_argument("--no-lost-messages", action="store_true", help="Don't report when a message is lost")
-    parser.add_argument("--raw", action="store_true", help="Echo the raw binary representation")
+    parser.flag("--no-arr", help="Don't print array fields of messages")
+    parser.flag("--no-str", help="Don't print string fields of messages")
+    parser.flag("--flow-style", help="Print collections in the block style")
+    parser.flag("--no-lost-messages", help="Don't report when a message is lost")
+    parser.flag("--raw", help="Echo the raw binary representation")
     add_filter_option(parser, "echo")
-    parser.add_argument("--once", action="store_true", help="Print the first message received and then exit.")
+    parser.flag("--once", help="Print the first message received and then exit.")
     parser.add_argument(
         "--timeout", metavar="N", type=positive_float, help="Set a timeout in seconds for waiting"
     )
-    parser.add_argument(
-        "--include-message-info", action="store_true", help="Shows the associated message info."
-    )
+    parser.flag("--include-message-info", help="Shows the associated message info.")
 
 
 def _echo(session: ShellSession, arguments: Namespace) -> None:

@@ -26,9 +26,7 @@ def _types(surroundings: Surroundings) -> list[str]:
 
 def _add_arguments(parser: LineParser) -> None:
     parser.argument(
-        "topic_name",
-        help="Name of the ROS topic to publish to (e.g. '/chatter')",
-        completer=known_topics,
+        "topic_name", help="Name of the ROS topic to publish to (e.g. '/chatter')", completer=known_topics
     )
     parser.argument("message_type", help="Type of the ROS message (e.g. 'std_msgs/String')", completer=_types)
     parser.argument(
@@ -58,11 +56,7 @@ def _add_arguments(parser: LineParser) -> None:
     count = parser.add_mutually_exclusive_group()
     count.add_argument("-1", "--once", action="store_true", help="Publish one message and exit")
     count.add_argument(
-        "-t",
-        "--times",
-        type=nonnegative_int,
-        default=0,
-        help="Publish this number of times and then exit",
+        "-t", "--times", type=nonnegative_int, default=0, help="Publish this number of times and then exit"
     )
     parser.add_argument(
         "-w",

@@ -143,9 +143,7 @@ def _class_once_known(session: ShellSession, topic: str) -> type[Message]:
 def _add_hz(parser: LineParser) -> None:
     _add_topic(parser, "listen to (e.g. '/chatter')", _WINDOW)
     add_filter_option(parser, "count")
-    parser.add_argument(
-        "--wall-time", action="store_true", help="Calculates rate using wall time, which is the same here"
-    )
+    parser.flag("--wall-time", help="Calculates rate using wall time, which is the same here")
 
 
 def _hz(session: ShellSession, arguments: Namespace) -> None:

@@ -50,6 +50,4 @@ def add_graph_options(parser: LineParser) -> None:
         help="Spin time in seconds to wait for discovery (only applies when not using an already running "
         "daemon)",
     )
-    parser.add_argument(
-        "--no-daemon", action="store_true", help="Do not spawn nor use an already running daemon"
-    )
+    parser.flag("--no-daemon", help="Do not spawn nor use an already running daemon")

@@ -10,6 +10,7 @@ from sim.trace.events.callbacks import *
 from sim.trace.events.communication import *
 from sim.trace.events.event import *
 from sim.trace.events.event import TraceEvent
+from sim.trace.events.exploration import *
 from sim.trace.events.fields import *
 from sim.trace.events.graph import *
 from sim.trace.events.packing import *

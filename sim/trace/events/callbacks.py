@@ -5,10 +5,13 @@ from enum import StrEnum
 from sim.trace.events.event import TraceEvent
 from sim.trace.events.fields import (
     EntityId,
+    Frames,
     HolderId,
+    LockHolderId,
     Maybe,
     MessageId,
     Nanoseconds,
+    SourcePlace,
     Text,
     ThreadId,
     WireOnly,
@@ -22,6 +25,8 @@ class Reason(StrEnum):
     """Its mutually exclusive group has let another callback in."""
     NO_FREE_WORKER = "no free worker"
     """Its group would let it in, but every thread of its executor is running a callback."""
+    EVENT_QUEUE = "behind others in the event queue"
+    """Its EventsExecutor, which asks no group, is running what came before it."""
     NOBODY_SPINS = "nobody spins"
     """Its node is in no executor, or that executor is not spinning."""
 
@@ -58,7 +63,8 @@ class WaitStarted(TraceEvent, frozen=True, tag="wait_start"):
     since: Nanoseconds
     """When the callback became ready; the same for all events of one wait."""
     reason: Reason
-    """Why it waits: ``group held``, ``no free worker`` or ``nobody spins``."""
+    """Why it waits: ``group held``, ``no free worker``, ``behind others in the event queue`` or
+    ``nobody spins``."""
     holder: HolderId
     """Name of the callback that is in the way."""
     workers_busy: bool
@@ -106,6 +112,39 @@ class CallbackResumed(TraceEvent, frozen=True, tag="callback_resume"):
 
     entity: EntityId
     thread: ThreadId
+
+
+class Doing(StrEnum):
+    """What a running callback does at its line."""
+
+    COMPUTES = "computes"
+    SLEEPS = "sleeps"
+    WAITS = "waits"
+    """For another thread: a lock, an event, a thread's end, an item of a queue."""
+    CALLS_ROS = "in rclpy"
+    """It is in a function of rclpy, such as ``Client.call``."""
+    READS = "reads"
+    """It waits for input from the keyboard."""
+
+
+class CallbackAt(TraceEvent, frozen=True, tag="callback_at"):
+    """Where a running callback is in the program's own code; another one replaces it.
+
+    On virtual time it is recorded as time passes, so that it is exact; on the real clock threads are sampled.
+    """
+
+    entity: EntityId
+    thread: ThreadId
+    doing: Doing
+    """``computes``, ``sleeps``, ``waits`` for another thread, ``in rclpy``, or ``reads`` the keyboard."""
+    call: Maybe[str]
+    """The function in which it sleeps or waits, such as ``Client.call``."""
+    frames: Frames
+    """The lines of the program's own on its stack, from the callback inwards."""
+    loop: Maybe[SourcePlace] = ("", 0)
+    """The ``while`` around the innermost of them that has one."""
+    holder: LockHolderId = 0
+    """Name of the thread whose callback has the lock that it waits for."""
 
 
 class CallbackFailed(TraceEvent, frozen=True, tag="callback_error"):

@@ -88,6 +88,10 @@ def _place(place: tuple[str, int]) -> str | None:
     return f"{file}:{line}" if file else None
 
 
+def _frames(frames: tuple[tuple[str, str, int], ...]) -> list[str]:
+    return [f"{file}:{line}, in {function}" for file, function, line in frames]
+
+
 # Units.
 
 Nanoseconds: TypeAlias = Annotated[int, JsonForm(convert=_seconds, unit="s")]
@@ -110,8 +114,7 @@ CallbackId: TypeAlias = Annotated[
 """Name of the callback in which it happened, or of the callback concerned."""
 
 EntityId: TypeAlias = Annotated[
-    int,
-    JsonForm("node callback? kind entity group group_type", lambda names, number: names.entity(number)),
+    int, JsonForm("node callback? kind entity group group_type", lambda names, number: names.entity(number))
 ]
 """The entity: its node, its callback's function, its ``kind`` (``timer``, ``subscription``, ``guard``,
 ``client``, ``service`` or ``waitable``), its topic or service, or its callback where it has neither, and its
@@ -119,6 +122,10 @@ callback group."""
 
 HolderId: TypeAlias = Annotated[
     int, JsonForm("held_by", lambda names, number: names.callback(number)), Shown.IF_ANY
+]
+
+LockHolderId: TypeAlias = Annotated[
+    int, JsonForm("held_by", lambda names, number: names.thread(number)), Shown.IF_ANY
 ]
 
 GroupId: TypeAlias = Annotated[int, JsonForm("group group_type", lambda names, number: names.group(number))]
@@ -157,6 +164,8 @@ Text: TypeAlias = Annotated[str, JsonForm("message")]
 TypeName: TypeAlias = Annotated[str, JsonForm("type")]
 
 SourcePlace: TypeAlias = Annotated[tuple[str, int], JsonForm(convert=_place)]
+
+Frames: TypeAlias = Annotated[tuple[tuple[str, str, int], ...], JsonForm(convert=_frames)]
 
 # Contents.
 

@@ -20,7 +20,7 @@ def encode(events: list[TraceEvent]) -> bytes:
 
 
 def escape_surrogates(events: list[TraceEvent]) -> list[TraceEvent]:
-    """Return events with the lone surrogates in their texts written as ``\udc80``: UTF-8 cannot encode them.
+    r"""Return events with the lone surrogates in their texts written as ``\udc80``: UTF-8 cannot encode them.
 
     They come from file names that are not UTF-8, and from what programs print.
     """

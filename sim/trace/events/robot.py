@@ -1,14 +1,7 @@
 """The robot and its surroundings."""
 
 from sim.trace.events.event import TraceEvent
-from sim.trace.events.fields import (
-    MessageId,
-    Metres,
-    MetresPerSecond,
-    Radians,
-    RadiansPerSecond,
-    Ranges,
-)
+from sim.trace.events.fields import MessageId, Metres, MetresPerSecond, Radians, RadiansPerSecond, Ranges
 
 
 class ArenaShown(TraceEvent, frozen=True, tag="arena"):

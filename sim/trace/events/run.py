@@ -3,7 +3,7 @@
 from enum import StrEnum
 
 from sim.trace.events.event import TraceEvent
-from sim.trace.events.fields import Nanoseconds, Text, WireOnly
+from sim.trace.events.fields import Nanoseconds, SourcePlace, Text, WireOnly
 
 
 class RunStarted(TraceEvent, frozen=True, tag="run_start"):
@@ -15,6 +15,8 @@ class RunStarted(TraceEvent, frozen=True, tag="run_start"):
     """``virtual`` or ``real``."""
     epoch: Nanoseconds
     """Time since 1970 at ``t`` = 0, as in log lines."""
+    distro: str = ""
+    """The release of rclpy that the model is like: ``jazzy@7.1.9``; "" on real ROS 2."""
 
 
 class CommandKind(StrEnum):
@@ -25,6 +27,7 @@ class CommandKind(StrEnum):
     SPEED = "speed"
     STEP = "step"
     RUN_UNTIL = "run until"
+    CHOOSE = "choose"
     CALL = "call"
     OTHER = "other"
     """Also in recordings without kinds."""
@@ -41,6 +44,12 @@ class RunEnded(TraceEvent, frozen=True, tag="run_end"):
     """Whether the run ended because its time was up."""
     error: WireOnly[str | None] = None
     """The exception that ended it, as ``CallbackFailed.error`` has it; "" for none, None if not known."""
+    place: WireOnly[SourcePlace] = ("", 0)
+    """Where in the program's own code that came up, or is to be mended."""
+    problem: WireOnly[str] = ""
+    """The part of ``reason`` that says what came up."""
+    advice: WireOnly[str] = ""
+    """The part of ``reason`` that says what to do about it."""
 
 
 class RunEnding(TraceEvent, frozen=True, tag="run_ending"):

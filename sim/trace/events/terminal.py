@@ -74,6 +74,8 @@ class NoticeKind(StrEnum):
     """A callback waits without a timeout for what may still come."""
     DEADLOCK = "deadlock"
     """Threads wait without a timeout for what can no longer come."""
+    OVERRULED = "overruled"
+    """A parameter callback sets what is being set; what was asked for is stored after that."""
     FORGED = "forged"
     """A program tells of itself what only the run can know."""
 

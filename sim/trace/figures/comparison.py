@@ -7,11 +7,12 @@ from itertools import groupby
 from typing import TypeAlias
 
 from sim.trace.descriptions import why_waiting
+from sim.trace.events import EntityId
 from sim.trace.figures.concurrency import threads_incrementally
 from sim.trace.figures.statistics import CallbackStatistics, statistics_incrementally
 from sim.trace.figures.summary import RobotFigures, robot_incrementally, trail_in_parts
 from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end
-from sim.trace.model import EntityInfo, Nanoseconds, Wait, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 Key: TypeAlias = tuple[str, str, str, str, int]
@@ -115,6 +116,39 @@ def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> 
     )
 
 
+def first_difference(first: Timeline, second: Timeline, window: Window) -> Incremental[Nanoseconds | None]:
+    """Return when the runs first differ in a window: a call begins or ends otherwise, or on one side only.
+
+    Callbacks match as for ``compare``; times that differ by less than 1 ms are the same. None: they do not.
+    """
+    of_first, of_second = _entities_of(first), _entities_of(second)
+    partners = _partners(of_first, of_second)
+    found: list[Nanoseconds] = []
+    for key, entity in of_first.items():
+        other = of_second.get(partners.get(key, key))
+        within = Window(window.start, min([window.end, *found]))
+        spans = first.spans_of(entity, within), () if other is None else second.spans_of(other, within)
+        differs = _first_different(*spans)
+        if differs is not None and differs < window.end:
+            found.append(differs)
+        yield
+    return min(found, default=None)
+
+
+_SAME: Nanoseconds = 1_000_000
+"""Times of two runs that differ by less are the same."""
+
+
+def _first_different(first: Sequence[Span], second: Sequence[Span]) -> Nanoseconds | None:
+    for one, other in zip(first, second, strict=False):
+        if abs(one.start - other.start) >= _SAME:
+            return min(one.start, other.start)
+        ends = [span.end for span in (one, other) if span.end is not None]
+        if ends and (len(ends) == 1 or abs(ends[0] - ends[1]) >= _SAME):
+            return min(ends)
+    return next((span.start for rest in (first[len(second) :], second[len(first) :]) for span in rest), None)
+
+
 def _partners(first: Iterable[Key], second: Iterable[Key]) -> dict[Key, Key]:
     """Match callbacks of the first run with those of the second that differ only in the node's name."""
     alone, others = set(first) - set(second), set(second) - set(first)
@@ -135,15 +169,22 @@ def _long_name(key: Key) -> str:
 
 
 def _callbacks_of(timeline: Timeline, window: Window) -> Incremental[dict[Key, CallbackInRun]]:
-    equals: Counter[tuple[str, str, str, str]] = Counter()
     callbacks: dict[Key, CallbackInRun] = {}
+    for key, entity in _entities_of(timeline).items():
+        waits = yield from _wait_figures(timeline.waits_of(entity, window), timeline, window)
+        figures = yield from statistics_incrementally(timeline, entity, window)
+        callbacks[key] = CallbackInRun(figures, waits)
+    return callbacks
+
+
+def _entities_of(timeline: Timeline) -> dict[Key, EntityId]:
+    equals: Counter[tuple[str, str, str, str]] = Counter()
+    entities: dict[Key, EntityId] = {}
     for entity in tuple(timeline.entities.values()):
         alike = _description(entity, timeline)
         equals[alike] += 1
-        waits = yield from _wait_figures(timeline.waits_of(entity.id, window), timeline, window)
-        figures = yield from statistics_incrementally(timeline, entity.id, window)
-        callbacks[*alike, equals[alike]] = CallbackInRun(figures, waits)
-    return callbacks
+        entities[*alike, equals[alike]] = entity.id
+    return entities
 
 
 def _description(entity: EntityInfo, timeline: Timeline) -> tuple[str, str, str, str]:
@@ -173,8 +214,7 @@ def _wait_figures(
 
 def _length_in(wait: Wait, timeline: Timeline, window: Window) -> Nanoseconds:
     """The length of a wait within the window."""
-    end = timeline.end if wait.end is None else wait.end
-    return max(0, min(end, window.end) - max(wait.start, window.start))
+    return max(0, min(wait.end_at(timeline.end), window.end) - max(wait.start, window.start))
 
 
 def _run_figures(timeline: Timeline, window: Window) -> Incremental[RunFigures]:

@@ -1,7 +1,7 @@
 """A comparison of two runs as rows of a table: both figures, the difference, and whether it is better."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 from typing import NamedTuple, TypeAlias, TypeVar
@@ -29,7 +29,7 @@ class Assessment(Enum):
 
 @dataclass(frozen=True, slots=True)
 class ComparisonRow:
-    """One figure of both runs, and the difference in wording: ``-392 fewer``."""
+    """One figure of both runs, and the difference in words: ``392 fewer``."""
 
     label: str
     figures: tuple[str, str]
@@ -96,6 +96,82 @@ def sections(comparison: Comparison) -> tuple[Section, ...]:
         *(_section(pair) for pair in comparison.callbacks),
         Section("whole program", tuple(_whole(comparison.first, comparison.second))),
     )
+
+
+def verdict(comparison: Comparison) -> str:
+    """Return which run is better and by what, in one sentence that also tells what speaks against it.
+
+    Errors weigh most, then losses, collisions, waits, lateness, and the age of data.
+    """
+    better: list[_Difference] = []
+    worse: list[_Difference] = []
+    for each in _differences(comparison):
+        (better if each.second < each.first else worse).append(each)
+    if not better and not worse:
+        return "Neither run is better: no callback fails, loses or waits more in one of them"
+    is_better = min(map(_weight, better), default=_NONE) <= min(map(_weight, worse), default=_NONE)
+    for_it, against = (better, worse) if is_better else (worse, better)
+    told = f"{RUNS[1]} is {'better' if is_better else 'worse'}: {_listed(for_it)}"
+    return told + (f"; but {_listed(against)}" if against else "")
+
+
+class _Difference(NamedTuple):
+    """A figure, of which less is better, that differs enough to speak for a run; ``rank`` 0 weighs most."""
+
+    rank: int
+    what: str
+    first: float
+    second: float
+    wording: _Wording
+
+    @property
+    def text(self) -> str:
+        """Both figures in words."""
+        first, second = self.wording.format(self.first), self.wording.format(self.second)
+        return f"{self.what} {second} instead of {first}"
+
+
+def _weight(difference: _Difference) -> tuple[float, float]:
+    return difference.rank, -abs(difference.second - difference.first)
+
+
+def _listed(differences: Sequence[_Difference]) -> str:
+    first, *others = sorted(differences, key=_weight)
+    more = f" and {len(others)} more" if others else ""
+    return f"{first.text}{more}"
+
+
+def _differences(comparison: Comparison) -> Iterator[_Difference]:
+    pairs = [(pair.name, pair.first, pair.second) for pair in comparison.callbacks]
+    for rank, (what, figure, wording, least) in enumerate(_DECIDING):
+        for name, first, second in pairs:
+            if first is not None and second is not None:
+                one, other = figure(first), figure(second)
+                if abs(other - one) >= least:
+                    yield _Difference(rank, f"{what} of {name}", one, other, wording)
+    one, other = comparison.first.collisions, comparison.second.collisions
+    if one != other:
+        yield _Difference(_RANK_OF_COLLISIONS, "collisions", one, other, _LOSSES)
+
+
+_NONE = (math.inf, 0.0)
+_RANK_OF_COLLISIONS = 1
+_NOTABLE = 10_000_000
+"""Nanoseconds by which a wait or an age must differ."""
+
+
+def _most(values: Distribution | None) -> float:
+    return 0.0 if values is None else values.most
+
+
+_DECIDING: tuple[tuple[str, Callable[[CallbackInRun], float], _Wording, float], ...] = (
+    ("errors", lambda side: side.figures.errors, _LOSSES, 1),
+    ("losses", lambda side: side.figures.drops, _LOSSES, 1),
+    ("longest wait", lambda side: side.longest_wait, _WAITS, _NOTABLE),
+    ("worst lateness", lambda side: _most(side.figures.late), _LATENESS, _NOTABLE),
+    ("oldest data", lambda side: _most(side.figures.age), _AGES, _NOTABLE),
+)
+"""Figures that decide a verdict, the most important first, and by how much they must differ."""
 
 
 def extent(comparison: Comparison) -> str:
@@ -177,10 +253,7 @@ _Result = TypeVar("_Result")
 def _format_both(
     write: Callable[[_Result], str], first: _Result | None, second: _Result | None
 ) -> tuple[str, str]:
-    return (
-        NOTHING if first is None else write(first),
-        NOTHING if second is None else write(second),
-    )
+    return (NOTHING if first is None else write(first), NOTHING if second is None else write(second))
 
 
 def _section(pair: CallbackPair) -> Section:
@@ -271,8 +344,8 @@ def _difference(first: float, second: float, wording: _Wording) -> tuple[str, As
     if wording.format(first) == wording.format(second):
         return "same", Assessment.SAME
     step = second - first
-    sign, word = ("+", wording.higher) if step > 0 else ("-", wording.lower)
+    word = wording.higher if step > 0 else wording.lower
     assessment = Assessment.OTHER
     if wording.more_is_worse:
         assessment = Assessment.WORSE if step > 0 else Assessment.BETTER
-    return f"{sign}{wording.format(abs(step))} {word}", assessment
+    return f"{wording.format(abs(step))} {word}", assessment

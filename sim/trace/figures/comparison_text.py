@@ -3,7 +3,15 @@
 from collections.abc import Iterator
 
 from sim.trace.figures.comparison import Comparison
-from sim.trace.figures.comparison_rows import DIFFERENCE, RUNS, ComparisonRow, Section, extent, sections
+from sim.trace.figures.comparison_rows import (
+    DIFFERENCE,
+    RUNS,
+    ComparisonRow,
+    Section,
+    extent,
+    sections,
+    verdict,
+)
 
 _GAP = "  "
 
@@ -18,7 +26,14 @@ def comparison_text(comparison: Comparison, first: str, second: str) -> str:
         max(len(row.figures[0]) for row in rows),
         max(len(row.figures[1]) for row in rows),
     )
-    lines = [f"{RUNS[0]}  {first}", f"{RUNS[1]}  {second}", extent(comparison), "", _line(head, widths)]
+    lines = [
+        f"{RUNS[0]}  {first}",
+        f"{RUNS[1]}  {second}",
+        extent(comparison),
+        f"{verdict(comparison)}.",
+        "",
+        _line(head, widths),
+    ]
     for section in shown:
         lines += ["", *_lines(section, widths)]
     return "".join(f"{line}\n" for line in lines)
@@ -41,3 +56,17 @@ def _line(row: ComparisonRow, widths: tuple[int, int, int]) -> str:
         row.difference,
     )
     return _GAP.join(cells).rstrip()
+
+
+def comparison_lines(comparison: Comparison, first: str, second: str) -> Iterator[str]:
+    """Yield the whole comparison as lines that can be listened to; ``first`` and ``second`` name the runs."""
+    yield from (f"{run}: {name}" for run, name in zip(RUNS, (first, second), strict=True))
+    yield f"{verdict(comparison)}."
+    yield extent(comparison)
+    for section in sections(comparison):
+        yield section.title
+        for row in section.rows:
+            label = row.label.replace(" med/max", ", median and longest")
+            one, other = (figure.replace(" / ", " and ") for figure in row.figures)
+            yield ", ".join(filter(None, (f"{label}: {RUNS[0]} {one}", f"{RUNS[1]} {other}", row.difference)))
+        yield from section.notes

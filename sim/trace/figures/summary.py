@@ -6,16 +6,11 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 
 from sim.trace.descriptions import why_waiting
-from sim.trace.events import EntityId, RobotMoved
+from sim.trace.events import EntityId, RobotMoved, VelocityCommanded
 from sim.trace.figures.concurrency import threads_at_once
-from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end, split
+from sim.trace.incremental import Incremental, collect, run_to_end, split
 from sim.trace.model import Call, EntityInfo, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
-
-TURNING = 0.02
-"""Rad/s from which on the robot counts as turning; slower is drift."""
-TURN = 0.5
-"""Radians in one direction from which on it counts as a turn."""
 
 _BETWEEN_POSES: Nanoseconds = 20_000_000
 """Approximate time between two poses of the robot."""
@@ -59,7 +54,7 @@ class ServiceFigures:
 
 @dataclass(frozen=True, slots=True)
 class RobotFigures:
-    """The robot's motion: turns and their total radians, metres travelled, and the last pose."""
+    """The robot's motion: commanded turns and their total radians, metres travelled, and the last pose."""
 
     turns: int
     turned: float
@@ -143,7 +138,7 @@ def _longest(waits: Iterable[Wait], timeline: Timeline) -> LongestWait | None:
     longest: LongestWait | None = None
     for _, each in groupby(waits, key=lambda wait: wait.since):
         series = list(each)
-        ends = [timeline.end if wait.end is None else wait.end for wait in series]
+        ends = [wait.end_at(timeline.end) for wait in series]
         length = max(ends) - series[0].start
         if length > (longest.length if longest else 0):
             shares: defaultdict[str, int] = defaultdict(int)
@@ -172,37 +167,32 @@ def robot_incrementally(timeline: Timeline, window: Window) -> Incremental[Robot
     last = timeline.robot(window.end - 1)
     if last is None or last.t < window.start:
         return None
-    timed = (step for step in pairwise(trail_in_parts(timeline, window)) if step[0].t < step[1].t)
-    steps = yield from collect((_direction(*step), step[1].turned - step[0].turned) for step in timed)
-    angles = yield from _angles(steps)
-    turns = [abs(angle) for angle in angles if abs(angle) > TURN]
-    return RobotFigures(len(turns), sum(turns), last.travelled, last.x, last.y, last.yaw)
+    commands = yield from collect(timeline.commands(window))
+    begun = [turn.start for turn in turns_among(commands, timeline.command(window.start), window)]
+    poses = [timeline.robot(at) for at in (*begun, window.end)]
+    turned = sum(abs(after.turned - before.turned) for before, after in pairwise(filter(None, poses)))
+    return RobotFigures(len(begun), turned, last.travelled, last.x, last.y, last.yaw)
 
 
-def _angles(steps: Iterable[tuple[int, float]]) -> Incremental[list[float]]:
-    """The signed angles of turns in one direction, in radians."""
-    found: list[float] = []
-    latest = 0
-    for number, (direction, angle) in enumerate(steps):
-        if direction and direction == latest:
-            found[-1] += angle
-        elif direction:
-            found.append(angle)
-        latest = direction
-        if number % STEP_SIZE == 0:
-            yield
-    return found
+def turns_among(
+    commands: Iterable[VelocityCommanded], before: VelocityCommanded | None, window: Window
+) -> Iterator[Window]:
+    """Yield each turn among a window's commands: from one to turn to the first one not to.
+
+    ``before`` is the command in force as the window begins.
+    """
+    start = window.start if before is not None and before.angular else None
+    for command in commands:
+        if start is None and command.angular:
+            start = command.t
+        elif start is not None and not command.angular:
+            yield Window(start, command.t)
+            start = None
+    if start is not None:
+        yield Window(start, window.end)
 
 
 def trail_in_parts(timeline: Timeline, window: Window) -> Iterator[RobotMoved]:
     """The robot's poses in a window, queried part by part."""
     for part in split(window, window.length // _BETWEEN_POSES):
         yield from timeline.trail(part)
-
-
-def _direction(before: RobotMoved, after: RobotMoved) -> int:
-    """1 for turning left, -1 for turning right, 0 for neither."""
-    angle = after.turned - before.turned
-    if abs(angle) < TURNING * (after.t - before.t) / 1e9:
-        return 0
-    return 1 if angle > 0 else -1

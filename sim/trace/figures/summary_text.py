@@ -4,6 +4,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from sim.durations import duration
+from sim.plural import counted
 from sim.trace.figures.summary import CallbackFigures, RobotFigures, ServiceFigures, Summary
 
 HEADS = ("callback", "group", "calls", "running", "late by", "drops", "errors")
@@ -79,16 +80,16 @@ def service_line(figures: ServiceFigures) -> str:
     """The calls of a service as text: ``/motor_power  2 calls, answered after 5.0 s``."""
     trips = figures.round_trips
     if not trips:
-        return f"{figures.service}  {_counted(figures.calls, 'call')}, no reply"
+        return f"{figures.service}  {counted(figures.calls, 'call')}, no reply"
     shortest, longest = duration(min(trips)), duration(max(trips))
     span = shortest if shortest == longest else f"{shortest} to {longest}"
     answered = "answered" if len(trips) == figures.calls else f"{len(trips)} answered"
-    return f"{figures.service}  {_counted(figures.calls, 'call')}, {answered} after {span}"
+    return f"{figures.service}  {counted(figures.calls, 'call')}, {answered} after {span}"
 
 
 def robot_line(figures: RobotFigures) -> str:
     """The robot's motion as text: ``2 turns (3.1 rad), 0.85 m travelled, at x 0.85 y 0.00 heading 0°``."""
-    turns = _counted(figures.turns, "turn") + (f" ({figures.turned:.1f} rad)" if figures.turns else "")
+    turns = counted(figures.turns, "turn") + (f" ({figures.turned:.1f} rad)" if figures.turns else "")
     x, y, heading = _rounded(figures.x, 2), _rounded(figures.y, 2), _rounded(math.degrees(figures.yaw), 0)
     pose = f"at x {x:.2f} y {y:.2f} heading {heading:.0f}°"
     return f"{turns}, {figures.travelled:.2f} m travelled, {pose}"
@@ -97,7 +98,3 @@ def robot_line(figures: RobotFigures) -> str:
 def _rounded(value: float, places: int) -> float:
     """Rounded, without negative zero."""
     return round(value, places) + 0.0
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}" + ("" if count == 1 else "s")

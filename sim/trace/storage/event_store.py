@@ -1,16 +1,16 @@
 """Keeps the events of a live run in a temporary file, for exports."""
 
 from collections.abc import Iterator, Sequence
+from functools import cached_property
 from io import FileIO
-from tempfile import TemporaryFile
 from threading import Lock
 from typing import cast
-from weakref import finalize
 
 from lz4 import frame
 
 from sim.trace.events import AnyEvent, MessageSent, decode, encode
 from sim.trace.model import Nanoseconds
+from sim.trace.storage.spill_file import temporary_file
 
 SIZE_LIMIT = 512_000_000
 """Default limit of the file in bytes: millions of events take a tenth of it."""
@@ -31,7 +31,6 @@ class EventStore:
     def __init__(self, size_limit: int = SIZE_LIMIT) -> None:
         self._size_limit = size_limit
         self._lock = Lock()
-        self._file: FileIO | None = None
         self.size = 0
         """Bytes in the file."""
         self._waiting = bytearray()
@@ -74,12 +73,11 @@ class EventStore:
         """Write the waiting batches as a block; False if the store is full."""
         block = frame.compress(bytes(self._waiting))
         try:
-            file = self._opened()
-            file.seek(self.size)
+            self._file.seek(self.size)
             data = len(block).to_bytes(_LENGTH) + block
             if self.size + len(data) > self._size_limit:
                 self._full_because = f"no more than {self._size_limit // 1_000_000} MB of a run are kept"
-            elif file.write(data) != len(data):
+            elif self._file.write(data) != len(data):
                 self._full_because = "the folder for temporary files is full"
         except OSError as error:
             self._full_because = f"the temporary file cannot be written: {error.strerror}"
@@ -92,18 +90,14 @@ class EventStore:
     def _block(self, place: int) -> tuple[bytes, int]:
         """The block at an offset, and the offset of the next one."""
         with self._lock:
-            file = self._opened()
-            file.seek(place)
-            length = int.from_bytes(file.read(_LENGTH))
-            packed = file.read(length)
+            self._file.seek(place)
+            length = int.from_bytes(self._file.read(_LENGTH))
+            packed = self._file.read(length)
         return cast("bytes", frame.decompress(packed)), place + _LENGTH + length
 
-    def _opened(self) -> FileIO:
-        if self._file is None:
-            file = TemporaryFile(buffering=0, prefix="cbtui-")  # noqa: SIM115  # closed with the owner
-            self._file = file
-            finalize(self, file.close)
-        return self._file
+    @cached_property
+    def _file(self) -> FileIO:
+        return temporary_file(self)
 
 
 def _unpacked(block: bytes) -> Iterator[list[AnyEvent]]:

@@ -4,6 +4,7 @@ import errno
 import os
 from collections import OrderedDict
 from collections.abc import Callable
+from functools import cached_property
 from io import FileIO
 from tempfile import TemporaryFile
 from typing import Any, TypeVar, cast
@@ -28,7 +29,6 @@ class SpillFile:
 
     def __init__(self, cache_size: int = CACHE_SIZE, entries: int = ENTRIES_IN_BLOCK) -> None:
         self.entries = entries
-        self._file: FileIO | None = None
         self.failure = ""
         """Why the file cannot be written; empty while it can."""
         self._length = 0
@@ -81,25 +81,27 @@ class SpillFile:
     def _bytes_at(self, place: int, length: int) -> bytes:
         if place in self._in_memory:
             return self._in_memory[place]
-        file = self._opened()
-        file.seek(place)
-        return cast("bytes", file.read(length))
+        self._file.seek(place)
+        return cast("bytes", self._file.read(length))
 
     def _write(self, place: int, data: bytes) -> bool:
         if self.failure:
             return False
         try:
-            file = self._opened()
-            file.seek(place)
-            if file.write(data) != len(data):
+            self._file.seek(place)
+            if self._file.write(data) != len(data):
                 self.failure = os.strerror(errno.ENOSPC)
         except OSError as error:
             self.failure = error.strerror or str(error)
         return not self.failure
 
-    def _opened(self) -> FileIO:
-        if self._file is None:
-            file = TemporaryFile(buffering=0, prefix="cbtui-")  # noqa: SIM115  # closed with the owner
-            self._file = file
-            finalize(self, self._file.close)
-        return self._file
+    @cached_property
+    def _file(self) -> FileIO:
+        return temporary_file(self)
+
+
+def temporary_file(owner: object) -> FileIO:
+    """A new temporary file without a name, which is closed with its owner."""
+    file = TemporaryFile(buffering=0, prefix="cbtui-")  # noqa: SIM115
+    finalize(owner, file.close)
+    return file

@@ -115,6 +115,11 @@ class Table:
         block = self._blocks[number]
         return number * self._rows_in_block + bisect_left(self._firsts(block), key, key=block.__getitem__)
 
+    def find(self, key: int) -> int | None:
+        """The last row that begins with ``key``; None if no row does."""
+        place = self.until(key) - 1
+        return place if place >= 0 and self.cell(place, 0) == key else None
+
     def newest(self, column: int, count: int) -> "array[int]":
         """The cells of a column in the last ``count`` rows, at most those of one block."""
         count = min(count, self._rows_in_block) * self._width

@@ -23,7 +23,14 @@ PIP = "pip install {}, into the Python that runs cbtui"
         ("rospy", "rospy is a package of ROS 1; in ROS 2, rclpy takes its place"),
         ("actionlib", "actionlib is a package of ROS 1; in ROS 2, rclpy.action has ActionClient"),
         ("xacro", "xacro belongs to a ROS 2 machine and is not modelled here; "),
-        ("tf2_ros.buffer", "tf2_ros belongs to a ROS 2 machine and is not modelled here; "),
+        ("PyKDL", "PyKDL belongs to a ROS 2 machine and is not modelled here; tf2_geometry_msgs transforms"),
+        ("tf", "tf is a package of ROS 1; in ROS 2, tf2_ros takes its place"),
+        (
+            "moveit_py",
+            "moveit_py belongs to a ROS 2 machine and is not modelled here; planning needs MoveIt's",
+        ),
+        ("ros2topic.api", "ros2topic belongs to a ROS 2 machine and is not modelled here; the lines of ros2"),
+        ("tf2_roos", "did you mean 'tf2_ros'?"),
         (
             "moveit_msgs",
             "moveit_msgs is a package of interfaces that is not here; copy its definitions into ",

@@ -121,6 +121,7 @@ def test_a_run_that_is_stopped_shows_its_programs_ending_to_the_last_line(tmp_pa
     check_what_is_left(tmp_path, run)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", first_daily(SIGINT, SIGTERM))
 def test_a_run_in_the_terminal_that_is_ended_shows_it_too(tmp_path: Path, number: int) -> None:
     path = tmp_path / "node.py"
@@ -286,3 +287,51 @@ def test_a_program_that_handles_ctrl_c_itself_publishes_a_last_message(tmp_path:
     source = LAST_MESSAGE.format(options="signal_handler_options=SignalHandlerOptions.NO")
     run = run_program(tmp_path, source, seconds=1.0, clock=clock)
     assert printed(run) == ["ok True", "published"]
+
+
+CTRL_C_OF_ITS_OWN = """
+import os, signal, time
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.signals import SignalHandlerOptions
+
+def work():
+    timer.cancel()
+    time.sleep(1)
+    print("worker done")
+
+def press():
+    os.kill(os.getpid(), signal.SIGINT)
+
+rclpy.init(OPTIONS)
+node = rclpy.create_node("busy")
+timer = node.create_timer(0.5, work, callback_group=MutuallyExclusiveCallbackGroup())
+node.create_timer(1.0, press)
+executor = MultiThreadedExecutor(2)
+executor.add_node(node)
+try:
+    executor.spin()
+except KeyboardInterrupt:
+    print("context", "lives" if rclpy.ok() else "ended")
+"""
+
+
+LEFT_ALONE = "signal_handler_options=SignalHandlerOptions.NO"
+
+
+@pytest.mark.parametrize(
+    ("options", "context"), first_row_daily(("", "context ended"), (LEFT_ALONE, "context lives"))
+)
+def test_ctrl_c_that_a_program_sends_itself_ends_its_context_and_no_callback_of_a_worker(
+    tmp_path: Path, options: str, context: str
+) -> None:
+    run = run_program(tmp_path, CTRL_C_OF_ITS_OWN.replace("OPTIONS", options))
+    assert printed(run) == [context, "worker done"]
+    assert run.ending.t == 1_500_000_000
+
+
+def test_a_worker_that_is_busy_does_not_delay_the_end_of_a_run_whose_time_is_up(tmp_path: Path) -> None:
+    run = run_program(tmp_path, CTRL_C_OF_ITS_OWN.replace("OPTIONS", ""), seconds=0.75)
+    assert run.ending.t == 750_000_000
+    assert "worker done" not in printed(run)

@@ -71,9 +71,9 @@ def test_a_module_that_nobody_has_stays_unknown(tmp_path: Path) -> None:
 
 
 def test_a_python_package_of_ros_that_is_not_here_is_named_as_such(tmp_path: Path) -> None:
-    run = run_in_workspace(tmp_path, {"a.py": "from tf2_ros import Buffer\n"}, "a.py")
+    run = run_in_workspace(tmp_path, {"a.py": "import nav2_simple_commander.robot_navigator\n"}, "a.py")
     assert "a.py:1" in run.ending.reason
-    assert "tf2_ros belongs to a ROS 2 machine and is not modelled here" in run.ending.reason
+    assert "nav2_simple_commander belongs to a ROS 2 machine and is not modelled here" in run.ending.reason
 
 
 ASYNCIO = """

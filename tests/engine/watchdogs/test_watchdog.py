@@ -16,7 +16,7 @@ def test_a_thread_that_never_comes_to_a_wait_is_named_with_its_line(monkeypatch:
     told: Queue[AnyEvent] = Queue()
     given_up: Queue[str] = Queue()
     outside = threading.Event()
-    Watchdog(VirtualClock(), told.put, given_up.put, lambda _: None).start()
+    Watchdog(VirtualClock(), told.put, lambda _: 0, given_up.put, lambda _: None).start()
     for queue in (told, given_up):
         while queue.empty():
             outside.wait(0.01)
@@ -32,6 +32,6 @@ def test_a_run_that_rests_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None
     told: Queue[AnyEvent] = Queue()
     clock = VirtualClock()
     clock.time._inbox.rests = True
-    Watchdog(clock, told.put, lambda _: None, lambda _: None).start()
+    Watchdog(clock, told.put, lambda _: 0, lambda _: None, lambda _: None).start()
     threading.Event().wait(0.2)
     assert told.empty()

@@ -153,7 +153,7 @@ def test_a_timer_tells_when_its_call_was_due_to_whom_wants_to_know() -> None:
         rclpy.spin_once(node, timeout_sec=1.0)
         assert not told
 
-    simulate(program)
+    simulate(program, distro="kilted")
 
 
 @pytest.mark.parametrize(

@@ -209,13 +209,13 @@ def tock() -> None:
     """Tick on another clock."""
 
 
-def test_a_tick_due_at_the_very_time_of_a_jump_is_not_missed() -> None:
+def test_a_tick_due_at_the_very_time_of_a_late_call_is_missed() -> None:
     def build(_: Simulation, node: Node) -> None:
         node.create_timer(0.125, tick)
 
     trace = spun(build, until=2.2)
-    # Every message moves time by two periods: the tick that is late comes, and so does the one that is not.
-    assert trace.times("tick") == [0.5, 0.5, 1.0, 1.0, 1.5, 1.5, 2.0, 2.0]
+    # Every message moves time by two periods.
+    assert trace.times("tick") == [0.5, 1.0, 1.5, 2.0]
 
 
 def test_a_timer_tells_ros_time() -> None:
@@ -245,7 +245,7 @@ def test_a_timer_tells_ros_time() -> None:
         clock.set_ros_time_override(ros_time(30))
         assert not timer.is_ready()
 
-    simulate(program)
+    simulate(program, distro="kilted")
     (info,) = told
     assert (info.expected_call_time, info.actual_call_time) == (ros_time(12), ros_time(15))
 

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import sim.ros.rclpy as rclpy
-from sim.ros.entities.timer import next_due
+from sim.ros.clocks.ros_time_schedule import next_due
 from sim.ros.exceptions import RCLError, ROSInterruptException
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup

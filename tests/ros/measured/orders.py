@@ -220,4 +220,93 @@ spin(SingleThreadedExecutor(), 1.2)
 """,
         "begins, ends, heard, guard, guard",
     ),
+    Order(
+        "what is logged is text, bytes or None",
+        """
+for each in (5, [1], b"bytes", None):
+    try:
+        say(f"{node.get_logger().info(each)}")
+    except TypeError:
+        say("TypeError")
+finish()
+""",
+        "TypeError, TypeError, True, True",
+    ),
+    Order(
+        "that a timer's callback cannot be called is found when it is due",
+        """
+timers = [node.create_timer(period, callback) for period, callback in ((0.3, None), (0.5, "text"))]
+executor = SingleThreadedExecutor()
+executor.add_node(node)
+for timer in timers:
+    try:
+        while True:
+            executor.spin_once()
+    except TypeError as error:
+        say(f"{error}")
+        timer.cancel()
+finish()
+""",
+        "'NoneType' object is not callable, 'str' object is not callable",
+    ),
+    Order(
+        "an event names the policy that did not match as C does",
+        """
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
+events = []
+callbacks = SubscriptionEventCallbacks(incompatible_qos=events.append)
+node.create_subscription(Int32, "t", say, 10, event_callbacks=callbacks)
+node.create_publisher(Int32, "t", QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
+while not events:
+    rclpy.spin_once(node)
+kind = events[0].last_policy_kind
+say(f"{kind} {kind!r} {kind == QoSPolicyKind.RELIABILITY} {int(kind)}")
+finish()
+""",
+        "rmw_qos_policy_kind_t.RMW_QOS_POLICY_RELIABILITY "
+        "<rmw_qos_policy_kind_t.RMW_QOS_POLICY_RELIABILITY: 16> True 16",
+    ),
+    Order(
+        "bytes that hold no message are sent, and reach who takes them raw",
+        """
+executor = SingleThreadedExecutor()
+executor.add_node(node)
+node.create_subscription(Int32, "t", lambda message: say(f"{message.data}"), 10)
+node.create_subscription(Int32, "t", lambda data: say(f"{len(data)} bytes"), 10, raw=True)
+publisher = node.create_publisher(Int32, "t", 10)
+time.sleep(0.5)
+for data in (b"junk", b"\\0\\1\\0\\0\\7\\0\\0\\0"):
+    say(f"{publisher.publish(data)}")
+    for _ in range(3):
+        executor.spin_once(timeout_sec=0.3)
+finish()
+""",
+        "None, 4 bytes, None, 7, 8 bytes",
+    ),
+    Order(
+        "a jump of ROS time onto a multiple of a timer's period calls it once",
+        """
+from rclpy.parameter import Parameter
+from rosgraph_msgs.msg import Clock
+sim = rclpy.create_node("sim", parameter_overrides=[Parameter("use_sim_time", value=True)])
+publisher = node.create_publisher(Clock, "/clock", 10)
+executor = SingleThreadedExecutor()
+executor.add_node(sim)
+def to(seconds):
+    clock = Clock()
+    clock.clock.sec = seconds
+    publisher.publish(clock)
+    end = time.monotonic() + 0.3
+    while time.monotonic() < end:
+        executor.spin_once(timeout_sec=0.05)
+time.sleep(0.5)
+to(1)
+timer = sim.create_timer(1.0, lambda: say(f"{sim.get_clock().now().nanoseconds // 10**9}"))
+for seconds in (6, 7, 9):
+    to(seconds)
+finish()
+""",
+        "6, 7, 9",
+    ),
 )

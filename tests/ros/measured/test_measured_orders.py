@@ -6,11 +6,13 @@ import sys
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from sim.trace.events import Printed
 from tests.real.programs import needs_ros
 from tests.ros.measured.orders import ORDERS, Order
-from tests.support.engine_runs import run_program
+from tests.support.daily import first_slow
+from tests.support.engine_runs import Run, program_setup, run_program, run_to_end
 
 each_order = pytest.mark.parametrize("order", ORDERS, ids=lambda order: order.what)
 
@@ -18,7 +20,20 @@ each_order = pytest.mark.parametrize("order", ORDERS, ids=lambda order: order.wh
 @each_order
 def test_the_model_keeps_the_measured_order(order: Order, tmp_path: Path) -> None:
     run = run_program(tmp_path, order.source)
-    assert [event.text for event in run.events if isinstance(event, Printed)] == order.lines.split(", ")
+    assert _printed(run) == order.lines
+
+
+@pytest.mark.parametrize(
+    "order", first_slow(*(order for order in ORDERS if order.also)), ids=lambda order: order.what
+)
+def test_explore_comes_upon_the_other_order_that_real_rclpy_was_seen_to_take(
+    order: Order, tmp_path: Path
+) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(order.source)
+    setup = program_setup(path, 5.0)
+    runs = (run_to_end(replace(setup, seed=f"pos:{number}")) for number in range(1, 100))
+    assert any(_printed(run) == order.also for run in runs)
 
 
 @needs_ros
@@ -38,3 +53,7 @@ def test_real_rclpy_keeps_the_measured_order(order: Order, tmp_path: Path) -> No
         env={**os.environ, **alone},
     )
     assert ", ".join(done.stdout.splitlines()) in {order.lines, order.also}
+
+
+def _printed(run: Run) -> str:
+    return ", ".join(event.text for event in run.events if isinstance(event, Printed))

@@ -3,7 +3,7 @@
 from collections import Counter, deque
 from collections.abc import Iterator
 
-from sim.ros.entities.timer import next_due
+from sim.ros.clocks.ros_time_schedule import next_due
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,

@@ -43,7 +43,7 @@ class Trouble:
 
 def play_seeded(system: System, seed: int) -> Trace:
     """Run a system in the order of threads that a seed chooses."""
-    return play(system, schedule_of(seed))
+    return play(system, schedule_of(seed and f"pct:{seed}"))
 
 
 def first_trouble(seeds: range, played: Play = play_seeded) -> Trouble | None:

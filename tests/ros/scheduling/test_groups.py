@@ -14,7 +14,7 @@ from sim.ros.scheduling.callback_groups import (
 )
 from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.trace.events import GroupAppeared, GroupKind
+from sim.trace.events import GroupAppeared, GroupKind, Reason, WaitEnded, WaitStarted
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")
@@ -150,17 +150,27 @@ def test_a_refused_handler_takes_nothing_and_its_entity_is_yielded_again(
     assert heard == [7]
 
 
-def test_a_group_shared_by_nodes_of_two_executors_excludes_across_them_and_wakes_the_other() -> None:
+def test_a_group_shared_by_two_executors_excludes_across_them_and_its_release_wakes_only_one() -> None:
     def program(simulation: Simulation) -> None:
         group = MutuallyExclusiveCallbackGroup()
-        for name in ("first", "second"):
-            node = Node(name)
-            node.create_timer(1.0, lambda: simulation.sleep(1.5), group).timer_period_ns = 10**12
+        first, second = Node("first"), Node("second")
+        publisher = first.create_publisher(Int32, "t", 10)
+        first.create_timer(1.0, lambda: simulation.sleep(1.0), group).timer_period_ns = 10**12
+        second.create_subscription(Int32, "t", lambda _: None, 10, callback_group=group)
+        second.create_timer(4.0, lambda: None).timer_period_ns = 10**12
+        simulation.at(1.5, lambda: publisher.publish(Int32()))
+        for node in (first, second):
             executor = SingleThreadedExecutor()
             executor.add_node(node)
-            simulation.start(executor.spin, name)
+            simulation.start(executor.spin, node.get_name())
         simulation.sleep(10.0)
         rclpy.shutdown()
 
     trace = simulate(program)
-    assert [(each.at, each.thread) for each in trace.calls()] == [(1.0, "first"), (2.5, "second")]
+    assert [(each.at, each.thread) for each in trace.calls()] == [
+        (1.0, "first"),
+        (4.0, "second"),
+        (4.0, "second"),
+    ]
+    assert [(each.t / 1e9, each.reason) for each in trace.of(WaitStarted)] == [(1.5, Reason.GROUP_HELD)]
+    assert [each.t / 1e9 for each in trace.of(WaitEnded)] == [2.0]

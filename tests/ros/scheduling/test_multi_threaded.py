@@ -170,6 +170,68 @@ def test_in_a_multi_threaded_executor_an_exception_comes_out_with_a_later_callba
     assert 5.0 in [end.t / 1e9 for end in trace.events if type(end).__name__ == "CallbackEnded"]
 
 
+def test_an_exception_comes_out_before_the_callback_begins_with_which_it_comes() -> None:
+    order: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        guard = node.create_guard_condition(lambda: order.append("begins"), ReentrantCallbackGroup())
+
+        def trigger_and_fail() -> None:
+            simulation.sleep(0.1)
+            guard.trigger()
+            fail()
+
+        for group in (MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()):
+            node.create_timer(0.5, lambda: simulation.sleep(0.1), group).timer_period_ns = 10**12
+        node.create_timer(1.0, trigger_and_fail).timer_period_ns = 10**12
+        node.create_timer(1.05, lambda: order.append("timer of the same group")).timer_period_ns = 10**12
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        with pytest.raises(ValueError, match="no scan"):
+            executor.spin()
+        order.append("raised")
+        executor.spin()
+
+    simulate(program, until=3.0)
+    assert order == ["raised", "begins", "timer of the same group"]
+
+
+@pytest.mark.parametrize("threads", [2, 4])
+def test_an_exception_comes_out_after_the_callback_begins_that_a_worker_is_started_for(threads: int) -> None:
+    order: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        publishers = []
+
+        def hear(name: str) -> None:
+            order.append(name)
+            if name == "a":
+                raise ValueError("no scan")
+
+        for name in "abc":
+            group = MutuallyExclusiveCallbackGroup()
+            node.create_subscription(Int32, name, lambda _, name=name: hear(name), 10, callback_group=group)
+            publishers.append(node.create_publisher(Int32, name, 10))
+
+        def send() -> None:
+            timer.cancel()
+            for publisher in publishers:
+                publisher.publish(Int32())
+
+        timer = node.create_timer(1.0, send, MutuallyExclusiveCallbackGroup())
+        executor = MultiThreadedExecutor(threads)
+        executor.add_node(node)
+        with pytest.raises(ValueError, match="no scan"):
+            executor.spin()
+        order.append("raised")
+        executor.spin()
+
+    simulate(program, until=3.0)
+    assert order == ["a", "b", "raised", "c"]
+
+
 def test_an_exception_of_a_worker_that_has_just_been_started_comes_out_at_once() -> None:
     def program(simulation: Simulation) -> None:
         node = Node("n")

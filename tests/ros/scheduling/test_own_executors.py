@@ -108,7 +108,7 @@ def test_a_coroutines_handler_is_yielded_again_until_it_is_done_and_then_frees_i
         assert got == [3]
         assert group.can_execute(timer)
 
-    trace = simulate(program)
+    trace = simulate(program, distro="lyrical")
     kinds = (CallbackStarted, CallbackSuspended, CallbackResumed, CallbackEnded)
     assert [type(each) for each in trace.events if isinstance(each, kinds)] == list(kinds)
 
@@ -207,7 +207,7 @@ def test_a_suspended_callback_of_a_node_out_of_view_goes_on_once_it_is_in_view()
         executor.spin_once(timeout_sec=0)
         assert ended == ["one"]
 
-    simulate(program)
+    simulate(program, distro="lyrical")
 
 
 def test_a_node_that_was_not_added_cannot_be_chosen() -> None:

@@ -37,7 +37,7 @@ class LateClock(PacedClock):
 
 def test_a_worker_that_comes_free_takes_over_what_another_one_is_late_for() -> None:
     clock = LateClock()
-    simulation = Simulation(clock)
+    simulation = Simulation(clock, "jazzy@7.1.12")
     with no_thread_left(), installed(simulation.host):
         node = Node("n")
         ticks: list[str] = []
@@ -59,7 +59,7 @@ def test_a_worker_that_comes_free_takes_over_what_another_one_is_late_for() -> N
 
 
 def test_what_a_callback_sends_and_waits_for_is_heard_by_an_idle_worker() -> None:
-    simulation = Simulation(PacedClock())
+    simulation = Simulation(PacedClock(), "jazzy@7.1.12")
     with no_thread_left(), installed(simulation.host):
         node = Node("n")
         publisher = node.create_publisher(Int32, "t", 10)

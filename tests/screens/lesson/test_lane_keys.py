@@ -108,6 +108,7 @@ async def test_enter_on_a_selected_bar_goes_to_its_code() -> None:
         assert code.scroll_offset.y <= line - 1 < code.scroll_offset.y + code.size.height
 
 
+@pytest.mark.slow
 async def test_a_click_on_a_lane_moves_the_cursor_there_and_selects_the_bar() -> None:
     async with console() as (app, pilot):
         await click(pilot, 13 + 5, 0)

@@ -8,10 +8,11 @@ from textual.widget import Widget
 from cbtui.keys.action import Scope
 from cbtui.keys.actions import ACTIONS
 from cbtui.runs.live.live_run import RunState
-from cbtui.screens.help import HelpScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
-from cbtui.screens.threads import ThreadsScreen
+from cbtui.screens.parts.frames import FrameContent, FrameLoop
+from cbtui.screens.windows.help import HelpScreen
+from cbtui.screens.windows.threads import ThreadsScreen
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.factory import FactoryView
 from cbtui.widgets.guide import Guide
@@ -112,7 +113,7 @@ async def test_space_goes_on_after_a_pause() -> None:
 async def test_speed_is_shown_and_ends_where_it_cannot_be_changed_further() -> None:
     async with console() as (app, pilot):
         await press(pilot, *["plus"] * 7)
-        assert "virtual max" in status(app)
+        assert "● LIVE  max " in status(app)
         assert len(app.engines.latest.commands) == 5
 
 
@@ -187,6 +188,7 @@ async def test_thinking_better_of_the_threads_leaves_the_run_alone() -> None:
             assert len(app.engines.sessions) == 1
 
 
+@pytest.mark.slow
 async def test_n_opens_the_next_lesson_and_ends_this_run() -> None:
     async with console() as (app, pilot):
         predict(app, lessons()[2].id)
@@ -219,17 +221,49 @@ async def test_leaving_the_console_ends_the_run() -> None:
     assert app.engines.latest.stopped
 
 
-async def test_the_help_lists_every_key_and_closes_again() -> None:
-    async with console(size=(140, 160)) as (app, pilot):
+@pytest.mark.slow
+async def test_the_help_lists_every_key() -> None:
+    async with console(size=(140, 240)) as (app, pilot):
+        await press(pilot, "question_mark")
+        text = text_of(app)
+        missing = {
+            action.line
+            for action in ACTIONS
+            if action.scope in SHOWN and action.label and action.line not in text
+        }
+        assert not missing
+
+
+@pytest.mark.slow
+async def test_the_help_closes_again() -> None:
+    async with console() as (app, pilot):
         for key in ("question_mark", "escape", "q"):
             await press(pilot, "question_mark")
             assert on_top(app) is HelpScreen
-            text = text_of(app)
-            missing = {action.line for action in ACTIONS if action.scope in SHOWN and action.line not in text}
-            assert not missing
             await press(pilot, key)
             assert isinstance(app.screen, LessonScreen)
         assert not app.engines.latest.stopped
+
+
+@pytest.mark.slow
+async def test_the_help_begins_with_the_signs_and_finds_words() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "question_mark")
+        assert "another one holds its group" in text_of(app)
+        await press(pilot, "slash", *"record")
+        assert "Start or stop recording the run" in text_of(app)
+        assert "another one holds its group" not in text_of(app)
+        await press(pilot, "escape")
+        assert isinstance(app.screen, LessonScreen)
+
+
+async def test_a_key_that_does_nothing_here_says_why() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "e", "e", "C")
+        told = [note.message for note in app._notifications]
+        assert told[0] == "One shared group has no exercise: it is done once it is explained."
+        assert told[1].startswith("There is only one run so far"), "a repeated sentence is shown once"
+        assert "e exercise" not in text_of(app)
 
 
 async def test_a_narrow_screen_shows_the_pane_of_a_number() -> None:
@@ -271,6 +305,7 @@ async def test_a_wide_screen_shows_every_pane_but_the_shell_which_takes_the_plac
         assert (log.display, shell.display) == (True, False)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_z_gives_the_screen_to_one_pane_and_back(size: tuple[int, int]) -> None:
     async with console(size) as (app, pilot):
@@ -290,7 +325,7 @@ async def test_brackets_look_back_in_time_on_every_pane_at_once() -> None:
         assert "t 3.150 s" in status(app)
         assert "SLEEPING" not in text_of(app)
         assert "waits" not in diagnosis(app)
-        assert "at 4.0 s: timer_callback slept" in diagnosis(app)
+        assert "group starvation at 4.0 s: odom_callback" in diagnosis(app)
         await press(pilot, "right_square_bracket")
         assert "t 4.150 s" in status(app)
         await press(pilot, "0")
@@ -332,12 +367,12 @@ async def test_keys_that_mean_nothing_now_are_not_offered() -> None:
 async def test_nothing_is_drawn_while_nothing_happens(monkeypatch: pytest.MonkeyPatch) -> None:
     async with console() as (app, pilot):
         await press(pilot, "space")
-        drawn: list[LessonScreen] = []
+        drawn: list[FrameContent] = []
 
-        def draw(screen: LessonScreen) -> None:
-            drawn.append(screen)
+        def draw(_: FrameLoop, content: FrameContent) -> None:
+            drawn.append(content)
 
-        monkeypatch.setattr(LessonScreen, "draw", draw)
+        monkeypatch.setattr(FrameLoop, "draw", draw)
         await pilot.pause(0.2)
         assert drawn == []
         app.engines.latest.play(ns(14.0))

@@ -19,10 +19,10 @@ from cbtui.app import CbtuiApp
 from cbtui.keys.keymap import Keymap
 from cbtui.runs.live.live_export import ExportableRun, LiveExport
 from cbtui.runs.live.live_run import LiveRun
-from cbtui.screens.export import CHOICES, ExportScreen
 from cbtui.screens.parts import exporting
 from cbtui.screens.replay import ReplayScreen
-from sim.export import CallTable
+from cbtui.screens.windows.export import CHOICES, ExportScreen
+from sim.export.csv import CallTable
 from sim.recording import RecordingMetadata, read
 from sim.trace.events import AnyEvent
 from sim.trace.storage.event_store import EventStore
@@ -102,6 +102,7 @@ async def test_its_key_and_those_of_the_window_can_be_chosen(folder: Path) -> No
     assert [path.suffix for path in folder.iterdir()] == [".csv"]
 
 
+@pytest.mark.slow
 async def test_a_trace_of_a_live_run_has_its_beginning(folder: Path) -> None:
     async with console() as (app, pilot):
         path = await exported(app, pilot, "u")
@@ -286,7 +287,7 @@ async def test_one_that_is_not_is_given_up_and_leaves_no_file(
         await press(pilot, "ctrl+q")
     assert list(folder.iterdir()) == []
     (sentence,) = app.saved
-    assert sentence.startswith("The export was given up before shared-group-")
+    assert sentence.startswith("The export was cancelled, and shared-group-")
 
 
 @pytest.mark.slow

@@ -66,6 +66,7 @@ def timeline_of(recording: Recording) -> Timeline:
     return timeline
 
 
+@pytest.mark.slow
 async def test_a_stretch_is_recorded_with_all_that_was_there_when_it_began(folder: Path) -> None:
     async with console() as (app, pilot):
         await press(pilot, "R")
@@ -182,6 +183,7 @@ def test_what_was_saved_is_said_once_more_when_the_console_is_gone(
     assert capsys.readouterr().err == "Recorded 41,204 events in run.mcap\n"
 
 
+@pytest.mark.slow
 async def test_the_end_of_the_run_ends_the_recording_and_says_so(folder: Path) -> None:
     async with console() as (app, pilot):
         await press(pilot, "R")

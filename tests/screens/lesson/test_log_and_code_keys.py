@@ -4,6 +4,7 @@ import asyncio
 import sys
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
 from cbtui.keys.action import PANES
+from cbtui.runs.setup.shown_program import of_file
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.lanes import Lanes
@@ -74,6 +76,7 @@ async def test_the_frame_of_the_log_says_what_is_shown() -> None:
         assert "5 Log 1 of 186 lines · follows" in text_of(app)
 
 
+@pytest.mark.slow
 async def test_a_line_that_is_picked_moves_the_cursor_of_every_pane() -> None:
     async with console(WIDE) as (app, pilot):
         await press(pilot, "slash", *"SLEEPING==3", "enter", "up", "enter")
@@ -91,7 +94,7 @@ async def test_the_keys_of_the_log_are_offered_on_the_log_and_when_they_mean_som
         assert "/ filter  f stay  ↑ ↓ line  y copy" in lines_of(app)[-1]
         assert "go there" not in lines_of(app)[-1]
         await press(pilot, "up")
-        assert "f follow  ↑ ↓ line  ⏎ go there  y copy  esc let go" in lines_of(app)[-1]
+        assert "f follow  ↑ ↓ line  ⏎ go there  y copy  esc clear" in lines_of(app)[-1]
         await press(pilot, "escape", "f")
         assert "f stay  ↑ ↓ line  y copy" in lines_of(app)[-1]
 
@@ -193,7 +196,8 @@ async def test_a_file_that_changed_on_disk_is_run_again_as_it_is_now(tmp_path: P
     path = tmp_path / "node.py"
     path.write_text("first = 1\n")
     engines = FakeEngines(EVENTS, ns(5.0))
-    app = CbtuiApp(start_file=(path, [], "real"), open_session=engines)
+    lesson_of_a_teacher = replace(of_file(path, [], "real"), is_own_file=False)
+    app = CbtuiApp(start_program=lesson_of_a_teacher, open_session=engines)
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
         path.write_text("second = 2\n")

@@ -1,11 +1,15 @@
 """A learner's own file on the lesson screen."""
 
+import asyncio
 from pathlib import Path
 
 from cbtui.app import CbtuiApp
+from cbtui.screens.parts.own_file import FileRead
 from sim.engine.commands import CallService, Pause
 from sim.engine.setup import ProgramSetup
-from tests.support.console import NARROW, settle
+from sim.trace.events import RunEnded
+from tests.support.builder import Run
+from tests.support.console import NARROW, TALL, WIDE, settle
 from tests.support.fake_session import FakeEngines
 from tests.support.pictures import text_of
 from tests.support.runs import dummy_server_run, ns
@@ -41,3 +45,100 @@ async def test_in_a_file_s_calls_the_first_service_it_offers_and_real_time_can_b
         await pilot.press("s", "space", "n")
         await settle(pilot)
         assert engines.latest.commands == [CallService(None, True), Pause()]
+
+
+async def test_the_guide_tells_what_was_found_and_what_to_try(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    app = CbtuiApp(
+        start_file=(file, [], "real"), open_session=FakeEngines(dummy_server_run().events, ns(5.2))
+    )
+    async with app.run_test(size=TALL) as pilot:
+        await settle(pilot)
+        await settle(pilot)
+        told = " ".join(text_of(app).split())
+        assert "What was found" in told
+        assert "timer_callback every 1" in told
+        assert "C compares both runs" in told
+
+
+async def test_a_file_is_run_again_when_it_is_saved_and_only_then(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("before = 1\n")
+    engines = FakeEngines(dummy_server_run().events, ns(5.2))
+    app = CbtuiApp(start_file=(file, [], "real"), open_session=engines)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        app.screen.post_message(FileRead(b"before = 1\n"))
+        app.screen.post_message(FileRead(None))
+        await settle(pilot)
+        assert len(engines.sessions) == 1
+        file.write_text("after = 2\n")
+        async with asyncio.timeout(20):
+            while len(engines.sessions) < 2:
+                await pilot.pause(0.05)
+        await pilot.press("2")
+        await settle(pilot)
+        assert "after = 2" in text_of(app)
+        assert engines.sessions[0].stopped
+
+
+async def test_it_is_run_again_when_a_module_with_its_callbacks_is_saved(tmp_path: Path) -> None:
+    file, module = tmp_path / "my_node.py", tmp_path / "callbacks.py"
+    file.write_text("import callbacks\n")
+    module.write_text("def tick():\n    before = 1\n")
+    run = Run()
+    timer = run.timer(run.exclusive(run.node("/n")), "tick", 1.0, file=str(module), lines=(1, 2))
+    run.callback(timer, run.thread("MainThread"), 1.0, 0.1)
+    engines = FakeEngines(run.events, ns(5.0))
+    app = CbtuiApp(start_file=(file, [], "real"), open_session=engines)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        await pilot.pause(1.5)
+        assert len(engines.sessions) == 1
+        module.write_text("def tick():\n    after = 2\n")
+        async with asyncio.timeout(20):
+            while len(engines.sessions) < 2:
+                await pilot.pause(0.05)
+        await pilot.press("2")
+        await settle(pilot)
+        await pilot.pause(1.5)
+        assert len(engines.sessions) == 2
+        assert "after = 2" in text_of(app)
+
+
+async def test_without_a_robot_r_runs_again_and_the_code_has_the_room(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    engines = FakeEngines(dummy_server_run().events, ns(5.2))
+    app = CbtuiApp(start_file=(file, [], "real"), open_session=engines)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        code, robot = app.screen.query_one("#code"), app.screen.query_one("#robot")
+        shown = [(bool(robot.display), code.size.width)]
+        await pilot.press("4")
+        await settle(pilot)
+        shown.append((bool(robot.display), code.size.width))
+        assert [is_there for is_there, _ in shown] == [False, True]
+        assert shown[1][1] < shown[0][1]
+        await pilot.press("r")
+        await settle(pilot)
+        assert len(engines.sessions) == 2
+
+
+async def test_a_program_that_cannot_begin_is_shown_at_its_line(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("import rclpy\nprint((\n")
+    ended = RunEnded(
+        1, "my_node.py:2: '(' was never closed", True, place=(str(file), 2), problem="'(' was never closed"
+    )
+    engines = FakeEngines([*Run().until(0), ended], ns(1))
+    app = CbtuiApp(start_file=(file, [], "real"), open_session=engines)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        await settle(pilot)
+        assert "[2 Code]" in text_of(app)
+        assert "    2 ✗ print((" in text_of(app)
+        await pilot.press("1")
+        await settle(pilot)
+        assert "It made no node: my_node.py:2" in text_of(app)

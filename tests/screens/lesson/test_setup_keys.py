@@ -10,10 +10,10 @@ from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
 from cbtui.runs.setup.changes import Changes
-from cbtui.screens.group import GroupScreen
 from cbtui.screens.lesson import LessonScreen
-from cbtui.screens.number import NumberScreen
-from cbtui.screens.setup import SetupScreen
+from cbtui.screens.windows.group import GroupScreen
+from cbtui.screens.windows.number import NumberScreen
+from cbtui.screens.windows.setup import SetupScreen
 from sim.engine.setup import GroupChange, PeriodChange
 from sim.trace.events import AnyEvent
 from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
@@ -66,7 +66,7 @@ async def test_g_gives_the_selected_callback_another_group_and_keeps_the_run_bef
         before = app.lesson_screen.runs.run
         await press(pilot, *TO_ODOM, "g")
         assert isinstance(app.screen, GroupScreen)
-        assert "Which callback group does odom_callback get?" in text_of(app)
+        assert "Which callback group should odom_callback have?" in text_of(app)
         assert "In this run: group A exclusive, with scan, timer." in text_of(app)
         await press(pilot, "o")
         assert app.lesson_screen.runs.run.setup.groups == (ODOM_OWN,)
@@ -108,7 +108,7 @@ async def test_the_group_in_force_is_highlighted_and_p_gives_the_program_s_again
         assert "self.shared_group" in text_of(app)
         await press(pilot, "p")
         assert app.lesson_screen.runs.run.setup.groups == ()
-        assert notes(app)[-1] == "everything as it is written"
+        assert notes(app)[-1] == "everything is back to what the program says"
 
 
 @pytest.mark.slow
@@ -117,7 +117,7 @@ async def test_g_without_a_selected_callback_lets_one_be_chosen_first() -> None:
         await press(pilot, "g")
         assert isinstance(app.screen, SetupScreen)
         await press(pilot, "down", "enter")
-        assert "Which callback group does scan_callback get?" in text_of(app)
+        assert "Which callback group should scan_callback have?" in text_of(app)
         await press(pilot, "r", "r")
         assert app.lesson_screen.runs.run.setup.groups == (
             GroupChange("/sub_node", "scan_callback", "reentrant"),
@@ -142,7 +142,7 @@ async def test_p_begins_with_the_period_of_a_timer() -> None:
 async def test_what_is_no_period_is_asked_for_again() -> None:
     async with console() as (app, pilot):
         await press(pilot, "p", "enter", "0", "enter")
-        assert "0 is no period; give 0.001 to 3600 s." in text_of(app)
+        assert "0 is not a period; give 0.001 to 3600 s." in text_of(app)
         assert isinstance(app.screen, NumberScreen)
         await press(pilot, "escape", "escape")
         assert len(sessions(app)) == 1

@@ -15,8 +15,8 @@ from cbtui.runs.judged.checking import ObservedRun, observe
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
-from cbtui.screens.prediction import PredictionScreen
-from cbtui.screens.solution import ConfirmSolutionScreen, SolutionScreen
+from cbtui.screens.windows.prediction import PredictionScreen
+from cbtui.screens.windows.solution import ConfirmSolutionScreen, SolutionScreen
 from cbtui.widgets.guide import Guide
 from lessons.catalogue import find
 from lessons.progress import LessonProgress, Progress
@@ -124,7 +124,7 @@ async def test_a_given_answer_stays_and_is_not_asked_for_again() -> None:
         await press(pilot, "2", "enter", "q")
         assert top(app) is MenuScreen
         assert app.kept().answers == (1,)
-        await press(pilot, "2")
+        await press(pilot, "2", "enter")
         assert FIRST.question[:20] not in text_of(app)
         assert SECOND.question[:20] in text_of(app)
         await press(pilot, "1", "enter")
@@ -177,7 +177,7 @@ async def test_the_questions_are_asked_beside_what_gives_nothing_away() -> None:
 async def test_a_page_that_was_not_predicted_gives_nothing_away() -> None:
     async with console() as (app, pilot):
         await press(pilot, "escape")
-        assert "Not predicted yet" in app.page
+        assert "No prediction yet" in app.page
         assert LESSON.task is not None
         assert LESSON.task in app.page
         for told in ("still wait", FIRST.because, SECOND.because, "# What you saw", "Four workers"):
@@ -200,23 +200,24 @@ async def test_a_predicted_page_tells_what_to_watch_for_and_not_what_is_true() -
 async def test_a_key_holds_the_prediction_against_a_run_and_explains() -> None:
     async with console(observe=the_lessons_own_run()) as (app, pilot):
         await press(pilot, "1", "enter", "1", "enter", "a")
-        await until_shown(pilot, app, "1 of 2 as you said")
-        assert f"✓ As you said: **{FIRST.answers[0]}**" in app.page
-        assert f"✗ You said: {SECOND.answers[0]}\n\n→ True is: **{SECOND.answers[1]}**" in app.page
+        await until_shown(pilot, app, "You got 1 of 2")
+        assert f"✓ You were right: **{FIRST.answers[0]}**" in app.page
+        assert f"✗ You said: {SECOND.answers[0]}\n\n→ What happened: **{SECOND.answers[1]}**" in app.page
         assert FIRST.because in app.page
-        assert "Read off a run of 30 s." in app.page
+        assert "Checked against a run of 30 s." in app.page
         assert "What you saw" in app.page
         assert "Four workers" in app.page
         assert app.kept().seen
 
 
+@pytest.mark.slow
 async def test_enough_of_a_run_unlocks_what_it_showed() -> None:
     async with console(29.0, observe=the_lessons_own_run()) as (app, pilot):
         await press(pilot, "1", "enter", "2", "enter")
         assert not app.kept().seen
         app.engines.latest.play(ns(30.1))
         await settle(pilot)
-        await until_shown(pilot, app, "2 of 2 as you said")
+        await until_shown(pilot, app, "You got 2 of 2")
         assert app.kept().seen
 
 
@@ -237,7 +238,7 @@ async def test_what_is_being_read_stays_in_its_place_when_the_run_unlocks_what_i
         guide.scroll_to(y=read.virtual_region.y + 2, animate=False, immediate=True)
         app.engines.latest.play(ns(30.1))
         await settle(pilot)
-        await until_shown(pilot, app, "2 of 2 as you said")
+        await until_shown(pilot, app, "You got 2 of 2")
         await settle(pilot)
         assert read.virtual_region.y - guide.scroll_offset.y == -2
 
@@ -260,7 +261,7 @@ async def test_who_asks_for_the_answer_may_predict_first_or_leave_it() -> None:
         await press(pilot, "q")
         assert not app.kept().seen
         await press(pilot, "a", "escape")
-        await until_shown(pilot, app, "Not predicted. True is")
+        await until_shown(pilot, app, "You made no prediction. What happened")
         assert app.kept().answers == ()
         await press(pilot, "P")
         assert top(app) is LessonScreen
@@ -282,7 +283,7 @@ async def test_a_run_that_cannot_be_held_against_is_told_of_in_a_sentence() -> N
 
     async with console(observe=broken) as (app, pilot):
         await press(pilot, "1", "enter", "2", "enter", "a")
-        await until_shown(pilot, app, "could not be held against a run: node.py ended its whole process")
+        await until_shown(pilot, app, "could not be checked against a run: node.py ended its whole process")
         assert FIRST.because not in app.page
 
 
@@ -298,7 +299,7 @@ async def test_a_screen_that_is_left_breaks_off_the_run_beside_it() -> None:
 
     async with console(observe=endless) as (app, pilot):
         await press(pilot, "1", "enter", "2", "enter", "a")
-        await until_shown(pilot, app, "is run once more")
+        await until_shown(pilot, app, "runs once more to check your prediction")
         assert begun.wait(_PATIENCE)
         await press(pilot, "q")
         assert top(app) is MenuScreen
@@ -358,6 +359,7 @@ async def test_no_hint_is_given_before_the_exercise_can_be_read() -> None:
         assert app.kept().hints == 0
 
 
+@pytest.mark.slow
 async def test_the_solution_is_shown_when_it_is_wanted_and_asked_about_once() -> None:
     Progress().see(WITH_EXERCISE.id)
     async with console(lesson=WITH_EXERCISE.id) as (app, pilot):
@@ -370,7 +372,7 @@ async def test_the_solution_is_shown_when_it_is_wanted_and_asked_about_once() ->
         assert app.kept().solution
         assert "+" in text_of(app)
         await press(pilot, "d")
-        assert "The solution: solution.py" in text_of(app)
+        assert "The solution: node.py" in text_of(app)
         assert "@@" not in text_of(app)
         await press(pilot, "escape", "H")
         assert top(app) is SolutionScreen

@@ -9,7 +9,7 @@ from textual.pilot import Pilot
 from textual.widgets import Static
 
 from cbtui.app import CbtuiApp
-from cbtui.screens.moment import MomentScreen, seconds_in
+from cbtui.screens.windows.moment import MomentScreen, seconds_in
 from sim.engine.commands import Pause, RunUntil, SetSpeed, Step
 from sim.trace.events import TimeHalted
 from tests.support.builder import ns
@@ -73,6 +73,7 @@ async def test_going_to_a_moment_that_has_passed_looks_back() -> None:
         assert app.engines.latest.commands == []
 
 
+@pytest.mark.slow
 async def test_going_to_a_moment_to_come_lets_the_run_go_on_until_then() -> None:
     async with console() as (app, pilot):
         await press(pilot, "space", "left_square_bracket", "G", *"14.5", "enter")

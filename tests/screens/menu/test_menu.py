@@ -8,14 +8,18 @@ import pytest
 from textual.command import CommandList, CommandPalette
 
 from cbtui.app import CbtuiApp
-from cbtui.screens.help import HelpScreen
+from cbtui.screens.choosing import ChoosingScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
+from cbtui.screens.windows.help import HelpScreen
+from cbtui.screens.windows.prediction import PredictionScreen
+from cbtui.screens.windows.tour import TourScreen
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.menu_list import MenuList
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
 from lessons.progress import Progress
+from lessons.puzzles import puzzles, puzzles_of
 from tests.support.console import NARROW, TALL, WIDE
 from tests.support.daily import first_daily
 from tests.support.exercises import until
@@ -60,6 +64,7 @@ async def test_a_wide_menu_shows_in_its_list_what_every_lesson_is_made_of() -> N
             assert lesson.groups in line
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_the_menu_tells_what_the_highlighted_lesson_teaches_and_is_made_of(
     size: tuple[int, int],
@@ -74,7 +79,7 @@ async def test_the_menu_tells_what_the_highlighted_lesson_teaches_and_is_made_of
             assert all(word in text for word in lesson.teaches.replace("-", " ").split())
             assert lesson.executor in text
             assert lesson.groups in text
-            await pilot.press("down")
+            await pilot.press("down", *("down" for _ in puzzles_of(lesson.id)))
 
 
 async def test_what_a_lesson_teaches_is_not_told_before_it_was_watched() -> None:
@@ -95,10 +100,49 @@ async def test_enter_opens_the_highlighted_lesson() -> None:
 async def test_a_number_opens_its_lesson() -> None:
     app = menu()
     async with app.run_test(size=NARROW) as pilot:
-        for lesson in lessons()[:9:4]:
-            await pilot.press(str(lesson.number))
+        for lesson in lessons()[::6]:
+            await pilot.press(*str(lesson.number), *(["enter"] if lesson.number < 4 else []))
             assert opened(app) == lesson.id
             await pilot.press("q")
+
+
+async def test_letters_of_a_name_find_its_lesson() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press(*"stale", "enter")
+        assert opened(app) == "stale-data"
+
+
+async def test_the_menu_invites_to_the_first_lesson_with_something_left_to_do() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        assert "Single thread  ◂ start here" in text_of(app)
+        Progress().explain(lessons()[0].id)
+        await pilot.press("down", "enter", "q")
+        await pilot.press("q")
+        assert "One shared group    ◂ go on" in text_of(app)
+
+
+async def test_a_lesson_that_is_not_predicted_gives_nothing_away() -> None:
+    app = menu()
+    lesson = lessons()[0]
+    async with app.run_test(size=WIDE) as pilot:
+        await pilot.pause()
+        told = " ".join(text_of(app).split())
+        assert "its first question" in told
+        assert not any(attempt.text in told for attempt in lesson.tries)
+        assert lesson.predictions[0].question[:20] in told
+
+
+async def test_any_key_leaves_the_tour_for_the_predictions() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("T")
+        await until(pilot, lambda: isinstance(app.screen, TourScreen))
+        assert opened(app) == lessons()[0].id
+        await pilot.press("x")
+        await until(pilot, lambda: isinstance(app.screen, PredictionScreen))
+        assert not Progress().of(lessons()[0].id).seen
 
 
 async def test_the_number_of_no_lesson_does_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -127,11 +171,12 @@ async def test_a_click_on_a_key_does_what_the_key_does() -> None:
         assert isinstance(app.screen, HelpScreen)
 
 
+@pytest.mark.slow
 async def test_leaving_a_lesson_comes_back_to_where_it_was_opened() -> None:
     app = menu()
     async with app.run_test(size=NARROW) as pilot:
         await pilot.press("4", "q")
-        assert isinstance(app.screen, MenuScreen)
+        await until(pilot, lambda: isinstance(app.screen, MenuScreen))
         await pilot.press("enter")
         assert opened(app) == lessons()[3].id
 
@@ -143,11 +188,12 @@ async def test_q_leaves_the_console() -> None:
         assert not app.is_running
 
 
+@pytest.mark.slow
 async def test_the_palette_finds_a_command_of_the_screen() -> None:
     app = menu()
     async with app.run_test(size=WIDE) as pilot:
         await pilot.press("ctrl+p", *"lesson 5")
-        await until(pilot, lambda: is_the_palettes_first(app, "Open lesson 5"))
+        await until(pilot, lambda: is_the_palettes_first(app, "Open lesson 5: Reentrant, 2 threads"))
         await pilot.press("enter", "enter")
         while opened(app) is None:
             await pilot.pause(0.02)
@@ -201,8 +247,8 @@ async def test_a_lesson_that_was_opened_has_a_mark_in_the_next_console_too() -> 
     app = menu()
     async with app.run_test(size=NARROW) as pilot:
         assert f"·  1  {first.title}" in text_of(app)
-        await pilot.press("1", "q")
-        await pilot.pause()
+        await pilot.press("1", "enter", "q")
+        await until(pilot, lambda: isinstance(app.screen, MenuScreen))
         assert f"○  1  {first.title}" in text_of(app)
     app = menu()
     async with app.run_test(size=NARROW):
@@ -220,11 +266,12 @@ async def test_a_home_that_cannot_be_written_is_told_of_and_nothing_else_changes
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     app = menu()
     async with app.run_test(size=NARROW) as pilot:
-        await pilot.press("1", "q", "2", "q")
+        await pilot.press("1", "enter", "q", "2", "enter", "q")
         assert [note.severity for note in app._notifications] == ["warning"]
         assert isinstance(app.screen, MenuScreen)
 
 
+@pytest.mark.slow
 def test_nothing_heavy_is_imported_before_the_menu_is_shown() -> None:
     program = """
 import asyncio, sys
@@ -244,19 +291,27 @@ async def test_marks_tell_how_far_the_learner_is_in_each_lesson() -> None:
     plain, exercised = lessons()[0], next(lesson for lesson in lessons() if lesson.exercise is not None)
     app = menu()
     progress = Progress()
+
+    def answer_all(lesson: Lesson) -> None:
+        for place in range(len(lesson.predictions)):
+            progress.answer(lesson.id, place, 0)
+
     async with app.run_test(size=WIDE) as pilot:
         told = []
         for change in (
-            partial(progress.answer, exercised.id, 0, 0),
+            partial(answer_all, exercised),
             partial(progress.see, exercised.id),
             partial(progress.passes, exercised.id),
+            partial(progress.explain, exercised.id),
         ):
             change()
             await pilot.press("question_mark", "escape")
             await pilot.pause()
             told.append(next(line for line in lines_of(app) if exercised.title in line).split()[1])
-        assert told == ["◐", "●", "✓"]
+        assert told == ["◐", "●", "●", "✓"]
+        answer_all(plain)
         progress.see(plain.id)
+        progress.explain(plain.id)
         await pilot.press("question_mark", "escape")
         await pilot.pause()
         assert "so far" in text_of(app)
@@ -276,3 +331,24 @@ async def test_progress_that_cannot_be_read_is_told_of_in_the_menu(
         await pilot.pause()
         (note,) = app._notifications
         assert "progress.jsonl:1 is no progress" in note.message
+
+
+# puzzles
+
+
+@pytest.mark.slow
+async def test_a_puzzle_stands_below_its_lesson_and_opens_with_how_far_it_has_come() -> None:
+    puzzle = puzzles_of("lock-or-group")[0]
+    Progress().look_at_solution(puzzle.id)
+    app = menu()
+    async with app.run_test(size=high_enough(NARROW)) as pilot:
+        lines = lines_of(app)
+        at = next(row for row, line in enumerate(lines) if "Lock or group" in line)
+        assert f"●     ? {puzzle.title}" in lines[at + 1]
+        assert all(any(f"? {each.title}" in line for line in lines) for each in puzzles())
+        await pilot.press("/", *"puzzle sell seat")
+        await pilot.pause()
+        assert "Sell the last seat twice" in text_of(app)
+        assert "Reentrant, 2 threads" in text_of(app)
+        await pilot.press("enter")
+        await until(pilot, lambda: isinstance(app.screen, ChoosingScreen))

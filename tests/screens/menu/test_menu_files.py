@@ -10,8 +10,8 @@ from cbtui.app import CbtuiApp
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
-from cbtui.screens.open_file import PathInput
 from cbtui.screens.replay import ReplayScreen
+from cbtui.screens.windows.open_file import PathInput
 from cbtui.widgets.description_pane import DescriptionPane
 from sim import recording
 from sim.engine.setup import ProgramSetup
@@ -55,7 +55,7 @@ async def test_a_program_that_was_opened_lately_can_be_opened_again_as_it_was(pr
     async with app.run_test(size=TALL) as pilot:
         assert "my_node.py          program" in text_of(app)
         await pilot.press("up")
-        assert "run again, on virtual time" in told(app)
+        assert "runs it again, on the virtual clock" in told(app)
         await pilot.press("enter")
         assert isinstance(app.screen, LessonScreen)
         setup = engines.latest.setup
@@ -81,8 +81,8 @@ async def test_a_file_that_is_gone_is_said_to_be_and_can_be_taken_off_the_list(p
     async with app.run_test(size=NARROW) as pilot:
         assert "delete" not in text_of(app)
         await pilot.press("up")
-        assert told(app) == "There is no file my_node.py there any more."
-        assert "del take off" in lines_of(app)[-1]
+        assert told(app) == "The file my_node.py is gone."
+        assert "del remove" in lines_of(app)[-1]
         await pilot.press("enter")
         assert isinstance(app.screen, MenuScreen)
         assert any("There is no file" in note.message for note in app._notifications)

@@ -20,7 +20,7 @@ from lessons.catalogue import find, lessons
 from sim.engine.setup import RunSetup, TimedCall
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
-from tests.support.console import NARROW
+from tests.support.console import NARROW, predict
 from tests.support.daily import first_daily
 from tests.support.fake_session import FakeEngines, FakeSession
 from tests.support.pictures import text_of
@@ -32,7 +32,7 @@ def rest(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
     """Let the highlight have rested at once; the function sets another time."""
 
     def set_rest(seconds: float) -> None:
-        monkeypatch.setattr("cbtui.screens.menu._HOVER_DELAY", seconds)
+        monkeypatch.setattr("cbtui.screens.parts.previews.HOVER_DELAY", seconds)
 
     set_rest(0.001)
     return set_rest
@@ -42,6 +42,8 @@ def console() -> tuple[CbtuiApp, FakeEngines]:
     engines = FakeEngines(shared_group_run().events, ns(14))
     app = CbtuiApp(open_session=engines)
     app.animation_level = "none"
+    for lesson in lessons():
+        predict(app, lesson.id)
     return app, engines
 
 
@@ -174,6 +176,7 @@ def shared_group() -> Timeline:
     return timeline
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("charset", Charset)
 @pytest.mark.parametrize("width", [*range(1, 130, 7), 38, 39, 61, 62, 120])
 def test_a_picture_is_as_wide_as_it_is_to_be(width: int, charset: Charset, shared_group: Timeline) -> None:

@@ -5,7 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from cbtui.runs.live.live_run import LiveRun
-from cbtui.screens.parts.navigation import TimeNavigation
+from cbtui.screens.parts.navigation import MomentKey, TimeNavigation
 from sim.engine.commands import Command, Pause, RunUntil, Step
 from sim.engine.setup import RunSetup
 from sim.trace.timeline import Timeline
@@ -19,16 +19,16 @@ NOW_OR_NEVER = ("live", "later", "step", "pan_later")
 """Actions that go towards the present."""
 
 
-def over(host: FakeHost, *timelines: Timeline) -> tuple[TimeNavigation, Callable[[], int]]:
+def over(*timelines: Timeline) -> tuple[TimeNavigation, Callable[[], int]]:
     moves: list[None] = []
     navigation = TimeNavigation(
-        host, lambda: timelines, lambda: max(each.end for each in timelines), lambda: moves.append(None)
+        lambda: timelines, lambda: max(each.end for each in timelines), lambda: moves.append(None)
     )
     return navigation, lambda: len(moves)
 
 
 def test_at_the_end_of_a_run_that_is_over_only_the_past_is_offered() -> None:
-    navigation, _ = over(FakeHost(), told(shared_group_run()))
+    navigation, _ = over(told(shared_group_run()))
     assert not any(navigation.offers(action, ()) for action in NOW_OR_NEVER)
     assert navigation.offers("earlier", ())
     assert navigation.offers("step_back", ())
@@ -37,7 +37,7 @@ def test_at_the_end_of_a_run_that_is_over_only_the_past_is_offered() -> None:
 
 
 def test_every_move_is_told() -> None:
-    navigation, moves = over(FakeHost(), told(shared_group_run()))
+    navigation, moves = over(told(shared_group_run()))
     navigation.action_zoom_in()
     navigation.action_pan_earlier()
     navigation.action_step_back()
@@ -48,7 +48,7 @@ def test_every_move_is_told() -> None:
 
 def test_of_two_runs_the_nearer_event_is_next() -> None:
     runs = told(shared_group_run()), told(dummy_server_run())
-    navigation, _ = over(FakeHost(), *runs)
+    navigation, _ = over(*runs)
     navigation.seek(ns(5.0))
     navigation.action_step()
     after = [timeline.neighbour(ns(5.0), None, 1) for timeline in runs]
@@ -56,7 +56,7 @@ def test_of_two_runs_the_nearer_event_is_next() -> None:
 
 
 def test_the_longest_stretch_cannot_be_zoomed_out_of() -> None:
-    navigation, _ = over(FakeHost(), told(shared_group_run()))
+    navigation, _ = over(told(shared_group_run()))
     navigation.zoom(100)
     assert not navigation.offers("zoom_out", ())
     assert navigation.offers("zoom_in", ())
@@ -67,11 +67,11 @@ def engines() -> FakeEngines:
     return FakeEngines(shared_group_run().events, ns(5.0))
 
 
-def live(engines: FakeEngines, host: FakeHost) -> tuple[LiveRun, TimeNavigation]:
+def live(engines: FakeEngines) -> tuple[LiveRun, TimeNavigation]:
     run = LiveRun(RunSetup(title="x", programs=()), engines, lambda events: None, lambda loss: None)
     run.take([event for event in shared_group_run().events if event.t <= ns(5.0)])
     return run, TimeNavigation(
-        host, lambda: [run.timeline], lambda: run.timeline.end, lambda: None, live=lambda: run
+        lambda: [run.timeline], lambda: run.timeline.end, lambda: None, live=lambda: run
     )
 
 
@@ -80,7 +80,7 @@ def commands(engines: FakeEngines) -> list[Command]:
 
 
 def test_a_step_at_the_end_is_the_engines_and_one_in_the_past_is_not(engines: FakeEngines) -> None:
-    run, navigation = live(engines, FakeHost())
+    run, navigation = live(engines)
     assert not navigation.offers("step", ())
     run.pause()
     assert navigation.offers("step", ())
@@ -92,11 +92,12 @@ def test_a_step_at_the_end_is_the_engines_and_one_in_the_past_is_not(engines: Fa
 
 def test_a_moment_to_come_is_run_to_and_one_that_has_passed_is_looked_at(engines: FakeEngines) -> None:
     host = FakeHost(answers=[ns(3.0), ns(60.0), None])
-    _, navigation = live(engines, host)
-    navigation.action_go_to_time()
+    _, navigation = live(engines)
+    key = MomentKey(host, navigation)
+    key.action_go_to_time()
     assert (navigation.now, commands(engines)) == (ns(3.0), [])
-    navigation.action_go_to_time()
+    key.action_go_to_time()
     assert navigation.playhead.follows
     assert commands(engines) == [RunUntil(ns(60.0))]
-    navigation.action_go_to_time()
+    key.action_go_to_time()
     assert len(commands(engines)) == 1

@@ -42,11 +42,22 @@ MOMENTS = {
     "missed-ticks": 7.8,
     "nodes-in-one-executor": 5.2,
     "two-executors": 5.2,
+    "one-queue-for-all": 4.2,
+    "lookup-in-a-callback": 5.6,
+    "cancel-never-served": 4.2,
+    "sim-time-in-a-callback": 5.6,
+    "executor-per-group": 3.6,
     # Two at once, old pictures, nothing heard, a program that died.
     "overlapping-timer": 6.2,
     "stale-data": 5.6,
     "qos-never-matches": 11.2,
+    "synchroniser-never-fires": 6.2,
     "lost-exceptions": 10.0,
+    # A parameter, a time, an entity and a context that are not what they were.
+    "parameter-sets-itself": 3.2,
+    "clock-set-back": 12.2,
+    "destroyed-while-spinning": 3.2,
+    "after-ctrl-c": 4.6,
 }
 """Seconds: when a lesson shows what it is about."""
 

@@ -20,6 +20,7 @@ def test_the_menu_looks_as_it_did(snap_compare: Compare, size: tuple[int, int]) 
     assert snap_compare(app, terminal_size=size, press=["down"])
 
 
+@pytest.mark.slow
 @SIZES
 @pytest.mark.parametrize(
     ("lesson", "events", "seconds"),

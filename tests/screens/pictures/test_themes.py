@@ -38,6 +38,7 @@ async def test_the_menu_is_readable(theme: str, size: tuple[int, int]) -> None:
         assert hard_to_read(app, LEAST[theme]) == {}
 
 
+@pytest.mark.slow
 @THEME
 async def test_a_lesson_and_its_windows_are_readable(theme: str) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 14.25, theme=theme)

@@ -25,11 +25,12 @@ from cbtui.widgets.robot import RobotView
 from cbtui.widgets.shell import Prompt, ShellView
 from cbtui.widgets.status_line import StatusLine
 from cbtui.widgets.tabs import Tabs
+from lessons.catalogue import lessons
 from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineSaid
 from tests.screens.lesson.test_teaching import Console
 from tests.screens.pictures.test_real_lessons import events_of
 from tests.support.builder import ns
-from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
 from tests.support.exercises import Engines, ExerciseConsole, until
 from tests.support.fake_session import FakeEngines
 from tests.support.goldens import WIDGETS, hold
@@ -79,6 +80,7 @@ def pictures_of(app: CbtuiApp, widgets: Iterable[tuple[str, type[Widget]]]) -> d
     return {f"{name}.txt": picture_of(app, app.screen.query_one(widget)) for name, widget in widgets}
 
 
+@pytest.mark.slow
 async def test_a_run_in_which_everybody_waits(pytestconfig: pytest.Config) -> None:
     app = RecordedConsole("shared-group", EVENTS, 14.25)
     async with app.run_test(size=NARROW) as pilot:
@@ -128,10 +130,11 @@ async def test_the_question_before_a_run(pytestconfig: pytest.Config) -> None:
 async def test_what_the_menu_tells_of_a_lesson(
     pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cbtui.screens.menu._HOVER_DELAY", 0.001)
+    monkeypatch.setattr("cbtui.screens.parts.previews.HOVER_DELAY", 0.001)
     engines = FakeEngines(EVENTS, ns(20))
     app = CbtuiApp(open_session=engines)
     app.animation_level = "none"
+    predict(app, lessons()[1].id)
     async with app.run_test(size=WIDE) as pilot:
         await press(pilot, "down")
         await until(pilot, lambda: bool(engines.sessions))
@@ -142,6 +145,7 @@ async def test_what_the_menu_tells_of_a_lesson(
     hold(pictures, WIDGETS, pytestconfig)
 
 
+@pytest.mark.slow
 async def test_a_callback_that_stands_in_a_call(pytestconfig: pytest.Config) -> None:
     events = events_of("call-in-a-callback")
     assert events

@@ -7,6 +7,7 @@ from textual.pilot import Pilot
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.code.marks import marks_at
 from cbtui.widgets.code.source_files import SourceFiles
+from sim.trace.events import RunEnded
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.pictures import lines_of
@@ -210,6 +211,45 @@ def test_a_callback_that_stands_still_in_a_call_says_in_which(talker: Path) -> N
     timeline.extend(run.events)
     files = SourceFiles(talker)
     (mark,) = marks_at(timeline, ns(3.0), files)[files.main]
-    assert mark.texts[0] == "▶ 2.0 s: stands in the call of /motor_power"
+    assert mark.texts[0] == "▶ 2.0 s: blocked in the call of /motor_power"
     (mark,) = marks_at(timeline, ns(1.2), files)[files.main]
     assert mark.texts[0] == "▶ MainThread 200 ms"
+
+
+async def test_what_ended_a_program_is_told_at_its_line(talker: Path) -> None:
+    timeline = Timeline()
+    run = Run()
+    run.log("on its way", 0.5)
+    place = (str(talker), 40)
+    ended = RunEnded(
+        ns(2.0), "talker.py:40: '(' was never closed", True, place=place, problem="'(' was never closed"
+    )
+    timeline.extend([*run.events, ended])
+    app = CodeOnly(talker)
+    async with app.run_test(size=(70, 12)) as pilot:
+        assert not any("never closed" in line for line in await show(pilot, timeline, 1.0))
+        shown = await show(pilot, timeline, 2.0)
+        line = next(line for line in shown if "never closed" in line)
+        assert line.split() == ["40", "✗", "#", "talker", "40", "✗", "'('", "was", "never", "closed"]
+        assert app.view.picked == 40
+        await pilot.press("escape")
+        await show(pilot, timeline, 2.0)
+        assert app.view.picked is None
+
+
+async def test_code_that_is_too_wide_is_scrolled_sideways(tmp_path: Path) -> None:
+    path = tmp_path / "wide.py"
+    path.write_text("# " + "".join(f"{number:>5}" for number in range(30)) + "\n")
+    app = CodeOnly(path)
+    async with app.run_test(size=(40, 6)) as pilot:
+        await show(pilot, Timeline(), 0.0)
+        app.view.focus()
+        assert not app.view.check_action("sideways_left", ())
+        before = lines_of(app)[0]
+        await pilot.press("shift+right", "shift+right")
+        await pilot.pause()
+        assert lines_of(app)[0][:7] == before[:7]
+        assert lines_of(app)[0] != before
+        await pilot.press("shift+left", "shift+left")
+        await pilot.pause()
+        assert lines_of(app)[0] == before

@@ -302,7 +302,7 @@ def test_an_open_area_in_ascii_has_no_wall() -> None:
     )
 
 
-def test_a_worker_in_a_call_is_stuck_in_its_seat() -> None:
+def test_a_worker_in_a_call_is_blocked_in_its_seat() -> None:
     assert factory(stuck_in_a_call(), 3.0, 78, 9) == drawn(
         """
         | 2 workers, 1 seat: 1 callback waits for it, 1 worker idle                    |
@@ -310,7 +310,7 @@ def test_a_worker_in_a_call_is_stuck_in_its_seat() -> None:
         |                                            ┏━ A ██ one seat ━ 1 waits ━┓     |
         | timer       ◷ 1.0 s ──────────────────────▸┃                           ┃     |
         |                                            ┃▐☻ timer_callback▌ 2.0 s   ┃     |
-        | motor_power 1/10    ───────□□□□□□□□□▐1.8s▌✗┃   stuck in call 1.8 s     ┃     |
+        | motor_power 1/10    ───────□□□□□□□□□▐1.8s▌✗┃   blocked in call 1.8 s   ┃     |
         |   waits 1.8 s: seat taken by timer_callback┃                           ┃     |
         |                                            ┗━━━━━━━━━━━━━━━━━━━━━━━━━━━┛     |
         | · Pool-0_0 works in A  ☺ worker 2 never needed                               |

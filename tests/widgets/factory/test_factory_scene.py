@@ -178,6 +178,7 @@ def test_a_tick_nears_the_door_until_it_is_due() -> None:
     ("reason", "words"),
     [
         (Reason.NO_FREE_WORKER, "waits 2.0 s: no free worker"),
+        (Reason.EVENT_QUEUE, "2.0 s: in the event queue"),
         (Reason.NOBODY_SPINS, "waits 2.0 s: nobody spins"),
     ],
 )
@@ -201,9 +202,9 @@ def test_boxes_carry_their_ages_the_oldest_at_the_door() -> None:
     assert "[4.5s][4.6s][4.7s]X" in text
 
 
-def test_a_stuck_worker_names_the_service_where_there_is_room() -> None:
+def test_a_blocked_worker_names_the_service_where_there_is_room() -> None:
     text = plain(FactoryPainter().paint(stuck_in_a_call(), ns(3.0), 138, 30))
-    assert "stuck in /motor_power 1.8 s" in text
+    assert "blocked in /motor_power 1.8 s" in text
 
 
 def test_more_belts_than_rows_say_how_many_are_left_out() -> None:

@@ -3,10 +3,14 @@
 import pytest
 
 from cbtui.looks.theme import Charset
+from cbtui.text.cells import CellRow
 from cbtui.widgets.lanes import LanePainter, Selection
-from cbtui.widgets.lanes.rows import ThreadLane, all_lanes
+from cbtui.widgets.lanes.rows import MemberLane, ThreadLane, all_lanes
+from cbtui.widgets.lanes.scale import TimeScale
+from cbtui.widgets.lanes.service_calls import draw_calls
 from sim.trace.events import MessageDropped
-from sim.trace.model import Window
+from sim.trace.figures.chains import ChainStep, StepKind
+from sim.trace.model import Call, Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import (
     Run,
@@ -112,6 +116,25 @@ def test_the_selected_lane_is_pointed_at_and_its_bar_stands_out() -> None:
     assert not any(run.ink.selected for row in picture.rows[1:] for run in row)
 
 
+def test_the_steps_of_a_chain_stand_out_on_the_lanes_of_their_callbacks() -> None:
+    timeline = told(shared_group_run(), until=12.9)
+    lane = next(each for each in all_lanes(timeline, "") if isinstance(each, MemberLane))
+    steps = [
+        ChainStep(StepKind.WAITS, "a", ns(5), ns(7), entity=lane.entity.id),
+        ChainStep(StepKind.RUNS, "a", ns(20), ns(21), entity=lane.entity.id),
+    ]
+    picture = LanePainter().paint(timeline, *last(10, 12.9), 80, 8, path=steps)
+    marked = {
+        number: sum(len(run.text) for run in row if run.ink.selected)
+        for number, row in enumerate(picture.rows)
+    }
+    place = picture.lanes.index(lane)
+    assert marked.pop(place) == ns(2) // picture.scale.per_column
+    assert not any(marked.values())
+    selected = "".join(run.text for run in picture.rows[place] if run.ink.selected)
+    assert selected.startswith("1"), "colour is not the only sign"
+
+
 def test_the_selected_lane_and_its_neighbours_are_shown_however_few_there_is_room_for() -> None:
     timeline = told(shared_group_run(), until=12.9)
     every = all_lanes(timeline, "/motor_power")
@@ -121,3 +144,10 @@ def test_the_selected_lane_and_its_neighbours_are_shown_however_few_there_is_roo
         )
         assert set(every[max(0, place - 1) : place + 2]) <= set(shown)
         assert list(shown) == [each for each in every if each in shown]
+
+
+def test_marks_of_calls_in_a_row_stand_apart() -> None:
+    row, sent = CellRow(16, Charset.BRAILLE), ((2.0, 10.0), (3.0, 12.0))
+    calls = [Call(n, "/x", 0, "", ns(at), ns(replied)) for n, (at, replied) in enumerate(sent)]
+    draw_calls(row, calls[::-1], TimeScale(0, ns(1.0), 16), ns(16.0), "s")
+    assert "".join(row.cells).rstrip() == "  ▲▲s·····◂·◂"

@@ -1,6 +1,6 @@
 import pytest
 
-from cbtui.widgets.lanes.names import group_name, more_lanes, thread_name
+from cbtui.widgets.lanes.names import group_name, more_lanes, shortened, thread_name
 from sim.trace.events import GroupKind
 from sim.trace.model import GroupInfo, ThreadInfo
 
@@ -12,8 +12,8 @@ from sim.trace.model import GroupInfo, ThreadInfo
         ("ThreadPoolExecutor-0_0", 22, "ThreadPoolExecutor-0_0"),
         ("ThreadPoolExecutor-0_0", 11, "Pool-0_0"),
         ("exercise53-1 ThreadPoolExecutor-0_0", 22, "exercise53-1 Pool-0_0"),
-        ("exercise53-1 ThreadPoolExecutor-0_0", 18, "ex…se53-1 Pool-0_0"),
-        ("exercise53-1 ThreadPoolExecutor-0_0", 11, "e…53-1 P0_0"),
+        ("exercise53-1 ThreadPoolExecutor-0_0", 18, "exer…53-1 Pool-0_0"),
+        ("exercise53-1 ThreadPoolExecutor-0_0", 11, "ex…3-1 P0_0"),
         ("talker MainThread", 11, "talker Main"),
         ("exercise53-1 worker-thread-of-mine", 11, "exercise53-1 worker-thread-of-mine"),
     ],
@@ -44,3 +44,9 @@ def test_a_groups_kind_is_cut_to_what_it_is_known_by(room: int, shown: str) -> N
 )
 def test_lanes_without_room_are_told_of_with_their_key(hidden: int, key: str, room: int, shown: str) -> None:
     assert more_lanes(hidden, key, room) == shown
+
+
+def test_names_that_differ_at_an_end_stay_apart() -> None:
+    names = ("front_wheel_odometry", "rear_wheel_odometry", "front_wheel_current")
+    assert len({shortened(name, 9, "…") for name in names}) == 3
+    assert shortened("odom", 9, "…") == "odom"

@@ -38,7 +38,7 @@ def test_one_shared_group_shows_everybody_waiting_for_the_timer() -> None:
     assert plain(LanePainter().paint(timeline, *last(10, 12.9), 80, 8).rows) == drawn(
         """
         |MainThread  │▎▎▎▎▎A timer_callback ███████████████████████████▌│  90% busy      |
-        |A exclusive │·····── held by timer_callback on MainThread ─────│ held, 3 wait   |
+        |A exclusive │·····── held by timer_callback on MainThread ─────│ held, 2 wait   |
         |  odom      │▎▎▎▎▎╱╱ waits 8.9 s: A held by timer_callback ××××│ 10/10! lost 168|
         |  scan      │▎▎▎▎▎╱╱ waits 8.9 s: A held by timer_callback ××××│ 10/10! lost 168|
         |  timer     │▎ ▎  ── runs 8.9 s on MainThread ─────────────────│ late 8.4 s     |
@@ -63,13 +63,21 @@ def test_the_same_in_ascii_has_no_other_glyph() -> None:
     assert plain(LanePainter(Charset.ASCII).paint(timeline, *last(10, 12.9), 80, 8).rows) == drawn(
         """
         |MainThread  ||||||A timer_callback ###########################||  90% busy      |
-        |A exclusive |.....-- held by timer_callback on MainThread -----| held, 3 wait   |
+        |A exclusive |.....-- held by timer_callback on MainThread -----| held, 2 wait   |
         |  odom      ||||||// waits 8.9 s: A held by timer_callback ****| 10/10! lost 168|
         |  scan      ||||||// waits 8.9 s: A held by timer_callback ****| 10/10! lost 168|
         |  timer     || |  -- runs 8.9 s on MainThread -----------------| late 8.4 s     |
         |seconds     |     4         6         8         10         now^| 200 ms/col     |
         """
     )
+
+
+def test_a_call_is_marked_with_the_key_that_makes_such_calls() -> None:
+    timeline = told(dummy_server_run(), until=9.0)
+    for service, mark in (("/dummy_server_srv", "▲s"), ("/another", "▲")):
+        text = plain(LanePainter(service=service).paint(timeline, *last(10, 9.0), 80, 12).rows)
+        assert mark in text
+        assert ("▲s" in text) is (mark == "▲s")
 
 
 def test_split_groups_fit_nine_rows_of_a_small_terminal() -> None:
@@ -96,11 +104,16 @@ def test_a_reentrant_group_shows_how_many_run_at_once() -> None:
         |Pool-0_0    │              ▎    ▎ ▕A service_callback █████▊  ▎│  50% busy      |
         |Pool-0_1    │                        ▎    ▎    ▎    ▎    ▎     │   0% busy      |
         |A reentrant │              ·    · ── 2 at once ═────═────═──  ·│ open           |
-        |  dummy_ser…│                     ▲s runs 5.0 s ───────────◂   │ 1 call, 5.0 s  |
+        |  dumm…_srv │                     ▲s──── runs 5.0 s ───────◂   │ 1 call, 5.0 s  |
         |  timer     │              ▎    ▎    ▎    ▎    ▎    ▎    ▎    ▎│ on time        |
         |seconds     │         0         2         4         6      now▲│ 200 ms/col     |
         """
     )
+
+
+def test_an_open_group_tells_how_many_run_and_wait() -> None:
+    timeline = told(dummy_server_one_thread_run(), until=6.0)
+    assert "│ 1 run, 1 waits" in plain(LanePainter().paint(timeline, *last(10, 6.0), 80, 8).rows)
 
 
 def test_a_timer_that_found_no_worker_is_marked_late() -> None:
@@ -197,6 +210,7 @@ def test_a_failed_call_is_crossed() -> None:
     [
         (Reason.GROUP_HELD, "╱╱ waits 5.0 s: group A held by tick_callback ╱"),
         (Reason.NO_FREE_WORKER, "╲╲ waits 5.0 s: no free worker ╲"),
+        (Reason.EVENT_QUEUE, "≡≡ waits 5.0 s: behind others in the event queue ≡"),
         (Reason.NOBODY_SPINS, "╳╳ waits 5.0 s: nobody spins ╳"),
     ],
 )
@@ -303,7 +317,7 @@ def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
     assert near == drawn(
         """
         |MainThread  │A timer_callback █████████████████████████████████│ 100% busy      |
-        |A exclusive │── held by timer_callback on MainThread ──────────│ held, 1 wait   |
+        |A exclusive │── held by timer_callback on MainThread ──────────│ held           |
         |  odom      │                         ╱╱ A held by timer ╱╱╱╱╱╱│ queue 1/10     |
         |  scan      │                                                 ┊│ queue 0/10     |
         |  timer     │── runs 3.5 ms on MainThread ─────────────────────│ on time        |

@@ -323,3 +323,19 @@ async def test_the_pane_is_as_wide_as_the_widest_line_that_was_in_view_and_measu
         assert lines.virtual_size.width == len("[INFO] [5.000] [n]: ") + 120
         await typed(pilot, "line")
         assert lines.virtual_size.width < 30
+
+
+async def test_a_picked_line_that_is_too_long_is_unfolded_below() -> None:
+    timeline = Timeline()
+    long = " ".join(f"word{number}" for number in range(12))
+    timeline.extend(Logged(n, Severity.INFO, "n", text, 0, 0) for n, text in enumerate(("short", long)))
+    app = PaneOnly()
+    async with app.run_test(size=(60, 12)) as pilot:
+        await showing(pilot, timeline)
+        app.query_one("#unfolded").styles.width = "100%"
+        seen = ["word11" in " ".join(shown(app))]
+        for _ in range(2):
+            await pilot.press("up")
+            await pilot.pause()
+            seen.append("word11" in " ".join(shown(app)))
+        assert seen == [False, True, False]

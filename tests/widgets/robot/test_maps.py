@@ -1,6 +1,7 @@
 """The robot's world from above: what stands where, where the robot heads, and what its node believes."""
 
 import math
+import re
 
 import msgspec
 import pytest
@@ -13,6 +14,7 @@ from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.robot import RobotViewMode
 from cbtui.widgets.robot.extents import Extent, MapView, full_arena, robot_surroundings
 from cbtui.widgets.robot.painter import RobotPainter
+from cbtui.widgets.robot.scene import RobotScene
 from sim.trace.events import ArenaShown, RobotMoved, Scanned
 from sim.trace.timeline import Timeline
 from tests.support.properties import examples
@@ -25,6 +27,7 @@ PLAN = ArenaShown(
     sphere=(0.95, 0.0, 0.2),
     robot_radius=0.105,
 )
+_METRES = re.compile(r"(-?[\d.]+) m(?![\w~])")
 SHARED = told(shared_group_run())
 
 
@@ -108,6 +111,10 @@ def test_the_figures_tell_pose_command_velocity_range_and_motors() -> None:
         assert words in text
 
 
+def test_no_figure_is_minus_zero() -> None:
+    assert "pose  0.00  0.00 m    0°" in plain(RobotPainter().paint(standing(-0.002), 0, 80, 14).rows)
+
+
 def test_motors_off_and_touching_are_said_in_words() -> None:
     timeline = Timeline()
     timeline.extend([PLAN, RobotMoved(0, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, False, True, 0.0, 0.0)])
@@ -158,6 +165,24 @@ def test_the_whole_extent_is_on_the_map_and_not_distorted(columns: int, lines: i
         assert 0 <= column < columns
         assert 0 <= line < lines
     assert view.metres_down * view.down == pytest.approx(2 * view.metres_across * view.across)
+
+
+@given(st.floats(-6, 6), st.floats(-6, 6), st.integers(12, 90), st.integers(6, 30), st.sampled_from(Charset))
+@settings(max_examples=examples(100))
+def test_a_coordinate_on_the_map_stands_where_it_is(
+    x: float, y: float, columns: int, lines: int, charset: Charset
+) -> None:
+    robot = robot_at(x, y, 0.0)
+    timeline = Timeline()
+    timeline.extend([PLAN, robot])
+    view = MapView.of(robot_surroundings(PLAN, robot), columns, lines, charset)
+    rows = ["".join(row.cells) for row in RobotScene(PLAN, timeline, 0, robot).picture(view, charset)]
+    along_bottom = {match.start(): float(match[1]) for match in _METRES.finditer(rows[-1])}
+    assert all(view.cell(metres, 0)[0] == column for column, metres in along_bottom.items())
+    along_side = {
+        row: float(match[1]) for row, text in enumerate(rows[:-1]) if (match := _METRES.match(text))
+    }
+    assert all(view.cell(0, metres)[1] == row for row, metres in along_side.items())
 
 
 def test_the_surroundings_stand_still_while_the_robot_creeps() -> None:

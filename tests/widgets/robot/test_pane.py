@@ -36,48 +36,48 @@ HIT = touching(4.0, 6.0)
 
 MAPS = r"""
     |12 cm/dot  . true scan  x node saw 5.3 s ago|
-    |                      |#....................|
+    |1 m +        +       +|#....................|
     |                      |#. x             x  .|
     |                      |x.                x .|
     |                      |#.                 x.|
     |          .OOOO       |#.         .        x|
-    |    ',,\  .OOOO       |.x        \@        #|
+    |0 m ',,\  .OOOO      +|.x        \@        #|
     |        @ x           |. x         @      .#|
     |                      |.  x               .#|
     |                      |.   x             x.#|
-    |                      |....................#|
+    |    0 m      1 m     +|....................#|
     |pose  0.28  0.00 m  -60 deg   front  7.49 m |
     |told  0.00 m/s -0.20 rad/s   motors on      |
     |real  0.00 m/s -0.20 rad/s   touching no    |
 """
 BOTH = r"""
     |12 cm/dot  . true scan  x node saw 5.3 s ago|
-    |                      |                     |
+    |1 m +        +       +|                     |
     |                      |                     |
     |                      |                     |
     |                      |                     |
     |          .OOOO       |  The camera         |
-    |    ',,\  .OOOO       |  starts.            |
+    |0 m ',,\  .OOOO      +|  starts.            |
     |        @ x           |                     |
     |                      |                     |
     |                      |                     |
-    |                      |                     |
+    |    0 m      1 m     +|                     |
     |pose  0.28  0.00 m  -60 deg   front  7.49 m |
     |told  0.00 m/s -0.20 rad/s   motors on      |
     |real  0.00 m/s -0.20 rad/s   touching no    |
 """
 HIT_BOTH = r"""
     |. true scan  x node saw 245 ms ago          |
-    |                      |!                   !|
+    |1 m +        +       +|!                   !|
     |                      |!                   !|
     |     *  *             |!                   !|
     |      * *             |!                   !|
     |  ***    ***OOO       |! The camera        !|
-    |  ***:;>!***OOO       |! starts.           !|
+    |  ***:;>!***OOO      +|! starts.           !|
     |      * *             |!                   !|
     |     *  *             |!                   !|
     |                      |!                   !|
-    |                      |!                   !|
+    |    0 m      1 m     +|!                   !|
     |pose  0.28  0.00 m   -2 deg   front  0.47 m |
     |told  0.00 m/s -0.20 rad/s   motors on      |
     |real  0.00 m/s -0.20 rad/s   touching YES   |

@@ -11,12 +11,7 @@ from sim.launch.launch.actions.environment import (
     SetEnvironmentVariable,
     UnsetEnvironmentVariable,
 )
-from sim.launch.launch.actions.events import (
-    EmitEvent,
-    RegisterEventHandler,
-    Shutdown,
-    UnregisterEventHandler,
-)
+from sim.launch.launch.actions.events import EmitEvent, RegisterEventHandler, Shutdown, UnregisterEventHandler
 from sim.launch.launch.actions.flow import (
     GroupAction,
     IncludeLaunchDescription,

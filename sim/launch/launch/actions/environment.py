@@ -7,6 +7,7 @@ from __future__ import annotations
 import os
 from typing import Any
 
+from sim.launch.errors import unsupported
 from sim.launch.launch.action import Action
 from sim.launch.launch.conditions import is_true
 from sim.launch.launch.launch_context import LaunchContext
@@ -45,8 +46,5 @@ class AppendEnvironmentVariable(Action):
         context.environment[name] = performed(context, self._separator).join(parts)
 
 
-class UnsetEnvironmentVariable(Action):
-    """Not supported: processes that share one environment cannot lack a variable of it."""
-
-    def __init__(self, *_: object, **__: object) -> None:
-        raise NotImplementedError("UnsetEnvironmentVariable is not supported; set the variable to '' instead")
+# Processes that share one environment cannot lack a variable of it.
+UnsetEnvironmentVariable = unsupported("UnsetEnvironmentVariable", "; set the variable to '' instead")

@@ -13,10 +13,7 @@ from sim.launch.launch.action import Action, LaunchDescriptionEntity
 from sim.launch.launch.actions.arguments import SetLaunchConfiguration
 from sim.launch.launch.launch_context import LaunchContext
 from sim.launch.launch.launch_description import LaunchDescription
-from sim.launch.launch.launch_description_sources import (
-    AnyLaunchDescriptionSource,
-    LaunchDescriptionSource,
-)
+from sim.launch.launch.launch_description_sources import AnyLaunchDescriptionSource, LaunchDescriptionSource
 from sim.launch.launch.substitution import normalize_to_list_of_substitutions, performed
 
 

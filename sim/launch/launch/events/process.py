@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from sim.launch.errors import unsupported
 from sim.launch.launch.event import Event
 
 __all__ = ["ProcessExited", "ProcessStarted", "RunningProcessEvent", "ShutdownProcess", "SignalProcess"]
@@ -56,8 +57,4 @@ class ShutdownProcess(Event):
         self.process_matcher = process_matcher
 
 
-class SignalProcess(Event):
-    """Not supported: signals other than those of a shutdown are not sent here."""
-
-    def __init__(self, *_: object, **__: object) -> None:
-        raise NotImplementedError("SignalProcess is not supported; ShutdownProcess ends a process")
+SignalProcess = unsupported("SignalProcess", "; ShutdownProcess ends a process")

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from types import FrameType
 
     from .entities import Entity
-    from .recorder import Recorder
+    from .recorder import Here, Recorder
 
 _SHIFT = 1_000_000
 """Nanoseconds by which a timer's rhythm may seem shifted: asking for it takes time, too."""
@@ -71,10 +71,11 @@ class Calls:
 
     def _wrapped(self, callback: Callable[..., Any], begin: Callable[..., None], takes: int | None) -> Any:
         """A callback that is told of, and hands on so many of its arguments, None: all."""
+        local = self._recorder.local
         if inspect.iscoroutinefunction(callback):
 
             async def run_async(*args: Any, **kwargs: Any) -> Any:
-                steps = _Steps(self, callback(*args[:takes], **kwargs), self._enter())
+                steps = _Steps(self, callback(*args[:takes], **kwargs), self._enter(local.here))
                 try:
                     begin(*args)
                 except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
@@ -85,12 +86,13 @@ class Calls:
                     self._fail(error)
                     raise
                 finally:
-                    self._leave(steps.outer)
+                    self._leave(local.here, steps.outer)
 
             return functools.wraps(callback)(run_async)
 
         def run(*args: Any, **kwargs: Any) -> Any:
-            outer = self._enter()
+            here = local.here
+            outer = self._enter(here)
             try:
                 begin(*args)
             except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
@@ -101,7 +103,7 @@ class Calls:
                 self._fail(error)
                 raise
             finally:
-                self._leave(outer)
+                self._leave(here, outer)
 
         return functools.wraps(callback)(run)
 
@@ -120,6 +122,11 @@ class Calls:
         here = self._recorder.here
         sent, here.sent = here.sent, 0
         self.begin_with(sent) if sent else self.begin()
+
+    def begin_guard(self, *_args: Any) -> None:
+        """Tell that a guard condition's callback starts; what triggers it from now on is another time."""
+        self._entity.due = 0
+        self.begin()
 
     def begin_timer(self, *_args: Any) -> None:
         """Tell that a timer's callback starts, and how late."""
@@ -154,34 +161,33 @@ class Calls:
 
     def suspend(self, outer: int) -> None:
         """Tell that the callback leaves the calling thread, on which ``outer`` runs again."""
-        self._come_off(outer)
-        self._recorder.put("callback_suspend", now(), self._entity.number, self._recorder.thread())
+        recorder = self._recorder
+        self._come_off(recorder.here, outer)
+        recorder.put("callback_suspend", now(), self._entity.number, recorder.thread())
 
     def resume(self) -> int:
         """Tell that it goes on on the calling thread; returns what ran there until now."""
-        outer = self._come_on()
-        self._recorder.put("callback_resume", now(), self._entity.number, self._recorder.thread())
+        recorder = self._recorder
+        outer = self._enter(recorder.here)
+        recorder.put("callback_resume", now(), self._entity.number, recorder.thread())
         return outer
 
-    def _enter(self) -> int:
-        if self._entity.wait is not None:
-            self._entity.waits_no_more(self._recorder)
-        return self._come_on()
-
-    def _leave(self, outer: int) -> None:
-        self._come_off(outer)
-        self._recorder.put("callback_end", now(), self._entity.number, self._recorder.thread())
-
-    def _come_on(self) -> int:
+    def _enter(self, here: Here) -> int:
         """Be what runs on the calling thread; returns what ran there until now."""
-        here = self._recorder.here
-        outer, here.entity = here.entity, self._entity.number
+        entity = self._entity
+        if entity.wait is not None:
+            entity.waits_no_more(self._recorder)
+        outer, here.entity = here.entity, entity.number
         if outer == 0 and here.spinner is not None:
-            here.spinner.busy[here.thread or self._recorder.thread()] = self._entity.number
+            here.spinner.busy[here.thread or self._recorder.thread()] = entity.number
         return outer
 
-    def _come_off(self, outer: int) -> None:
-        here = self._recorder.here
+    def _leave(self, here: Here, outer: int) -> None:
+        self._come_off(here, outer)
+        recorder = self._recorder
+        recorder.put("callback_end", now(), self._entity.number, here.thread or recorder.thread())
+
+    def _come_off(self, here: Here, outer: int) -> None:
         here.entity = outer
         if outer == 0 and here.spinner is not None:
             here.spinner.busy.pop(here.thread, None)

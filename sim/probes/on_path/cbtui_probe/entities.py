@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import inspect
 import sys
+import threading
 import time
 import weakref
 from functools import wraps
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
     from .tuning import Tuning
 
 _INCOMPATIBLE = "RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS"
+_ADVICE = "return the value from a pre-set callback, or refuse what was asked for"
 STATE = "_cbtui"
 """The attribute in which an entity, node, publisher or group of rclpy's has what the probe knows of it."""
 
@@ -34,7 +37,8 @@ class Entity:
         self.kind = kind
         self.number = 0
         self.due = 0
-        """When a timer is to be called next, in nanoseconds of the monotonic clock; 0: not known."""
+        """When a timer is to be called next, or a guard condition was triggered, in nanoseconds of the
+        monotonic clock; 0: not known, or not triggered."""
         self.period = 0
         """A timer's, in nanoseconds: to ask rclpy costs more than to remember."""
         self.wait: tuple[str, int, bool] | None = None
@@ -61,6 +65,15 @@ class Entity:
 
 def _nothing() -> None:
     return None
+
+
+def _overruled(name: str, frame: FrameType | None) -> str:
+    while frame is not None and not is_own(frame):
+        frame = frame.f_back
+    place = ""
+    if frame is not None:
+        place = f" ({Path(frame.f_code.co_filename).name}:{frame.f_lineno}, in {frame.f_code.co_name})"
+    return f"a parameter callback sets '{name}' while that is being set{place}"
 
 
 def state_of(thing: object) -> Any:
@@ -99,6 +112,32 @@ class Entities:
             self._watch_destroying(node_class, kind)
         self._watch_publishers(node_class)
         self._watch_waitables(node_class)
+        self._watch_parameters(node_class)
+
+    def _watch_parameters(self, node_class: Any) -> None:
+        """Tell once of each parameter that an on-set callback sets while it is being set."""
+        set_all = node_class._set_parameters_atomically_common
+        recorder, here = self._recorder, threading.local()
+        told: set[tuple[int, str]] = set()
+
+        @wraps(set_all)
+        def set_known(node: Any, parameters: Any, *args: Any, **kwargs: Any) -> Any:
+            outer = getattr(here, "parameters", {})
+            own = {(id(node), each.name): each for each in parameters}
+            for key in (own.keys() & outer.keys()) - told:
+                if node._parameters.get(key[1]) is not outer[key]:  # else it is stored: a post-set callback
+                    told.add(key)
+                    problem = _overruled(key[1], sys._getframe(1))
+                    text = f"{problem}: what was asked for is stored last; {_ADVICE}"
+                    kind, entity = "overruled", recorder.here.entity
+                    recorder.put("notice", now(), "WARN", text, entity, False, kind, problem, _ADVICE)
+            here.parameters = {**outer, **own}
+            try:
+                return set_all(node, parameters, *args, **kwargs)
+            finally:
+                here.parameters = outer
+
+        node_class._set_parameters_atomically_common = set_known
 
     def watch_periods(self, timer_class: Any) -> None:
         """Remember periods that the program changes."""
@@ -142,6 +181,8 @@ class Entities:
             self._know(node, made, entity, callback)
             if kind == "subscription":
                 self._watch_matching(made, entity.number, _place(sys._getframe(1)))
+            if kind == "guard_condition":
+                _watch_triggering(made, entity)
             return made
 
         setattr(node_class, f"create_{kind}", create)
@@ -150,8 +191,8 @@ class Entities:
         calls = Calls(self._recorder, entity)
         if entity.kind == "subscription":
             return calls.traced_with_info(callback)
-        begin = {"timer": calls.begin_timer, "service": calls.begin_service}.get(entity.kind)
-        return calls.traced(callback, begin)
+        begin = {"timer": calls.begin_timer, "service": calls.begin_service, "guard": calls.begin_guard}
+        return calls.traced(callback, begin.get(entity.kind))
 
     def _know(
         self, node: Any, made: Any, entity: Entity, callback: Callable[..., Any] | None, name: str = ""
@@ -282,6 +323,18 @@ class Entities:
         entity, callback = Entity("waitable"), server._execute_callback
         server._execute_callback = Calls(self._recorder, entity).traced(callback)
         self._know(node, _Execution(), entity, callback, name)
+
+
+def _watch_triggering(guard: Any, entity: Entity) -> None:
+    """Remember when a guard condition was triggered: asking it by a wait set would reset it."""
+    trigger = guard.trigger
+
+    @wraps(trigger)
+    def trigger_known() -> None:
+        entity.due = entity.due or now()
+        trigger()
+
+    guard.trigger = trigger_known
 
 
 def _place(frame: FrameType) -> tuple[str, int]:

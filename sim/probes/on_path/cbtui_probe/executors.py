@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import sys
 import weakref
+from contextlib import suppress
 from functools import wraps
 from typing import TYPE_CHECKING, Any
 
 from .callbacks import is_own
-from .entities import state_of
+from .entities import STATE, state_of
 from .recorder import now
 
 if TYPE_CHECKING:
@@ -24,24 +25,22 @@ _IDLE = 200_000_000
 class Spinner:
     """What the probe knows of one executor: its id, and how many callbacks it can run at once."""
 
-    def __init__(self, number: int, threads: int) -> None:
+    def __init__(self, number: int, threads: int, *, asks_groups: bool) -> None:
         self.number = number
         self.threads = threads
+        self.asks_groups = asks_groups
         self.waits = False
         """Whether a thread waits in it for something to become ready."""
         self.busy: dict[int, int] = {}
         """The threads that run its callbacks, and the entities of these, by their ids on the trace."""
         self.spins = 0
         """How many calls that spin it until something happens have not returned."""
-        self._spun_at = -_IDLE
+        self.spun_at = -_IDLE
+        """When it was last spun."""
 
     def is_spun(self) -> bool:
         """Whether such a call goes on, it waits or runs a callback, or did just now."""
-        return self.spins > 0 or self.waits or bool(self.busy) or now() - self._spun_at < _IDLE
-
-    def spun(self) -> None:
-        """It is being spun now."""
-        self._spun_at = now()
+        return self.spins > 0 or self.waits or bool(self.busy) or now() - self.spun_at < _IDLE
 
 
 class Executors:
@@ -50,18 +49,23 @@ class Executors:
     def __init__(self, recorder: Recorder, tuning: Tuning) -> None:
         self._recorder = recorder
         self._tuning = tuning
-        self._spinners: weakref.WeakKeyDictionary[Any, Spinner] = weakref.WeakKeyDictionary()
+        self._spinners: Any = weakref.WeakKeyDictionary()
 
     def spinner_of(self, executor: Any) -> Spinner | None:
         """What is known of an executor."""
-        return None if executor is None else self._spinners.get(executor)
+        known: Spinner | None = None if executor is None else self._spinners.get(executor)
+        return known
+
+    def all(self) -> list[Spinner]:
+        """What is known of each executor there is. Thread-safe, as its whole contents are copied at once."""
+        return list(self._spinners.data.values())
 
     def watch(self, rclpy: Any, rclpy_implementation: Any) -> None:
         """Come to know the executors of rclpy, and those made of C++."""
         executors = rclpy.executors
         base, pool_class = executors.Executor, executors.MultiThreadedExecutor
         make, make_pool, wait = base.__init__, pool_class.__init__, base.wait_for_ready_callbacks
-        add = base.add_node
+        add, local = base.add_node, self._recorder.local
 
         @wraps(make)
         def init(executor: Any, *args: Any, **kwargs: Any) -> None:
@@ -78,15 +82,14 @@ class Executors:
 
         @wraps(wait)
         def wait_for_ready_callbacks(executor: Any, *args: Any, **kwargs: Any) -> Any:
-            spinner, here = self._spinners[executor], self._recorder.here
+            spinner, here = getattr(executor, STATE), local.here
             outer, here.spinner = here.spinner, spinner
             spinner.waits = True
-            spinner.spun()
             try:
                 return wait(executor, *args, **kwargs)
             finally:
                 spinner.waits = False
-                spinner.spun()
+                spinner.spun_at = now()
                 if here.entity:  # otherwise its callbacks come now
                     here.spinner = outer
 
@@ -138,7 +141,7 @@ class Executors:
                 return spin(*args, **kwargs)
             finally:
                 spinner.spins -= 1
-                spinner.spun()
+                spinner.spun_at = now()
                 here.spinner = outer
 
         setattr(owner, name, spin_known)
@@ -150,9 +153,12 @@ class Executors:
         return is_spun and node in executor.get_nodes()
 
     def _know(self, executor: Any, threads: int) -> Spinner:
-        spinner = Spinner(self._recorder.new_id(), threads)
-        self._recorder.put_appeared("executor", spinner.number, type(executor).__name__, threads)
+        kind = type(executor).__name__
+        spinner = Spinner(self._recorder.new_id(), threads, asks_groups=kind != "EventsExecutor")
+        self._recorder.put_appeared("executor", spinner.number, kind, threads)
         self._spinners[executor] = spinner
+        with suppress(AttributeError):  # one made of C++ takes no attributes
+            setattr(executor, STATE, spinner)
         return spinner
 
     def _work_for(self, spinner: Spinner) -> Callable[[], None]:

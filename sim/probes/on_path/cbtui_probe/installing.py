@@ -9,6 +9,7 @@ from .callbacks import raised_at
 from .clients import watch_clients, watch_services
 from .entities import Entities
 from .executors import Executors
+from .positions import Positions
 from .recorder import Recorder, now
 from .sockets import Server
 from .tuning import Tuning
@@ -34,7 +35,14 @@ def install(folder: str) -> None:
     recorder = Recorder()
     tuning = Tuning(recorder)
     executors, entities = Executors(recorder, tuning), Entities(recorder, tuning)
-    server = Server(recorder, Waits(recorder, entities, executors, rclpy_implementation).look)
+    waits = Waits(recorder, entities, executors, rclpy_implementation)
+    positions = Positions(recorder, executors)
+
+    def look() -> None:
+        positions.look()
+        waits.look()
+
+    server = Server(recorder, look)
     server.start(folder)
     executors.watch(rclpy, rclpy_implementation)
     entities.watch(rclpy.node.Node)

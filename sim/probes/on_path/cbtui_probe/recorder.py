@@ -20,20 +20,28 @@ APPEARING = frozenset({"node", "group", "entity", "executor", "thread"})
 now = time.monotonic_ns
 
 
-class Here(threading.local):
-    """What runs on the calling thread."""
+class Here:
+    """What runs on one thread."""
 
-    thread = 0
-    entity = 0
-    """The entity whose callback runs, 0 for none."""
-    executor = 0
-    """The executor whose worker the thread is, 0 for a thread of the program's own."""
-    spinner: Any = None
-    """What is known of the executor that the thread spins or works for."""
-    sent = 0
-    """When the request was sent that the thread has taken, in nanoseconds since 1970; 0: not known."""
-    blocks = 0
-    """The service call that the thread waits for; -1: the one that it is about to make, 0: none."""
+    __slots__ = ("blocks", "entity", "executor", "sent", "spinner", "thread")
+
+    def __init__(self) -> None:
+        self.thread = 0
+        self.entity = 0
+        """The entity whose callback runs, 0 for none."""
+        self.executor = 0
+        """The executor whose worker the thread is, 0 for a thread of the program's own."""
+        self.spinner: Any = None
+        """What is known of the executor that the thread spins or works for."""
+        self.sent = 0
+        """When the request was sent that the thread has taken, in nanoseconds since 1970; 0: not known."""
+        self.blocks = 0
+        """The service call that the thread waits for; -1: the one that it is about to make, 0: none."""
+
+
+class _Local(threading.local):
+    def __init__(self) -> None:
+        self.here = Here()
 
 
 class Recorder:
@@ -43,11 +51,18 @@ class Recorder:
     """
 
     def __init__(self) -> None:
-        self.here = Here()
+        self.local = _Local()
         self.lost = 0
+        self.idents: dict[int, int] = {}
+        """Python's identifiers of the threads that have appeared, by their ids."""
         self.appeared: dict[int, tuple[Any, ...]] = {}
         self._events: deque[tuple[Any, ...]] = deque(maxlen=_BOUND)
         self._ids = count((os.getpid() << _ROOM) + 1)
+
+    @property
+    def here(self) -> Here:
+        """What runs on the calling thread; whoever cannot afford a call asks ``local``."""
+        return self.local.here
 
     def new_id(self) -> int:
         """An id that nothing else has."""
@@ -74,8 +89,9 @@ class Recorder:
 
     def thread(self) -> int:
         """The id of the calling thread, which appears when it is first asked for."""
-        here = self.here
+        here = self.local.here
         if here.thread == 0:
             here.thread = self.new_id()
+            self.idents[here.thread] = threading.get_ident()
             self.put_appeared("thread", here.thread, threading.current_thread().name, 0, here.executor)
         return here.thread

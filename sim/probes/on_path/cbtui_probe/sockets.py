@@ -27,7 +27,13 @@ if TYPE_CHECKING:
     from .recorder import Recorder
 
 _PERIOD = 0.01
-"""Seconds between two looks."""
+"""Seconds between two looks, at least."""
+_LONGEST_PERIOD = 0.1
+_WAITING_SHARE = 0.1
+"""The share of the time that the thread waits for the interpreter's lock, at most: meanwhile each call into
+rclpy that lets go of the lock is slowed."""
+_LOOKING_SHARE = 0.02
+"""The share of one core that looking takes, at most, as far as the longest period allows."""
 _LATEST = 20_000
 """Events that are kept for consoles that are yet to come."""
 _CONSOLES = 4
@@ -142,17 +148,23 @@ class Server:
         sys.stderr.write(f"cbtui's probe found no free port from {first} to {first + PORTS - 1}\n")
 
     def _serve(self) -> None:
-        looks = True
+        looks, looked, period = True, 0.0, _PERIOD
         while not self._ends.is_set():
+            began = time.monotonic()
             with suppress(OSError):
-                for listener in select.select(self._listeners, [], [], _PERIOD)[0]:
+                for listener in select.select(self._listeners, [], [], period)[0]:
                     self._let_in(listener)
+            waited = time.monotonic() - began - period
+            period = max(_PERIOD, waited / _WAITING_SHARE, looked / _LOOKING_SHARE)
+            period = min(period, _LONGEST_PERIOD)
             self._meet()
             if looks:
+                began = time.thread_time()
                 try:
                     self._look()
                 except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
                     looks = self._goes_on_after(error)
+                looked = time.thread_time() - began
             self._send()
 
     def _goes_on_after(self, error: Exception) -> bool:

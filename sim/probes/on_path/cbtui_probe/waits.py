@@ -19,9 +19,12 @@ if TYPE_CHECKING:
     from .recorder import Recorder
 
 GROUP_HELD, NO_FREE_WORKER, NOBODY_SPINS = "group held", "no free worker", "nobody spins"
+EVENT_QUEUE = "behind others in the event queue"
 
 _KINDS = ("subscription", "client", "service")
-"""What a wait set tells of; timers tell themselves."""
+"""What a wait set tells of. Timers tell themselves, and guard conditions are watched as they are
+triggered. An action's waitable remembers its place in the latest wait set, so that a second one would confuse
+its executor: only that it was taken out and has not run yet can be told."""
 
 
 class Waits:
@@ -51,7 +54,7 @@ class Waits:
         found: dict[Entity, int] = {}
         reasons: dict[Entity, tuple[str, int, bool]] = {}
         unsure: list[tuple[str, Any, Entity]] = []
-        for kind in ("timer", *_KINDS):
+        for kind in ("timer", "guard", "waitable", *_KINDS):
             for made in list(getattr(node, f"{kind}s")):
                 entity = state_of(made)
                 if entity is None or entity.number == 0:
@@ -64,8 +67,12 @@ class Waits:
                     late = _lateness(made)
                     if late is not None:
                         found[entity] = now() - late
+                elif kind == "guard" and entity.due:
+                    found[entity] = entity.due
                 elif made._executor_event:
                     found[entity] = now()
+                elif kind not in _KINDS:
+                    continue
                 elif spinner is None or not spinner.waits or reason[0] == GROUP_HELD:
                     unsure.append((kind, made, entity))
         for entity in self._ready_of(node, unsure):
@@ -114,7 +121,9 @@ def _reason(made: Any, spinner: Spinner | None) -> tuple[str, int, bool] | None:
         return GROUP_HELD, 0 if holder is None else holder.number, full
     if spinner is None or not spinner.is_spun():
         return NOBODY_SPINS, 0, False
-    return (NO_FREE_WORKER, busy[0], True) if full else None
+    if not full:
+        return None
+    return NO_FREE_WORKER if spinner.asks_groups else EVENT_QUEUE, busy[0], True
 
 
 def _lateness(timer: Any) -> int | None:

@@ -1,0 +1,253 @@
+"""A run, in one or many orders of its threads, and what a test can ask of it, in the words of the checks."""
+
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NoReturn, Self
+
+from cbtui.pytest_plugin.failure_report import Recordings, lanes_text
+from cbtui.runs.judged.check_text import verdict_line
+from cbtui.runs.judged.checking import ObservedRun
+from lessons import checks
+from lessons.checks import Check, Stretch
+from lessons.judge import Judge, JudgedCheck
+from lessons.lesson import Lesson
+from sim.engine.setup import RunSetup
+from sim.plural import counted
+from sim.trace.events import AnyEvent, encode
+from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
+
+__tracebackhide__ = True
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of one schedule; ``events`` are empty if they were not kept."""
+
+    seed: int
+    observed: ObservedRun
+    events: Sequence[AnyEvent] = field(default=(), repr=False)
+
+
+class CheckedRun:
+    """A run that is over. Each question is asked of every schedule; the first one that fails fails the test.
+
+    Methods return the run itself, so that questions can follow one another.
+    """
+
+    def __init__(
+        self,
+        outcomes: Sequence[Outcome],
+        setup: RunSetup,
+        lesson: Lesson | None,
+        again: Callable[[int], Outcome],
+        recordings: Recordings,
+    ) -> None:
+        self._outcomes = outcomes
+        self._setup = setup
+        self._lesson = lesson
+        self._again = again
+        self._recordings = recordings
+
+    @property
+    def timeline(self) -> Timeline:
+        """Everything that is known of the run, of the first schedule if there are several."""
+        return self._outcomes[0].observed.timeline
+
+    @property
+    def timelines(self) -> Sequence[Timeline]:
+        """The same for every schedule."""
+        return [each.observed.timeline for each in self._outcomes]
+
+    @property
+    def trouble(self) -> str | None:
+        """Why the program failed, in a sentence; None if it did not."""
+        return next((each.observed.trouble for each in self._outcomes if each.observed.trouble), None)
+
+    @cached_property
+    def digest(self) -> str:
+        """A digest of all events of the first schedule: equal runs have equal ones, on virtual time."""
+        first = self._outcomes[0]
+        events = first.events or self._again(first.seed).events
+        packed = hashlib.sha256()
+        for event in events:
+            packed.update(encode([event]))
+        return packed.hexdigest()
+
+    def callback(self, name: str) -> "AskedCallback":
+        """A callback by its function's name, its topic or its service: ``odom_callback``, ``/odom``."""
+        return AskedCallback(self, name)
+
+    def service(self, name: str) -> "AskedService":
+        """A service by its name: ``/motor_power``."""
+        return AskedService(self, name)
+
+    def chain(self, *names: str) -> "AskedChain":
+        """Messages from a first topic to a last one; what lies between may be named, too."""
+        return AskedChain(self, names)
+
+    def passes(self, *asked: Check) -> Self:
+        """Any checks, such as those of ``lessons.checks``."""
+        for check in asked:
+            self._ask(check)
+        return self
+
+    def passes_its_checks(self) -> Self:
+        """The checks of the lesson that was run."""
+        if self._lesson is None:
+            raise ValueError(
+                "only a lesson has checks of its own; name one in cbtui('split-groups', 'mine.py')"
+            )
+        return self.passes(*Judge(self._lesson).checks)
+
+    def ends_well(self) -> Self:
+        """The program neither raises nor is broken off."""
+        failed = [each for each in self._outcomes if each.observed.trouble is not None]
+        for each in failed[:1]:
+            self._fail(each, str(each.observed.trouble), each.observed.timeline.end, len(failed))
+        return self
+
+    def has_no_deadlock(self) -> Self:
+        """No callback waits for what can never come, and no threads for each other's locks."""
+        return self.passes(checks.never_stuck())
+
+    def has_no_problem(self, rule: str | None = None) -> Self:
+        """The diagnosis finds no problem: none at all, or none of a rule such as ``group-starvation``."""
+        return self.passes(checks.no_problems() if rule is None else checks.no_problem(rule))
+
+    def never_raises(self) -> Self:
+        """No callback ends with an exception."""
+        return self.passes(checks.never_raises())
+
+    def begins_in_order(self, *callbacks: str) -> Self:
+        """All of these callbacks are called, for the first time in this order."""
+        return self.passes(checks.begin_in_order(*callbacks))
+
+    def never_overlaps(self, *callbacks: str) -> Self:
+        """No two calls of these callbacks run at the same time."""
+        return self.passes(checks.never_overlap(*callbacks))
+
+    def keeps_its_groups(self) -> Self:
+        """No two callbacks of one mutually exclusive group run at the same time."""
+        return self.passes(checks.exclusive_groups_hold())
+
+    def uses_threads(self, at_least: int) -> Self:
+        """At some moment callbacks run on so many threads."""
+        return self.passes(checks.uses_threads(at_least))
+
+    def answers_every_call(self) -> Self:
+        """Every service call gets its answer, and its caller takes it; there is at least one."""
+        return self.passes(checks.every_call_answered())
+
+    def logs(self, text: str, at_least: int = 1) -> Self:
+        """The log has lines with a text in them."""
+        return self.passes(checks.log_says(text, at_least))
+
+    def never_logs(self, text: str) -> Self:
+        """No line of the log has a text in it."""
+        return self.passes(checks.log_never_says(text))
+
+    def _ask(self, check: Check) -> None:
+        judged = [(each, check.judge(each.observed.timeline)) for each in self._outcomes]
+        failed = [(each, verdict) for each, verdict in judged if not verdict.passed]
+        for outcome, verdict in failed[:1]:
+            said = f"not so: {check.asks}\n{verdict_line(JudgedCheck(check, verdict))}"
+            self._fail(outcome, said, verdict.at, len(failed))
+
+    def _fail(self, outcome: Outcome, said: str, at: Nanoseconds | None, failed: int) -> NoReturn:
+        kept = outcome if outcome.events else self._again(outcome.seed)
+        lines = [said]
+        if len(self._outcomes) > 1 or outcome.seed:
+            of = len(self._outcomes)
+            lines.append(f"in {failed} of {counted(of, 'schedule')}, this one is --cbtui-seed {outcome.seed}")
+        lines.append(self._recordings.keep(self._setup, outcome.seed, kept.events))
+        raise AssertionError("\n".join([*lines, "", *lanes_text(outcome.observed.timeline, at)]))
+
+
+@dataclass(frozen=True)
+class AskedCallback:
+    """What can be asked about one callback; each method returns the run."""
+
+    run: CheckedRun
+    name: str
+
+    def is_called(
+        self, at_least: int = 1, *, at_most: int | None = None, exactly: int | None = None
+    ) -> CheckedRun:
+        """It is called so often."""
+        least, most = (at_least, at_most) if exactly is None else (exactly, exactly)
+        return self.run.passes(checks.is_called_between(self.name, least, most))
+
+    def is_never_called(self) -> CheckedRun:
+        """It is not called at all."""
+        return self.run.passes(checks.is_called_between(self.name, 0, 0))
+
+    def keeps_coming(self, at_least: float, *, while_: Stretch | None = None) -> CheckedRun:
+        """It is called so many times a second, all the time or during a stretch of ``lessons.checks``."""
+        return self.run.passes(checks.keeps_coming(self.name, while_ or checks.WHOLE_RUN, at_least))
+
+    def never_waits_longer_than(self, seconds: float) -> CheckedRun:
+        """Once it is ready it runs within so many seconds."""
+        return self.run.passes(checks.never_waits_longer_than(self.name, seconds))
+
+    def never_runs_longer_than(self, seconds: float) -> CheckedRun:
+        """None of its calls takes longer."""
+        return self.run.passes(checks.never_runs_longer_than(self.name, seconds))
+
+    def never_takes_older_than(self, seconds: float) -> CheckedRun:
+        """None of the messages that it gets is older then."""
+        return self.run.passes(checks.never_takes_older_than(self.name, seconds))
+
+    def never_decides_on_older_than(self, seconds: float, *, of: str) -> CheckedRun:
+        """When this timer's callback begins, the last message of a subscription is not older."""
+        return self.run.passes(checks.data_never_older(of, self.name, seconds))
+
+    def never_loses_messages(self) -> CheckedRun:
+        """Its queue never overflows."""
+        return self.run.passes(checks.never_loses_messages(self.name))
+
+    def never_overlaps(self, *others: str) -> CheckedRun:
+        """It never runs beside others, or beside itself if none is named."""
+        return self.run.passes(checks.never_overlap(self.name, *others))
+
+    def overlaps(self, other: str) -> CheckedRun:
+        """It runs at the same time as another one at least once."""
+        return self.run.passes(checks.overlap(self.name, other))
+
+    def never_gets_ahead_of(self, other: str) -> CheckedRun:
+        """Each of its calls comes after one more call of another callback."""
+        return self.run.passes(checks.never_gets_ahead_of(self.name, other))
+
+    def ticks_on_time(self, within: float) -> CheckedRun:
+        """No call of this timer is later than so many seconds."""
+        return self.run.passes(checks.ticks_on_time(self.name, within))
+
+
+@dataclass(frozen=True)
+class AskedService:
+    """What can be asked about one service; each method returns the run."""
+
+    run: CheckedRun
+    name: str
+
+    def answers_within(self, seconds: float) -> CheckedRun:
+        """Every call gets its answer within so many seconds; there is at least one."""
+        return self.run.passes(checks.replies_within(self.name, seconds))
+
+
+@dataclass(frozen=True)
+class AskedChain:
+    """What can be asked about a chain of messages; each method returns the run."""
+
+    run: CheckedRun
+    names: Sequence[str]
+
+    def never_takes_longer_than(self, seconds: float) -> CheckedRun:
+        """From a message of the first topic to the first that comes of it on the last one."""
+        return self.run.passes(checks.chain_never_takes_longer_than(self.names, seconds))
+
+    def never_uses_older_than(self, seconds: float) -> CheckedRun:
+        """From each message of the last topic back to the one of the first that it came of."""
+        return self.run.passes(checks.chain_never_uses_older_than(self.names, seconds))

@@ -1,0 +1,59 @@
+"""What a test that failed tells: the reason, the moment, the lanes as text, the seed and a recording."""
+
+import os
+import re
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from cbtui.runs.recorded.recording_file import CannotRecordError, start_recording
+from sim.engine.setup import RunSetup
+from sim.trace.events import AnyEvent
+from sim.trace.model import Nanoseconds, Window
+from sim.trace.timeline import Timeline
+from sim.units import SECOND
+
+_WIDTH = 100
+_MOST_LANES = 24
+_AROUND: Nanoseconds = 5 * SECOND
+"""How far before and after its moment a failure shows the lanes."""
+
+
+class Recordings:
+    """The recordings of one test's runs; the folder is made with the first."""
+
+    def __init__(self, folder: Path, test: str) -> None:
+        self._folder = folder
+        self._name = re.sub(r"[^\w.-]+", "-", test.replace(".py::", "-")).strip("-")[:150]
+
+    def keep(self, setup: RunSetup, seed: int, events: Sequence[AnyEvent]) -> str:
+        """Write a run to a file; returns a clause that says where it is and what to do with it."""
+        path = self._folder / f"{self._name}{f'-seed{seed}' if seed else ''}.mcap"
+        try:
+            self._folder.mkdir(parents=True, exist_ok=True)
+            recorder = start_recording(path, setup, replace=True)
+        except (CannotRecordError, OSError) as error:
+            return f"recording: {error}"
+        recorder.take(events)
+        recorder.close()
+        shown = os.path.relpath(path)
+        if recorder.failure is not None:
+            return f"recording: {shown} is not whole: {recorder.failure}"
+        return f"recording: cbtui replay {shown}"
+
+
+def lanes_text(timeline: Timeline, at: Nanoseconds | None) -> Iterator[str]:
+    """Yield the rows of the lanes around a moment, None for the run's end."""
+    from cbtui.looks.theme import Charset
+    from cbtui.widgets.lanes import LanePainter, wanted_rows
+
+    now = timeline.end if at is None else at
+    end = min(timeline.end, max(now + _AROUND, 2 * _AROUND))
+    window = Window(max(0, min(now - _AROUND, end - 2 * _AROUND)), max(end, 1))
+    charset = (
+        Charset.BLOCK if (sys.__stdout__ and "utf" in sys.__stdout__.encoding.lower()) else Charset.ASCII
+    )
+    height = min(wanted_rows(timeline), _MOST_LANES)
+    picture = LanePainter(charset).paint(timeline, window, now, _WIDTH, height)
+    for row in picture.rows:
+        yield "".join(run.text for run in row).rstrip()

@@ -1,0 +1,46 @@
+"""The mark, the options and the fixture; pytest loads this always, and cbtui itself only for a test."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from cbtui.pytest_plugin.runner import Runner
+
+_MARK = (
+    "cbtui(seconds=10, calls=(), lines=(), arguments=(), threads=None, groups={}, periods={}, "
+    "sensor_rate=None, schedules=1, seed=None, on='model', python=None, robot=True, limit=60): "
+    "how the fixture cbtui runs programs"
+)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the options, which all begin with ``--cbtui-``."""
+    group = parser.getgroup("cbtui", "ROS 2 nodes on virtual time")
+    group.addoption(
+        "--cbtui-on", choices=("model", "ros2"), help="run on this whatever tests ask for: model or ros2"
+    )
+    group.addoption(
+        "--cbtui-seed",
+        metavar="S",
+        type=int,
+        help="run in this order of threads alone, as a failure names it",
+    )
+    parser.addini(
+        "cbtui_recordings", "folder for the recordings of runs that failed a test", default="cbtui-recordings"
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Describe the mark."""
+    config.addinivalue_line("markers", _MARK)
+
+
+@pytest.fixture
+def cbtui(request: pytest.FixtureRequest) -> Runner:
+    """Runs a node file, a launch file or a lesson, and returns the run to be asked: ``cbtui("node.py")``."""
+    from cbtui.pytest_plugin.runner import Runner
+
+    return Runner(request)

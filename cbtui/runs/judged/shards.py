@@ -1,0 +1,98 @@
+"""Parts of an exploration that were run apart, as on the machines of a CI matrix, in files to be merged."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import msgspec
+
+from cbtui.runs.judged.exploring import ScheduleResult
+from sim.foreign_file import read_bytes
+
+_MOST_BYTES = 1 << 28
+
+
+class BadShardError(Exception):
+    """Files that cannot be merged, or a file that cannot be written; the text is a sentence."""
+
+
+class Shard(msgspec.Struct, frozen=True, kw_only=True):
+    """The results of some seeds; ``first`` and ``schedules`` are the seeds of the whole exploration.
+
+    ``replays`` are the commands that repeat a schedule, without its seed. Of a search within a bound of
+    ``preemptions`` there are so many ``parts``; the results are of those that are ``done``, each to its end,
+    and ``preempted`` has the preemptions of each seed.
+    """
+
+    program: str
+    replays: tuple[str, ...]
+    first: int
+    schedules: int
+    strategy: str
+    results: dict[str, ScheduleResult]
+    preemptions: int | None = None
+    parts: int = 1
+    done: tuple[int, ...] = ()
+    preempted: dict[str, int] = {}
+
+    @property
+    def missing(self) -> str:
+        """What of the whole exploration has no result here, with its verb; "" for nothing."""
+        if self.preemptions is not None:
+            open_parts = [str(part) for part in range(1, self.parts + 1) if part not in self.done]
+            return f"part {', '.join(open_parts)} of {self.parts}, run to its end, is" if open_parts else ""
+        missing = self.schedules - len(self.results)
+        return f"{missing} of {self.schedules} schedules are" if missing else ""
+
+    def ranked(self) -> dict[str, ScheduleResult]:
+        """The results, the simplest of a search first, others in the order of their seeds."""
+        return {seed: self.results[seed] for seed in sorted(self.results, key=self._rank)}
+
+    def _rank(self, seed: str) -> tuple[int, int, str]:
+        if self.preemptions is None:
+            return int(seed.rpartition(":")[2]), 0, seed
+        return self.preempted[seed], seed.count("="), seed
+
+    def write_to(self, path: Path) -> None:
+        """Write the file.
+
+        Raises:
+            BadShardError: it cannot be written.
+        """
+        try:
+            path.write_bytes(msgspec.json.format(msgspec.json.encode(self)))
+        except OSError as error:
+            raise BadShardError(f"{path} cannot be written: {error.strerror}") from None
+
+
+def merged(paths: Sequence[Path]) -> Shard:
+    """All results of some files; those of a seed that is in several are taken once.
+
+    Raises:
+        BadShardError: a file cannot be read, or is of another exploration than the first.
+    """
+    first, *others = (_read(path) for path in paths)
+    whole = first
+    for path, other in zip(paths[1:], others, strict=True):
+        if _of_all_parts(other) != _of_all_parts(first):
+            raise BadShardError(f"{path} is of another exploration than {paths[0]}: other options or program")
+        whole = msgspec.structs.replace(
+            whole,
+            results={**whole.results, **other.results},
+            done=(*whole.done, *other.done),
+            preempted={**whole.preempted, **other.preempted},
+        )
+    return whole
+
+
+def _of_all_parts(shard: Shard) -> Shard:
+    """What all parts of an exploration have in common."""
+    return msgspec.structs.replace(shard, results={}, done=(), preempted={})
+
+
+def _read(path: Path) -> Shard:
+    try:
+        return msgspec.json.decode(read_bytes(path, _MOST_BYTES), type=Shard)
+    except OSError as error:
+        raise BadShardError(f"{path} cannot be read: {error.strerror}") from None
+    except (msgspec.DecodeError, UnicodeDecodeError) as error:
+        raise BadShardError(f"{path} is no part of an exploration: {error}") from None

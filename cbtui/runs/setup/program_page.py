@@ -1,0 +1,98 @@
+"""The guide to a learner's own file as Markdown: what was found in its run, and what to try."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
+
+from cbtui.runs.setup.changeable import programs_own
+from sim.durations import duration
+from sim.plural import counted, plural
+from sim.trace.descriptions import executor_label
+from sim.trace.events import EntityKind
+from sim.trace.model import EntityInfo
+from sim.trace.timeline import Timeline
+
+MOST = 20
+"""Nodes, groups, and callbacks of one group, that are listed: a program may make them without end."""
+
+_ABOUT = """# {name}
+
+Your own file, on {clock} time. Save it, and it runs again; `o` opens it in your editor.
+"""
+_SIGNS = """## What you see
+
+Every thread that runs callbacks has a lane; below are the callback groups, in the order in which the program
+fills them, with what waits in them and why. `?` explains each sign.
+"""
+
+
+def page_of_program(
+    name: str, clock: str, timeline: Timeline, problems: Sequence[str] = ()
+) -> Mapping[str, str]:
+    """Return the sections of the page; ``problems`` are what went wrong, the worst first."""
+    tries = "\n".join(f"- {line}" for line in _tries(timeline, problems))
+    return {
+        "about": _ABOUT.format(name=name, clock=clock),
+        "found": f"## What was found\n\n{_found(timeline)}\n",
+        "tries": f"## What to try\n\n{tries}\n",
+        "signs": _SIGNS,
+    }
+
+
+def _found(timeline: Timeline) -> str:
+    """The nodes with their executors, and the groups with their callbacks."""
+    if not timeline.nodes:
+        ended = timeline.ended
+        return "No node yet: the program starts." if ended is None else f"It made no node: {ended.reason}"
+    names = _listed(f"``{name}``" for name in timeline.nodes.values())
+    lines = [
+        f"- {plural(len(timeline.nodes), 'node')} {names}, in {executor_label(timeline) or 'no executor yet'}"
+    ]
+    for group in islice(timeline.groups.values(), MOST):
+        own = _listed(_callback(each) for each in timeline.group_members(group.id) if programs_own(each))
+        if own:
+            lines.append(f"- group {group.letter}, {group.kind.value}: {own}")
+    return "\n".join(lines)
+
+
+def _listed(names: Iterator[str]) -> str:
+    listed = list(islice(names, MOST + 1))
+    return ", ".join(listed if len(listed) <= MOST else [*listed[:MOST], "…"])
+
+
+def _callback(entity: EntityInfo) -> str:
+    match entity.kind:
+        case EntityKind.TIMER:
+            return f"``{entity.spoken_name}`` every {duration(entity.period)}"
+        case EntityKind.CLIENT:
+            return f"client of ``{entity.name}``"
+        case _ if entity.name and entity.callback:
+            return f"``{entity.callback}`` for ``{entity.name}``"
+    return f"``{entity.spoken_name}``"
+
+
+def _tries(timeline: Timeline, problems: Sequence[str]) -> Iterator[str]:
+    """What may be done with this program, the most useful first."""
+    own = [each for each in timeline.entities.values() if programs_own(each)]
+    if problems:
+        yield f"`d` shows {counted(len(problems), 'problem')}, at which line, and a cure: {problems[0]}."
+    if any(each.kind is EntityKind.SERVICE for each in own):
+        yield "`s` calls its first SetBool service with true, `S` with false."
+    silent = [
+        each.name
+        for each in own
+        if each.kind is EntityKind.SUBSCRIPTION and each.name not in timeline.names_sent
+    ]
+    if silent:
+        yield (
+            f"Nothing was sent on ``{silent[0]}`` yet: `:` and ``ros2 topic pub {silent[0]}``; "
+            "`tab` completes the rest."
+        )
+    if own:
+        yield (
+            "`t` gives the executor other threads, `g` the selected callback another group, `p` timers other "
+            "periods: each runs it again and tells the line of code that does so; `C` compares both runs."
+        )
+    if timeline.arena is None:
+        yield "`r` runs it again. The lessons' robot comes when your file uses ``/odom`` or ``/cmd_vel``."
+    else:
+        yield "`r` puts the robot back to its start, and runs the file again when it is over."

@@ -1,0 +1,96 @@
+"""The screen on which the learner is the scheduler: in a puzzle, or from a moment of a run on."""
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import ClassVar
+
+import msgspec
+from textual import on
+from textual.widget import Widget
+from textual.widgets import OptionList
+
+from cbtui.engines.session import Deliver, Ended, OpenSession
+from cbtui.keys.action import CHOICE, PANES
+from cbtui.looks.theme import Charset
+from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.live.playhead import Playhead
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.shown_program import ShownProgram
+from cbtui.screens.parts.choices import Choices
+from cbtui.screens.parts.engine_keys import RecordingKey
+from cbtui.screens.parts.restarts import Restarts
+from cbtui.screens.parts.runs import RunController
+from cbtui.screens.run import RunScreen
+from cbtui.widgets.choice import ChoiceView
+from cbtui.widgets.code import CodeView
+from lessons.puzzles import Puzzle
+
+_PUZZLE_SPAN = 200_000_000
+"""Nanoseconds that the lanes show of a puzzle: all of its run."""
+
+
+class ChoosingScreen(RunScreen[LiveRun]):
+    """Runs a program that stops at each choice among its threads until the learner has chosen.
+
+    ``puzzle`` None: without a goal.
+    """
+
+    CSS_PATH: ClassVar[list[Path]] = [  # type: ignore[assignment]  # a list is as good as one path
+        Path(__file__).with_name("run.tcss"),
+        Path(__file__).with_name("choosing.tcss"),
+    ]
+    PANES_HERE = (*PANES, CHOICE)
+    FIRST_PANE = CHOICE
+    AUTO_FOCUS = "ChoiceOptions"
+
+    def __init__(
+        self, subject: ShownProgram, open_session: OpenSession, charset: Charset, puzzle: Puzzle | None = None
+    ) -> None:
+        self._open_session = open_session
+        runs = RunController(self._make_run, self.post)
+        super().__init__(subject, charset, runs)
+        restarts = Restarts(self, runs, Changes(), self.show_new_run, speed=lambda: None)
+        self._choices = Choices(self, runs, restarts, puzzle)
+        if puzzle is not None:
+            self.navigation.playhead = Playhead(span=_PUZZLE_SPAN)
+        self.add_parts(self._choices, RecordingKey(self, runs, self.finisher))
+        runs.begin(speed=None)
+
+    def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
+        setup = msgspec.structs.replace(self.subject.set_up(None, speed), seed=self._choices.seed)
+        return LiveRun(setup, self._open_session, deliver, ended)
+
+    def compose_panes(self) -> Iterator[Widget]:
+        """Yield the panes, the choice first: it stands before the code."""
+        yield ChoiceView(id=CHOICE)
+        yield from super().compose_panes()
+
+    def draw_pane(self, pane: Widget) -> None:
+        """Show the moment on screen on one pane."""
+        if isinstance(pane, ChoiceView):
+            pane.show(self._choices.sheet)
+        else:
+            super().draw_pane(pane)
+
+    def drawn(self) -> None:
+        """Show the code beside the choice, and look whether the goal is reached."""
+        self.set_class(self.panes.current == CHOICE, "-choosing")
+        self._choices.look()
+
+    @on(RunController.Delivered)
+    def _take_question(self, message: RunController.Delivered) -> None:
+        if message.run == self.runs.number:
+            self._choices.take(message.events)
+            self.redraw()
+
+    @on(OptionList.OptionSelected)
+    def _choose(self, message: OptionList.OptionSelected) -> None:
+        self._choices.choose(message.option_index)
+
+    @on(OptionList.OptionHighlighted)
+    def _show_line(self, message: OptionList.OptionHighlighted) -> None:
+        """Show the line in front of which the highlighted thread stands."""
+        options = self.query_one(ChoiceView).sheet.options
+        if message.option_index < len(options) and options[message.option_index].line:
+            option = options[message.option_index]
+            self.query_one(CodeView).show_line(option.file, option.line)

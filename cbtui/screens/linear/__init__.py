@@ -1,0 +1,1 @@
+"""The console for screen readers: plain lines of what happens, appended and never repainted."""

@@ -1,0 +1,223 @@
+"""A lesson or a file in lines, with the commands of its engine."""
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
+from threading import Event, Thread
+
+import msgspec
+
+from cbtui.engines.session import Deliver, Ended, OpenSession
+from cbtui.learning.lesson_page import introduction
+from cbtui.learning.outcome import Observe
+from cbtui.runs.live.findings import ExplainedFinding
+from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.shown_program import ShownProgram
+from cbtui.screens.linear.choosing import ChoosingConsole
+from cbtui.screens.linear.console import LinearConsole, LineTerminal
+from cbtui.screens.linear.dialogue import Dialogue
+from cbtui.screens.linear.teaching import Teaching
+from cbtui.screens.parts.choices import TakeOver
+from cbtui.screens.parts.cures import CureTrials
+from cbtui.screens.parts.engine_keys import PaceKeys, WorldKeys
+from cbtui.screens.parts.part import ScreenPart
+from cbtui.screens.parts.restarts import Restarts
+from lessons.lesson import Lesson
+from sim.durations import timestamp
+from sim.engine.setup import Keyboard
+from sim.trace.figures.comparison import compare, first_difference
+from sim.trace.figures.comparison_text import comparison_lines
+from sim.trace.incremental import run_to_end
+from sim.trace.model import Nanoseconds, Window
+from sim.units import SECOND
+
+_COMPARED: Nanoseconds = 10 * SECOND
+"""How far a run has to come until it is compared, unless the one before was shorter."""
+
+
+class LessonConsole(LinearConsole[LiveRun]):
+    """Runs a program; a lesson asks for predictions before, and explains them after.
+
+    ``observe`` runs the lesson that explains the predictions.
+    """
+
+    def __init__(
+        self,
+        terminal: LineTerminal,
+        subject: ShownProgram,
+        changes: Changes,
+        open_session: OpenSession,
+        observe: Observe,
+    ) -> None:
+        super().__init__(terminal, subject, self._make_run, live=lambda: self.runs.run)
+        self._open_session = open_session
+        runs, lesson, following = self.runs, subject.lesson, subject.following
+        self.restarts = Restarts(self, runs, changes, self.show_new_run, speed=lambda: runs.run.speed)
+        self._comparison = LinearComparison(self, self.restarts)
+        trials = CureTrials(runs, self.restarts, subject, self._comparison.action_compare)
+        self._cures = CuresByNumber(self, trials)
+        self._teaching = None if lesson is None else self._teaching_of(lesson, observe)
+        take_over = TakeOver(runs, subject, self._open_choosing)
+        keys = (PaceKeys(self, runs), WorldKeys(runs), TypedLines(self), self.restarts, take_over)
+        more = filter(None, (self._comparison, self._cures, self._teaching))
+        on = {} if following is None else {"next_lesson": partial(self.open_lesson, following)}
+        self.add_parts(*keys, *more, **on)
+        runs.begin(1.0)
+        self.telling.begin()
+
+    def _teaching_of(self, lesson: Lesson, observe: Observe) -> Teaching:
+        teaching = Teaching(
+            self,
+            lesson,
+            observe,
+            lambda outcome: self.post(lambda: teaching.tell_explanation(outcome)),
+            lambda: self.runs.run.setup.real,
+            self.progress,
+        )
+        return teaching
+
+    def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
+        changes = self.restarts.changes
+        setup = changes.applied(self.subject.set_up(changes.threads, speed))
+        setup = msgspec.structs.replace(setup, keyboard=Keyboard.LIVE)
+        return LiveRun(setup, self._open_session, deliver, ended)
+
+    def _open_choosing(self, subject: ShownProgram) -> None:
+        """Let the learner choose who goes on, and come back to this run."""
+        ChoosingConsole(self.terminal, subject, self._open_session).run()
+        self.tell(f"back to {self.subject.heading}")
+
+    def run(self) -> Lesson | None:
+        """Run until the person leaves; no cure is tried any longer then."""
+        try:
+            return super().run()
+        finally:
+            self._cures.given_up.set()
+
+    def greet(self) -> Dialogue:
+        """Tell what is run, have it predicted, and start it."""
+        teaching = self._teaching
+        self.tell_page(introduction(self.subject.guide) or f"# {self.subject.heading}")
+        if teaching is not None:
+            if teaching.can_predict and not replace(self.restarts.changes, real=None).words:
+                yield from teaching.predict()
+            self.tell_page(teaching.lesson.task or "")
+        self.tell(self.runs.run.start())
+        self.tell("The run begins. ? tells the keys, q leaves.")
+
+    def turn(self) -> None:
+        """Tell what is new, and the comparison that is due."""
+        super().turn()
+        self._comparison.tell_when_due()
+
+
+@dataclass
+class TypedLines(ScreenPart):
+    """Asks for lines: those of ros2, input of the program, and a number of threads."""
+
+    host: LessonConsole
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer what the run takes."""
+        run = self.host.runs.run
+        return {"prompt": run.alive, "type": run.asked is not None}.get(action, bool(run.setup.programs))
+
+    def action_prompt(self) -> None:
+        """Ask for a line, or the label of a key."""
+        self.host.ask(self._ask("Line:", lambda line: self.host.post(lambda: self.host.carry_out(line))))
+
+    def action_type(self) -> None:
+        """Ask for a line for the program that reads."""
+        self.host.ask(self._ask("For the program:", lambda line: self.host.runs.run.type(f"{line}\n")))
+
+    def action_threads(self) -> None:
+        """Ask for a number of threads, and run again."""
+        asked = "How many threads should the executor have? Nothing for the program's own:"
+        self.host.ask(self._ask(asked, self._take_threads))
+
+    def _ask(self, question: str, take: Callable[[str], object]) -> Dialogue:
+        take((yield question))
+
+    def _take_threads(self, line: str) -> None:
+        if line and not (line.isdecimal() and 0 < int(line) <= 64):
+            self.host.tell("That is no number of threads.")
+            return
+        restarts = self.host.restarts
+        changes = replace(restarts.changes, threads=int(line) if line else None)
+        asyncio.run(restarts.again(changes))
+
+
+@dataclass
+class LinearComparison(ScreenPart):
+    """Tells what differs from the run before, as soon as there is enough of the new one."""
+
+    host: LessonConsole
+    restarts: Restarts
+    _due: Nanoseconds | None = None
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer it from the second run on."""
+        return self.restarts.both is not None
+
+    def action_compare(self) -> None:
+        """Tell it now, or when it is due."""
+        if self.restarts.before is not None:
+            self._due = min(self.restarts.before.timeline.end, _COMPARED)
+            self.tell_when_due()
+            if self._due is not None:
+                self.host.tell(f"The comparison is told when this run has come to {timestamp(self._due)}.")
+
+    def tell_when_due(self) -> None:
+        """Tell the comparison that was asked for, if the run has come far enough."""
+        run, both = self.host.runs.run, self.restarts.both
+        if self._due is None or both is None or (run.alive and run.timeline.end < self._due):
+            return
+        self._due = None
+        first, second = (side.timeline for side in both)
+        window = Window(0, min(first.end, second.end))
+        for line in comparison_lines(compare(first, second, window), both[0].name, both[1].name):
+            self.host.tell(line)
+        at = run_to_end(first_difference(first, second, window))
+        self.host.tell("no call differs" if at is None else f"they differ from {timestamp(at)}")
+
+
+@dataclass
+class CuresByNumber(ScreenPart):
+    """Tells the diagnoses, and tries the cure of one out of sight; if it helps the program runs with it."""
+
+    host: LessonConsole
+    trials: CureTrials
+    given_up: Event = field(default_factory=Event)
+
+    def action_diagnoses(self) -> None:
+        """Tell what was found, and ask which cure is to be tried."""
+        self.host.telling.action_diagnoses()
+        if any(map(self.trials.can_try, self.host.runs.findings.findings)):
+            self.host.ask(self._choose())
+
+    def _choose(self) -> Dialogue:
+        runs = self.host.runs
+        findings, number = runs.findings.findings, runs.number
+        can_be_tried = [str(place) for place, each in enumerate(findings, 1) if self.trials.can_try(each)]
+        line = yield f"Type the number of a problem to try its cure ({', '.join(can_be_tried)}), or nothing:"
+        if line not in can_be_tried:
+            self.host.tell(f"The cure of {line} cannot be tried." if line else None)
+            return
+        told = findings[int(line) - 1]
+        self.host.tell(f"It is tried out of sight: {told.explanation.cure}.")
+
+        def try_out() -> None:
+            helps = self.trials.helps(told, self.given_up)
+            self.host.post(lambda: self._take_verdict(told, helps) if runs.number == number else None)
+
+        Thread(target=try_out, name="cure", daemon=True).start()
+
+    def _take_verdict(self, told: ExplainedFinding, helps: bool) -> None:
+        name, cure = told.name, told.explanation.cure
+        if helps:
+            self.host.tell(f"Tried, it helps: {cure}. With that there is no {name} any more.")
+            asyncio.run(self.trials.run(told))
+        else:
+            self.host.tell(f"Tried, it does not help: {name} stays, or something worse comes.")

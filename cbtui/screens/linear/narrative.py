@@ -1,0 +1,135 @@
+"""What has happened in a run since it was told last, as sentences in the order in which it became known."""
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from cbtui.runs.live.findings import ExplainedFinding
+from cbtui.screens.parts.copying import what_runs
+from cbtui.widgets.lanes.names import short_thread
+from cbtui.widgets.log.line import line_of
+from cbtui.widgets.narrator import narration, returning, waiting
+from sim.diagnosis import location_text
+from sim.durations import duration, timestamp
+from sim.plural import counted
+from sim.trace.descriptions import name_of
+from sim.trace.events import Logged, Severity
+from sim.trace.model import Nanoseconds, Span, Wait, Window
+from sim.trace.timeline import Timeline
+
+LEAST: tuple[Nanoseconds, ...] = (0, 10_000_000, 100_000_000, 1_000_000_000)
+"""From how long on calls and waits are told: a person chooses one."""
+USUAL = 2
+_LOUD = (Severity.ERROR, Severity.FATAL)
+_NUMBER = re.compile(r"\d+(?:\.\d+)?")
+_MOST_LINES = 3
+"""Lines of the log that are new, per turn."""
+
+
+class News(NamedTuple):
+    """A sentence, and the moment from which on it is true."""
+
+    at: Nanoseconds
+    text: str
+
+
+class Narrative:
+    """Tells what is new in a growing run, each thing once. Not thread-safe.
+
+    Calls and waits are told from ``least`` nanoseconds on. Of the log each text is told once, whatever
+    its numbers, unless it is ``whole``, and errors always.
+    """
+
+    def __init__(self, timeline: Timeline, least: Nanoseconds = LEAST[USUAL], *, whole: bool = False) -> None:
+        self.least = least
+        self.whole = whole
+        self._timeline = timeline
+        self._told_to: Nanoseconds = 0
+        self._lines = 0
+        self._known: set[str] = set()
+        self._begun: set[tuple[int, Nanoseconds]] = set()
+        self._problems: set[tuple[str, int]] = set()
+
+    def news(self, now: Nanoseconds, findings: Sequence[ExplainedFinding]) -> list[str]:
+        """Return what is new at a moment; if that is before what was told last, all until then is new."""
+        if now < self._told_to:
+            self._told_to = self._lines = 0
+            self._known.clear()
+            self._begun.clear()
+            self._problems.clear()
+        window = Window(self._told_to, now + 1)
+        found = sorted([*self._calls(window), *self._waits(window)])
+        self._told_to = now
+        return [*(each.text for each in found), *self._log(now), *self._problems_among(findings, now)]
+
+    def _calls(self, window: Window) -> Iterator[News]:
+        timeline, now = self._timeline, window.end - 1
+        for thread in timeline.threads.values():
+            for span in timeline.spans_on(thread.id, window):
+                if min(now, span.end_at(now)) - span.start >= self.least:
+                    where = short_thread(thread.name)
+                    runs = f"{timestamp(span.start)}: {name_of(span.entity, timeline)} runs on {where}"
+                    ends = f"{timestamp(span.end or 0)}: {returning(span, timeline)}"
+                    yield from self._begin_and_end(-1 - thread.id, span, now, runs, ends)
+
+    def _waits(self, window: Window) -> Iterator[News]:
+        timeline, now = self._timeline, window.end - 1
+        for entity in timeline.entities.values():
+            for wait in timeline.waits_of(entity.id, window):
+                end = min(now, wait.end_at(now))
+                if wait.holder != wait.entity and end - wait.since >= self.least:
+                    begins = f"{timestamp(wait.start)}: {waiting(wait, timeline, wait.start)}"
+                    took = duration(end - wait.since)
+                    ends = f"{timestamp(end)}: {entity.spoken_name} waits no longer, after {took}"
+                    yield from self._begin_and_end(entity.id, wait, now, begins, ends)
+
+    def _begin_and_end(
+        self, subject: int, bar: Span | Wait, now: Nanoseconds, begins: str, ends: str
+    ) -> Iterator[News]:
+        """Yield a bar's sentences that were not told yet."""
+        key = (subject, bar.start)
+        if key not in self._begun and (bar.end is None or bar.end > self._told_to):
+            self._begun.add(key)
+            yield News(bar.start + self.least, begins)
+        if bar.end is not None and bar.end <= now and key in self._begun:
+            self._begun.remove(key)
+            yield News(bar.end, ends)
+
+    def _log(self, now: Nanoseconds) -> Iterator[str]:
+        new = self._timeline.logs[self._lines : self._timeline.logs_until(now)]
+        self._lines += len(new)
+        told = 0
+        for event in new:
+            is_loud = isinstance(event, Logged) and event.severity in _LOUD
+            text = _NUMBER.sub("", event.text)
+            if self.whole or is_loud or text not in self._known:
+                self._known.add(text)
+                told += 1
+                if self.whole or is_loud or told <= _MOST_LINES:
+                    yield f"log: {line_of(event)}"
+        if told > _MOST_LINES and not self.whole:
+            yield f"log: {counted(told - _MOST_LINES, 'more line')}"
+
+    def _problems_among(self, findings: Sequence[ExplainedFinding], now: Nanoseconds) -> Iterator[str]:
+        for each in findings:
+            key = each.finding.rule.id, each.finding.subject
+            at = self._timeline.end if each.at is None else each.at
+            if each.is_problem and at <= now and key not in self._problems:
+                self._problems.add(key)
+                yield f"problem: {each.name}: {told_finding(each)}"
+
+
+def told_finding(each: ExplainedFinding) -> str:
+    """Return what is wrong, why, what to do, and where, as one line."""
+    explained = each.explanation
+    where = location_text(each.finding, explained)
+    parts = (explained.what, f"why: {explained.why}", f"what to do: {explained.cure}", where)
+    return ". ".join(part for part in parts if part)
+
+
+def told_moment(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    """Yield what the executor did last by a moment, what that left waiting and why, and what runs."""
+    if timeline.neighbour(at + 1, None, -1) != at:
+        yield f"{timestamp(at)}; the last event before that:"
+    yield from narration(timeline, at)
+    yield from what_runs(timeline, at)

@@ -1,0 +1,85 @@
+"""A lesson in lines: its predictions, its explanation and its exercise."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from threading import Thread
+
+from cbtui.learning.lesson_page import PageSection, PageState, page_of
+from cbtui.learning.outcome import Observe, OutcomeRun, PredictionOutcome
+from cbtui.learning.stage import all_predicted
+from cbtui.screens.linear.dialogue import Dialogue, LineHost
+from cbtui.screens.parts.part import ScreenPart
+from cbtui.screens.teaching.learning import signs
+from lessons.lesson import Lesson
+from lessons.progress import Progress
+from sim.engine.setup import RealRos
+
+
+@dataclass
+class Teaching(ScreenPart):
+    """Asks for predictions and explains the lesson; ``observe`` makes the run that shows the true answers.
+
+    ``found`` is called with these, on a thread of that run's own; ``real`` returns the ROS 2 in use.
+    """
+
+    host: LineHost
+    lesson: Lesson
+    observe: Observe
+    found: Callable[[PredictionOutcome], None]
+    real: Callable[[], RealRos | None]
+    progress: Progress
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer what is open."""
+        return {"predict": self.can_predict, "exercise": self.lesson.exercise is not None}.get(action, True)
+
+    @property
+    def can_predict(self) -> bool:
+        """Whether a question is open and its answer still locked."""
+        known = self.progress.of(self.lesson.id)
+        return not known.seen and not all_predicted(self.lesson, known)
+
+    def predict(self) -> Dialogue:
+        """Ask the open questions; an empty line leaves them open."""
+        given = len(self.progress.of(self.lesson.id).answers)
+        for place, prediction in enumerate(self.lesson.predictions[given:], start=given):
+            self.host.tell_page(prediction.question)
+            for number, answer in enumerate(prediction.answers, start=1):
+                self.host.tell(f"{number}: {answer}")
+            line = yield "Your answer is final. Type its number, or nothing to go on without predicting:"
+            while line and not (line.isdecimal() and 0 < int(line) <= len(prediction.answers)):
+                line = yield f"There is no answer {line}. Type a number from 1 to {len(prediction.answers)}:"
+            if not line:
+                return
+            self.progress.answer(self.lesson.id, place, int(line) - 1)
+
+    def action_predict(self) -> None:
+        """Ask the open questions."""
+        self.host.ask(self.predict())
+
+    def action_explain(self) -> None:
+        """Tell what happened, and why; open questions are asked first."""
+        self.host.ask(self._explain())
+
+    def _explain(self) -> Dialogue:
+        if self.can_predict:
+            yield from self.predict()
+        self.progress.explain(self.lesson.id)
+        run = OutcomeRun(self.lesson, self.observe, self.real())
+        self.host.tell("The lesson runs once more, out of sight.")
+        Thread(target=lambda: self.found(run.run()), name="outcome", daemon=True).start()
+
+    def tell_explanation(self, outcome: PredictionOutcome) -> None:
+        """Tell what was found, and why it is so."""
+        page = page_of(self.lesson, PageState(self.progress.of(self.lesson.id), outcome), signs())
+        for section in (PageSection.SHOWN, PageSection.EXPLANATION):
+            self.host.tell_page(page.get(section, ""))
+
+    def action_exercise(self) -> None:
+        """Tell the exercise."""
+        lesson = self.lesson
+        if lesson.exercise is not None:
+            self.host.tell_page(lesson.exercise.asks)
+            self.host.tell(
+                f"cbtui start {lesson.id} writes a file for it, cbtui check {lesson.id} checks that."
+            )

@@ -1,0 +1,80 @@
+"""Following a chain of messages: its path at the moment on screen, and what took its time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from cbtui.runs.live.live_run import ShownRun
+from cbtui.screens.parts.navigation import TimeNavigation
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
+from cbtui.screens.parts.runs import RunController
+from cbtui.screens.windows.chain import ChainScreen
+from sim.durations import duration, timestamp
+from sim.trace.figures.chains import Chain, ChainError, ChainRun, chain
+from sim.trace.model import Nanoseconds
+
+_GROWTH = 1.1
+"""How much longer a run has to be for its chain to be followed anew."""
+
+
+@dataclass
+class ChainPath(ScreenPart):
+    """Follows the chain of some ``names``, none for nothing."""
+
+    host: ScreenHost
+    runs: RunController[ShownRun]
+    navigation: TimeNavigation
+    names: Sequence[str] = ()
+    _found: Chain | None = None
+    _of: object = None
+    _until: Nanoseconds = 0
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer it once something was sent."""
+        return bool(self.runs.timeline.names_sent)
+
+    def action_chain(self) -> None:
+        """Ask for the names."""
+        timeline = self.runs.timeline
+        follow = partial(chain, timeline)
+        screen = ChainScreen(self.names, list(timeline.names_sent), follow, self.host.charset)
+        self.host.ask(screen, self._take)
+
+    def _take(self, names: tuple[str, ...] | None) -> None:
+        if names is not None:
+            self.names, self._of = names, None
+            self.host.redraw()
+
+    @property
+    def here(self) -> ChainRun | None:
+        """The latest run of the chain that began before the moment on screen, and came to its end."""
+        now = self.navigation.now
+        begun = [each for each in self._chain.whole if each.input.at <= now] if self._chain else []
+        return max(begun, key=lambda each: each.input.at, default=None)
+
+    @property
+    def sentence(self) -> str:
+        """How long that run took, and where; "" if there is none."""
+        here, found = self.here, self._chain
+        if here is None or found is None or found.critical is None:
+            return ""
+        dearest, slowest = here.dearest, found.critical
+        most = f", {duration(dearest.length)} of it: {dearest.words}" if dearest.length else ""
+        way = f"{found.path[0]} to {found.path[-1]} took {duration(here.latency)}{most}"
+        return f"{way}; the slowest {duration(slowest.latency)} at {timestamp(slowest.input.at)}"
+
+    @property
+    def _chain(self) -> Chain | None:
+        """The chain of the run so far; of a run that goes on it is followed anew now and then."""
+        timeline = self.runs.timeline
+        if not self.names:
+            return None
+        stands = self.runs.run.paused or timeline.ended is not None
+        grown = timeline.end > self._until * (1 if stands else _GROWTH)
+        if self._of is not timeline or grown:
+            self._of, self._until = timeline, timeline.end
+            try:
+                self._found = chain(timeline, self.names)
+            except ChainError:
+                self._found = None  # of another run, or not sent yet
+        return self._found

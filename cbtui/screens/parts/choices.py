@@ -1,0 +1,174 @@
+"""Choosing which thread goes on: the choices of a run so far, and what is to be brought about by them."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from itertools import chain
+
+from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.shown_program import ShownProgram, of_moment
+from cbtui.screens.parts.part import RunHost, ScreenPart
+from cbtui.screens.parts.restarts import Restarts
+from cbtui.screens.parts.runs import RunController
+from cbtui.widgets.choice import ChoiceSheet, kept_of, options_of
+from lessons.catalogue import find
+from lessons.puzzles import Puzzle
+from sim.clock.played import Moves, moves_of
+from sim.plural import counted
+from sim.trace.events import AnyEvent, ChoiceAsked
+
+
+@dataclass
+class Choices(ScreenPart):
+    """Asks at each choice of a run; what is taken back is left out of another run from its beginning.
+
+    ``puzzle`` None: nothing particular is to be brought about.
+    """
+
+    host: RunHost
+    runs: RunController[LiveRun]
+    restarts: Restarts
+    puzzle: Puzzle | None = None
+    question: ChoiceAsked | None = None
+    """What is asked now."""
+    made: dict[int, int] = field(default_factory=dict)
+    """What was chosen so far, by the numbers of the choices."""
+    solution: Moves | None = None
+    """The moves of the solution while it is shown."""
+    reached: bool = False
+    """Whether the goal was reached."""
+
+    @property
+    def seed(self) -> str:
+        """The seed of a run that asks behind what was chosen so far."""
+        return "ask:" + ",".join(f"{number}={option}" for number, option in self.made.items())
+
+    @property
+    def moves(self) -> int:
+        """How often another thread was chosen than the one that goes on by itself."""
+        return sum(option > 0 for option in self.made.values())
+
+    def take(self, events: Iterable[AnyEvent]) -> None:
+        """Note what the run asks."""
+        for event in events:
+            if isinstance(event, ChoiceAsked):
+                self.question = event
+
+    def look(self) -> None:
+        """Look whether the goal is reached; then the run goes on to its end without asking."""
+        puzzle, run = self.puzzle, self.runs.run
+        if puzzle is None or self.reached or (self.question is None and run.alive):
+            return
+        self.reached = puzzle.goal.check().judge(run.timeline).passed
+        if self.reached:
+            if self.solution is None:
+                self.host.console.progress.passes(puzzle.id)
+            if self.question is not None:
+                self.action_resume()
+
+    @property
+    def sheet(self) -> ChoiceSheet:
+        """What the pane shows."""
+        puzzle, question = self.puzzle, self.question
+        task = "" if puzzle is None else puzzle.task
+        if self.reached and puzzle is not None:
+            least = len(solution_of(puzzle))
+            return ChoiceSheet(f"✓ Done in {counted(self.moves, 'move')}; the solution takes {least}.", task)
+        if question is not None:
+            advised = None if self.solution is None else self.solution.get(question.number, 0)
+            asks = "Who goes on?" if advised is None else f"The solution takes {advised + 1}."
+            return ChoiceSheet(
+                f"Choice {len(self.made) + 1}, {counted(self.moves, 'move')}. {asks}",
+                task,
+                tuple(options_of(question, self.runs.timeline)),
+                tuple(kept_of(question, self.runs.timeline)),
+                advised,
+            )
+        if self.runs.run.alive:
+            return ChoiceSheet("The run goes on …", task)
+        if puzzle is None:
+            return ChoiceSheet("The run is over.", task)
+        undo, again = self.host.key("undo"), self.host.key("run_again")
+        return ChoiceSheet(f"✗ Not this time. {undo} takes a choice back, {again} begins again.", task)
+
+    def choose(self, option: int) -> None:
+        """Have an option go on."""
+        if self.question is not None:
+            self.made[self.question.number] = option
+            self.question = None
+            self.runs.run.choose(option)
+            self.host.redraw()
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer what there is to take back, to let go on, to solve."""
+        match action:
+            case "undo":
+                return bool(self.made)
+            case "resume":
+                return self.question is not None
+            case "solution" | "lesson":
+                return self.puzzle is not None
+        return True
+
+    async def action_undo(self) -> None:
+        """Take the last choice back."""
+        if self.made:
+            self.made.popitem()
+            await self._run_again()
+
+    async def action_run_again(self) -> None:
+        """Begin again."""
+        self.made.clear()
+        self.solution = None
+        await self._run_again()
+
+    async def action_solution(self) -> None:
+        """Begin again, and show at each choice what the solution takes."""
+        if self.puzzle is not None:
+            self.host.console.progress.look_at_solution(self.puzzle.id)
+            self.made.clear()
+            self.solution = solution_of(self.puzzle)
+            await self._run_again()
+
+    async def _run_again(self) -> None:
+        self.question, self.reached = None, False
+        await self.restarts.start(Changes(), speed=None)
+
+    def action_resume(self) -> None:
+        """Let the run go on without asking."""
+        self.question = None
+        self.runs.run.resume()
+        self.host.redraw()
+
+    def action_lesson(self) -> None:
+        """Open the lesson that the puzzle belongs to."""
+        if self.puzzle is not None:
+            self.host.console.open_lesson(find(self.puzzle.lesson))
+
+
+def solution_of(puzzle: Puzzle) -> Moves:
+    """The moves of a puzzle's solution."""
+    return moves_of(puzzle.solution.removeprefix("moves:"))
+
+
+@dataclass
+class TakeOver(ScreenPart):
+    """Makes the learner the scheduler of a run, from the moment on at which it is paused.
+
+    The run is made again up to there, which leaves the one on screen as it is. ``open_choosing`` opens it.
+    """
+
+    runs: RunController[LiveRun]
+    subject: ShownProgram
+    open_choosing: Callable[[ShownProgram], object]
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer it on a paused run in the usual order of threads."""
+        run = self.runs.run
+        return run.can_step and not run.setup.seed
+
+    def action_take_over(self) -> None:
+        """Open the screen for choosing."""
+        run = self.runs.run
+        events = chain.from_iterable(run.material().source.batches())
+        self.open_choosing(of_moment(self.subject, run.setup, events, run.timeline.end))

@@ -1,0 +1,62 @@
+"""Jumping: a letter on each pane, lane, bar and row that can be picked."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from string import ascii_uppercase
+
+from textual.geometry import Offset
+from textual.screen import Screen
+from textual.widget import Widget
+
+from cbtui.screens.parts.panes import PaneLayout
+from cbtui.screens.parts.part import ScreenPart, WindowHost
+from cbtui.screens.windows.jump import JumpScreen
+from cbtui.widgets.jump import Jumpable
+from cbtui.widgets.tabs import Tabs
+
+_LETTERS = "asdfghjklqwertyuiopzxcvbnm" + ascii_uppercase
+"""The easiest keys first; what comes after the last one has no letter."""
+
+
+@dataclass
+class Jumps(ScreenPart):
+    """Shows a letter on everything that can be gone to, and goes where the person types."""
+
+    screen: Screen[None]
+    host: WindowHost
+    panes: PaneLayout | None = None
+
+    def action_jump(self) -> None:
+        """Show the letters."""
+        found = dict(zip(_LETTERS, self._places(), strict=False))
+
+        def go(letter: str | None) -> None:
+            if letter is not None:
+                found[letter][1]()
+
+        places = {letter: place for letter, (place, _) in found.items()}
+        self.host.ask(JumpScreen(places, self.host.charset), go)
+
+    def _places(self) -> Iterator[tuple[Offset, Callable[[], object]]]:
+        """Yield the places on the screen, the panes first."""
+        if self.panes is not None:
+            yield from _framed(self.panes)
+        for widget in sorted(self.screen.query("*"), key=lambda each: not isinstance(each, Tabs)):
+            if isinstance(widget, Jumpable) and widget.region:
+                for place, go in widget.jump_targets():
+                    yield widget.content_region.offset + place, partial(_go, widget, go)
+
+
+def _framed(panes: PaneLayout) -> Iterator[tuple[Offset, Callable[[], object]]]:
+    """Yield the panes that have a frame to hold a letter."""
+    for name in panes.names:
+        pane = panes.pane(name)
+        if pane.styles.border_top[0] and pane.size:
+            yield pane.region.offset + Offset(1, 0), partial(panes.show, name)
+
+
+def _go(widget: Widget, go: Callable[[], object]) -> None:
+    if widget.focusable:
+        widget.focus()
+    go()

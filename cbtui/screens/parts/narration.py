@@ -1,0 +1,36 @@
+"""The narrator of a screen: shown while the person wants it, and from the first step on."""
+
+from dataclasses import dataclass
+
+from cbtui.runs.live.live_run import ShownRun
+from cbtui.screens.parts.navigation import TimeNavigation
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
+from cbtui.screens.parts.runs import RunController
+from cbtui.widgets.narrator import Narrator
+
+
+@dataclass
+class Narration(ScreenPart):
+    """Has a narrator tell what the executor decided; the screen lays its ``widget`` out."""
+
+    host: ScreenHost
+    runs: RunController[ShownRun]
+    navigation: TimeNavigation
+
+    def __post_init__(self) -> None:
+        self.widget = Narrator()
+        self.widget.charset, self.widget.display = self.host.charset, False
+
+    def show(self, shown: bool = True) -> None:
+        """Show or hide it."""
+        self.widget.display = shown
+        self.host.redraw()
+
+    def draw(self) -> None:
+        """Show the moment on screen, if it is shown."""
+        if self.widget.display:
+            self.widget.now, self.widget.timeline = self.navigation.now, self.runs.timeline
+
+    def action_narrate(self) -> None:
+        """Show or hide it."""
+        self.show(not self.widget.display)

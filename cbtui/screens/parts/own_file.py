@@ -1,0 +1,89 @@
+"""A file of the learner's own on screen: run again when it is saved, with a guide written as it runs."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from textual.message import Message
+from textual.screen import Screen
+
+from cbtui.runs.live.file_watch import CANNOT_WATCH, content_of, contents
+from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.setup.program_page import MOST, page_of_program
+from cbtui.screens.parts.panes import PaneLayout
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
+from cbtui.screens.parts.restarts import Restarts
+from cbtui.screens.parts.runs import RunController
+from cbtui.widgets.guide import Guide
+
+
+class FileRead(Message):
+    """The file was read; ``content`` may be unchanged, None if the file is missing."""
+
+    def __init__(self, content: bytes | None) -> None:
+        super().__init__()
+        self.content = content
+
+
+async def read_when_saved(file: Path, post: Callable[[Message], object], tell: Callable[[str], None]) -> None:
+    """Post ``FileRead`` after each save; ends when its task is cancelled, or nothing can be watched."""
+    try:
+        async for content in contents(file):
+            post(FileRead(content))
+    except CANNOT_WATCH:
+        tell(f"{file.parent} cannot be watched, so saving is not noticed there.")
+
+
+@dataclass
+class OwnFile(ScreenPart):
+    """Runs a learner's file again when it is saved, and writes its guide."""
+
+    screen: Screen[None]
+    host: ScreenHost
+    runs: RunController[LiveRun]
+    restarts: Restarts
+    panes: PaneLayout
+    file: Path
+    content: bytes | None = None
+    """What the run on screen was made from."""
+    _shown: object = field(default=None, init=False)
+
+    def begin(self) -> None:
+        """Note that a run of the file as it is now begins."""
+        self.content = content_of(self.file)
+
+    def page(self) -> Mapping[str, str]:
+        """Return the sections of the guide."""
+        run = self.runs.run
+        problems = [each.explanation.what for each in self.runs.findings.findings if each.is_problem]
+        return page_of_program(self.file.name, run.setup.clock, run.timeline, problems)
+
+    def update_guide(self) -> None:
+        """Write the guide anew if something was found; what only lasts longer is nothing new.
+
+        A program that fails before it has a callback, as by an error of syntax, is shown at its line.
+        """
+        timeline, findings = self.runs.timeline, self.runs.findings.findings
+        what = (timeline.nodes, timeline.executors, timeline.groups, timeline.entities, timeline.names_sent)
+        state = (
+            *(min(len(each), MOST + 1) for each in what),
+            timeline.ended is None,
+            timeline.arena is None,
+            [(each.finding.rule.id, each.finding.subject) for each in findings if each.is_problem],
+        )
+        if state != self._shown:
+            self._shown = state
+            ended = timeline.ended
+            if ended is not None and ended.problem and not timeline.entities:
+                self.panes.show("code")
+            self.screen.call_next(self.screen.query_one(Guide).show, self.page())
+
+    async def take(self, content: bytes | None) -> None:
+        """Run the file again if its content is new."""
+        if content is not None and content != self.content:
+            await self.run_anew(self.file.name)
+
+    async def run_anew(self, saved: str) -> None:
+        """Run the file again, since one of the program's files was saved."""
+        self.host.tell(f"{saved} was saved: it runs again.")
+        await self.restarts.again(self.restarts.changes)

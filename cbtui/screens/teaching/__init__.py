@@ -1,0 +1,1 @@
+"""Parts of screens that teach: predictions, what was learned, an exercise's help and its checks."""

@@ -1,0 +1,98 @@
+"""The keys for an exercise's hints and solution."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from textual.screen import Screen
+
+from cbtui.keys.keymap import keymap_of
+from cbtui.keys.named_keys import with_keys_in_force
+from cbtui.learning.lesson_page import PageSection, PageState
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
+from cbtui.screens.teaching.learning import Learning
+from lessons.description import Exercise
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
+
+_READING = 15.0
+"""Seconds for which a hint is shown as a notification."""
+
+
+@dataclass
+class ExerciseHelp(ScreenPart):
+    """Gives hints and shows the solution, once the exercise is unlocked.
+
+    ``is_readable`` tells whether it is unlocked, ``is_done`` whether it is solved; ``file`` is the learner's,
+    None before the exercise was begun.
+    """
+
+    screen: Screen[None]
+    host: ScreenHost
+    learning: Learning
+    file: Path | None
+    is_readable: Callable[[PageState], bool]
+    is_done: Callable[[], bool] = lambda: False
+
+    @property
+    def _exercise(self) -> Exercise | None:
+        """The exercise, if it is unlocked."""
+        standing = self.learning.standing
+        return self.learning.lesson.exercise if standing is not None and self.is_readable(standing) else None
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer the hints that are left, and the solution always."""
+        exercise, standing = self._exercise, self.learning.standing
+        if exercise is None or standing is None:
+            return False
+        return action == "solution" or (standing.progress.hints < len(exercise.hints) and not self.is_done())
+
+    async def action_hint(self) -> None:
+        """Take the next hint: it is added to the page, and shown as a notification if the page is hidden."""
+        exercise, learning = self._exercise, self.learning
+        if exercise is None:
+            return
+        number = learning.progress.hints + 1
+        if number > len(exercise.hints):
+            return
+        learning.store.take_hint(self.learning.lesson.id, number)
+        await learning.update_page()
+        if learning.guide.display:
+            learning.guide.go_to(PageSection.HINTS)
+        else:
+            title = f"Hint {number} of {len(exercise.hints)}"
+            hint = with_keys_in_force(exercise.hints[number - 1], keymap_of(self.screen.app))
+            self.screen.app.clear_notifications()  # the hints before are on the page
+            self.screen.notify(hint, title=title, timeout=_READING, markup=False)
+
+    def action_solution(self) -> None:
+        """Show the solution, after a confirmation the first time."""
+        from cbtui.screens.windows.solution import ConfirmSolutionScreen  # with Pygments
+
+        exercise, progress = self._exercise, self.learning.progress
+        if exercise is None:
+            return
+        self.screen.app.clear_notifications()  # hints would cover the window
+        if progress.solution:
+            self._show_solution(True)
+        else:
+            left = len(exercise.hints) - progress.hints
+            self.host.ask(ConfirmSolutionScreen(left, self.host.charset), self._show_solution)
+
+    def _show_solution(self, wanted: bool | None) -> None:
+        from cbtui.screens.windows.solution import SolutionScreen
+
+        lesson = self.learning.lesson
+        begun = self.file or lesson.starter_path
+        if not wanted or lesson.solution_path is None or begun is None:
+            return
+        self.learning.store.look_at_solution(lesson.id)
+        texts = [(path.name, _text_in(path)) for path in (begun, lesson.solution_path)]
+        self.host.ask(SolutionScreen(texts[0], texts[1], self.host.charset), None)
+
+
+def _text_in(path: Path) -> str:
+    """The text of a file, with replacements for what is not text; "" if it is missing."""
+    try:
+        return read_text(path, MOST_OF_A_PROGRAM, "replace")
+    except OSError:
+        return ""

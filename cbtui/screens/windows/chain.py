@@ -1,0 +1,55 @@
+"""The window that asks for a chain of messages to follow."""
+
+from collections.abc import Callable, Sequence
+
+from textual.app import ComposeResult
+from textual.widgets import Static
+
+from cbtui.keys.action import Scope
+from cbtui.looks.theme import Charset
+from cbtui.screens.windows.typed_line import TypedLine
+from cbtui.screens.windows.window import WindowScreen
+
+
+class ChainScreen(WindowScreen[tuple[str, ...]]):
+    """Its result are the names of the chain, none to follow nothing; None if it was closed.
+
+    ``names`` are those that were followed before, ``known`` all that something was sent on. ``follow`` raises
+    ``ChainError`` if a chain cannot be followed.
+    """
+
+    SCOPE = Scope.CHAIN
+    heading = "Follow a chain of messages"
+
+    def __init__(
+        self,
+        names: Sequence[str],
+        known: Sequence[str],
+        follow: Callable[[Sequence[str]], object],
+        charset: Charset,
+    ) -> None:
+        super().__init__(charset)
+        self._names = names
+        self._known = known
+        self._follow = follow
+
+    def content(self) -> ComposeResult:
+        """Lay out the question."""
+        yield Static(
+            "From which topic or service to which? What lies between is found. Empty: follow nothing.",
+            markup=False,
+        )
+        line = TypedLine(":".join(self._names), self._take, "first:last, such as /scan:/cmd_vel")
+        yield line
+        yield Static(f"There is {', '.join(self._known)}.", markup=False)
+        yield line.refusal
+
+    async def action_go(self) -> None:
+        """Take what was typed."""
+        await self.query_one(TypedLine).action_submit()
+
+    def _take(self, text: str) -> None:
+        names = tuple(f"/{name.strip().removeprefix('/')}" for name in text.split(":") if name.strip())
+        if names:
+            self._follow(names)
+        self.dismiss(names)

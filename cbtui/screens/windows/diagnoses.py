@@ -1,0 +1,228 @@
+"""The window with a run's diagnosis: what happened, why, what to do, and where."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum, auto
+from functools import partial
+from threading import Event
+
+from textual import on
+from textual.app import ComposeResult
+from textual.containers import VerticalScroll
+from textual.content import Content
+from textual.widgets import OptionList, Static
+from textual.widgets.option_list import Option
+
+from cbtui.keys.action import Scope
+from cbtui.keys.keymap import Keymap
+from cbtui.looks.theme import GLYPHS, Charset
+from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
+from cbtui.screens.windows.window import WindowScreen
+from cbtui.text.cells import visible
+from cbtui.widgets.key_bar import KeyBar
+from lessons.lesson import Lesson
+from sim.diagnosis import location_text, sentence
+from sim.diagnosis.cures import NO_REMEDY
+from sim.durations import timestamp
+from sim.plural import counted
+
+_ALL_IS_WELL = "✓ Nothing has gone wrong so far: no rule has found a problem."
+_TIME = 10
+
+
+class Way(Enum):
+    """What can be done about a finding."""
+
+    LOOK = auto()
+    CURE = auto()
+    LESSON = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """What is to be done about a finding: go to it, try its cure, or open the lesson that shows it."""
+
+    finding: ExplainedFinding
+    way: Way = Way.LOOK
+
+
+class DiagnosesScreen(WindowScreen[Chosen]):
+    """Lists findings, problems first, each with the ways on; its result is the chosen one, None to stay.
+
+    ``helps`` tells, on a thread of its own, whether the cure of a finding ends it when it is tried: only then
+    the window offers to try it. It has to come back soon once the event that it gets is set. ``lesson_on``
+    returns the lesson that shows a problem.
+    """
+
+    SCOPE = Scope.DIAGNOSES
+
+    def __init__(
+        self,
+        findings: Sequence[ExplainedFinding],
+        charset: Charset,
+        helps: Callable[[ExplainedFinding, Event], bool] | None = None,
+        lesson_on: Callable[[ExplainedFinding], Lesson | None] = lambda _: None,
+    ) -> None:
+        super().__init__(charset)
+        self._findings = findings
+        self._helps = helps
+        self._lessons = [lesson_on(each) for each in findings]
+        self._helpful: dict[int, bool | None] = {
+            place: None
+            for place, each in enumerate(findings)
+            if helps is not None and each.explanation.remedy != NO_REMEDY
+        }
+        """Whether the cures of findings help; None while that is being tried."""
+        self._rows = tuple(self._ways())
+        self._given_up = Event()
+        self.heading = title_of(findings)
+
+    def content(self) -> ComposeResult:
+        """Lay out the list, and what there is to say of the highlighted one."""
+        if self._findings:
+            yield FindingList(*self._options())
+            with VerticalScroll(can_focus=False):
+                yield Static(classes="told")
+        else:
+            yield Static(_ALL_IS_WELL, classes="well", markup=False)
+
+    def on_mount(self) -> None:
+        """Highlight the worst."""
+        for listed in self.query(FindingList):
+            listed.highlighted = 0
+        if self._helps is not None:
+            self.run_worker(partial(self._try_all, self._helps), thread=True)
+
+    def on_unmount(self) -> None:
+        """Stop trying cures."""
+        self._given_up.set()
+
+    def _ways(self) -> Iterator[tuple[int, Way]]:
+        """The rows: the places of findings, and the ways on from them."""
+        for place, lesson in enumerate(self._lessons):
+            yield place, Way.LOOK
+            if self._helpful.get(place):
+                yield place, Way.CURE
+            if lesson is not None and lesson not in self._lessons[:place]:
+                yield place, Way.LESSON
+
+    def _options(self) -> Iterator[Option]:
+        for place, way in self._rows:
+            each, lesson = self._findings[place], self._lessons[place]
+            if way is Way.LOOK:
+                yield Option(row_of(each, self._charset))
+            elif way is Way.CURE:
+                yield Option(way_row(f"tried, it helps: {each.explanation.cure}", self._charset))
+            elif lesson is not None:
+                yield Option(way_row(f"lesson {lesson.number} shows this: {lesson.title}", self._charset))
+
+    def _try_all(self, helps: Callable[[ExplainedFinding, Event], bool]) -> None:
+        for place in self._helpful:
+            answer = not self._given_up.is_set() and helps(self._findings[place], self._given_up)
+            if not self._given_up.is_set():
+                self.app.call_from_thread(self._note_tried, place, answer)
+
+    def _note_tried(self, place: int, helps: bool) -> None:
+        """Offer to try a cure if it helps; the highlight stays where it is."""
+        chosen = self._chosen
+        self._helpful[place] = helps
+        self._rows = tuple(self._ways())
+        listed = self.query_one(FindingList)
+        listed.clear_options()
+        listed.add_options(self._options())
+        listed.highlighted = 0 if chosen is None else self._rows.index(chosen)
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer the ways on from the highlighted row."""
+        chosen = self._chosen
+        match action:
+            case "previous" | "next":
+                return len(self._rows) > 1
+            case "go":
+                return chosen is not None and (
+                    chosen[1] is not Way.LOOK or self._findings[chosen[0]].leads_somewhere
+                )
+            case "try_cure":
+                return chosen is not None and bool(self._helpful.get(chosen[0]))
+        return True
+
+    @on(OptionList.OptionHighlighted)
+    def _tell(self, event: OptionList.OptionHighlighted) -> None:
+        place, _ = self._rows[event.option_index]
+        told = details_of(self._findings[place], self._charset, self._helpful.get(place, False) is None)
+        self.query_one(".told", Static).update(told)
+        self.query_one(VerticalScroll).scroll_home(animate=False)
+        self.query_one(KeyBar).changed()
+
+    def action_previous(self) -> None:
+        """Highlight the one above."""
+        self.query_one(FindingList).action_cursor_up()
+
+    def action_next(self) -> None:
+        """Highlight the one below."""
+        self.query_one(FindingList).action_cursor_down()
+
+    def action_go(self) -> None:
+        """Go where the highlighted row leads."""
+        if self._chosen is not None:
+            place, way = self._chosen
+            self.dismiss(Chosen(self._findings[place], way))
+
+    def action_try_cure(self) -> None:
+        """Run again with the cure of what is highlighted."""
+        if self._chosen is not None:
+            self.dismiss(Chosen(self._findings[self._chosen[0]], Way.CURE))
+
+    @property
+    def _chosen(self) -> tuple[int, Way] | None:
+        highlighted = next((listed.highlighted for listed in self.query(FindingList)), None)
+        return None if highlighted is None else self._rows[highlighted]
+
+
+class FindingList(OptionList, inherit_bindings=False):
+    """The list of findings; its highlight is moved by the screen's keys and by clicks."""
+
+
+def title_of(findings: Sequence[ExplainedFinding]) -> str:
+    """Return the heading: ``Diagnoses: 2 problems, 1 remark``."""
+    problems = sum(each.is_problem for each in findings)
+    counts = ((problems, "problem"), (len(findings) - problems, "remark"))
+    words = [counted(count, name) for count, name in counts if count]
+    return f"Diagnoses: {', '.join(words)}" if words else "Diagnoses"
+
+
+def row_of(each: ExplainedFinding, charset: Charset) -> Content:
+    """Return a finding's line: ``!`` for a problem, ``·`` for a remark; when; what."""
+    sign, style = ("!", "bold $text-warning") if each.is_problem else ("·", "$text-muted")
+    time = "" if each.at is None else timestamp(each.at)
+    return Content.assemble(
+        (f"{sign} ", style), (f"{time:>{_TIME}}  ", "$text-muted"), visible(each.explanation.what, charset)
+    )
+
+
+def way_row(text: str, charset: Charset) -> Content:
+    """Return the line of a way on from a finding, below it: ``→ try it: …``."""
+    return Content.assemble((" " * (_TIME + 4) + "→ ", "bold"), (visible(text, charset), "$text-success"))
+
+
+def details_of(each: ExplainedFinding, charset: Charset, is_trying: bool = False) -> Content:
+    """Return what happened, why, what to do, whether that is being tried, and where in the code and when."""
+    explained = each.explanation
+    parts = [
+        (f"{visible(explained.what, charset)}.", "bold"),
+        (f"\n{visible(sentence(explained.why), charset)}", ""),
+        (f"\n→ {visible(explained.cure, charset)}.", "$text-success"),
+    ]
+    if is_trying:
+        parts.append(("\n· Whether that helps is being tried out of sight.", ""))
+    where = location_text(each.finding, explained)
+    if where:
+        parts.append((f"\n{visible(where, charset)}", "$text-muted"))
+    return Content.assemble(*parts)
+
+
+def problems_note(findings: Sequence[ExplainedFinding], keymap: Keymap, charset: Charset) -> str:
+    """Return how many problems there are, and the key that lists them: ``2 problems · d``; "" for none."""
+    count = problem_count_text(findings)
+    opens = keymap.sign(Scope.LESSON, "diagnoses", charset)
+    return f"{count} {GLYPHS[charset].between} {opens}" if count else ""

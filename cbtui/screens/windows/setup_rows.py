@@ -1,0 +1,189 @@
+"""The rows of the set-up window: each shows a setting, asks for a new value and applies it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Protocol
+
+from textual.screen import ModalScreen
+
+from cbtui.looks.theme import Charset
+from cbtui.runs.setup.changeable import ChangeableArgument, ChangeableCallback, ChangeableSetup
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.equivalent_code import code_of_argument, code_of_period, code_of_sensor_rate
+from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, Quantity
+from cbtui.screens.windows.group import UNCHANGED, GroupScreen
+from cbtui.screens.windows.number import NumberScreen
+from cbtui.screens.windows.threads import ThreadsScreen
+from sim.plural import counted
+from sim.units import SECOND, nearest_ns
+
+
+class SettingRow(Protocol):
+    """One changeable setting: ``what`` it belongs to, and its value ``now``."""
+
+    @property
+    def what(self) -> str:
+        """The callback, or what else it is about."""
+
+    @property
+    def aspect(self) -> str:
+        """The name of the setting."""
+
+    @property
+    def now(self) -> str:
+        """The value in the run on screen."""
+
+    def changed_to(self, changes: Changes) -> str:
+        """The changed value; "" if it is unchanged."""
+
+    def ask(self, changes: Changes, charset: Charset) -> ModalScreen[Any]:
+        """Return the window that asks for a value."""
+
+    def take(self, changes: Changes, answer: Any) -> Changes:
+        """Return the changes with that window's result."""
+
+
+@dataclass(frozen=True)
+class ThreadsRow:
+    """How many threads the executor gets."""
+
+    about: ChangeableSetup
+    what = "executor"
+    aspect = "threads"
+
+    @property
+    def now(self) -> str:
+        """The run's executor."""
+        return self.about.executor_now
+
+    def changed_to(self, changes: Changes) -> str:
+        """The number that was chosen."""
+        return "" if changes.threads is None else counted(changes.threads, "thread")
+
+    def ask(self, changes: Changes, charset: Charset) -> ModalScreen[Any]:
+        """Ask for a number."""
+        return ThreadsScreen(self.about, changes.threads, charset)
+
+    def take(self, changes: Changes, answer: int) -> Changes:
+        """Take the number; 0 is the program's own."""
+        return replace(changes, threads=answer or None)
+
+
+@dataclass(frozen=True)
+class GroupRow:
+    """Which group a callback is in."""
+
+    callback: ChangeableCallback
+    aspect = "group"
+
+    @property
+    def what(self) -> str:
+        """The callback."""
+        return self.callback.name
+
+    @property
+    def now(self) -> str:
+        """Its group, and who else is in it."""
+        return self.callback.group
+
+    def changed_to(self, changes: Changes) -> str:
+        """The group that was chosen."""
+        return changes.group_of(self.callback.place) or ""
+
+    def ask(self, changes: Changes, charset: Charset) -> ModalScreen[Any]:
+        """Ask for a group."""
+        return GroupScreen(self.callback, changes.group_of(self.callback.place), charset)
+
+    def take(self, changes: Changes, answer: str) -> Changes:
+        """Take the group."""
+        return changes.with_group(self.callback.place, None if answer == UNCHANGED else answer)
+
+
+@dataclass(frozen=True)
+class NumberRow:
+    """A number: ``chosen`` reads it from the changes, ``changed`` sets it there, ``code`` is its line."""
+
+    what: str
+    aspect: str
+    quantity: Quantity
+    number: float
+    chosen: Callable[[Changes], float | None]
+    changed: Callable[[Changes, float | None], Changes]
+    code: Callable[[float], str]
+
+    @property
+    def now(self) -> str:
+        """The run's number."""
+        return self.quantity.shown(self.number)
+
+    def changed_to(self, changes: Changes) -> str:
+        """The number that was chosen."""
+        number = self.chosen(changes)
+        return "" if number is None else self.quantity.shown(number)
+
+    def ask(self, changes: Changes, charset: Charset) -> ModalScreen[Any]:
+        """Ask for a number."""
+        chosen = self.chosen(changes)
+        number = self.number if chosen is None else chosen
+        return NumberScreen(f"{self.what}: {self.aspect}", self.quantity, number, self.code, charset)
+
+    def take(self, changes: Changes, answer: tuple[float | None]) -> Changes:
+        """Take the number."""
+        return self.changed(changes, answer[0])
+
+
+def rows_of(about: ChangeableSetup) -> list[SettingRow]:
+    """Return everything that can be changed."""
+    rows: list[SettingRow] = [ThreadsRow(about)]
+    rows += [GroupRow(callback) for callback in about.callbacks]
+    rows += [_period_row(callback) for callback in about.callbacks if callback.period]
+    rows += [_argument_row(argument) for argument in about.arguments]
+    if about.sensor_rate is not None:
+        rows.append(_sensors_row(about.sensor_rate))
+    return rows
+
+
+def _period_row(callback: ChangeableCallback) -> NumberRow:
+    place = callback.place
+
+    def chosen(changes: Changes) -> float | None:
+        period = changes.period_of(place)
+        return None if period is None else period / SECOND
+
+    def changed(changes: Changes, seconds: float | None) -> Changes:
+        return changes.with_period(place, None if seconds is None else nearest_ns(seconds))
+
+    return NumberRow(
+        callback.name,
+        "period",
+        PERIOD,
+        callback.period / SECOND,
+        chosen,
+        changed,
+        lambda seconds: code_of_period(callback.name, nearest_ns(seconds)),
+    )
+
+
+def _argument_row(argument: ChangeableArgument) -> NumberRow:
+    return NumberRow(
+        argument.quantity.name,
+        "number",
+        argument.quantity,
+        argument.now,
+        lambda changes: changes.settings.get(argument.name),
+        lambda changes, number: changes.with_setting(argument.name, number),
+        partial(code_of_argument, argument.name),
+    )
+
+
+def _sensors_row(rate: float) -> NumberRow:
+    return NumberRow(
+        "robot's sensors",
+        "rate",
+        SENSOR_RATE,
+        rate,
+        lambda changes: changes.sensor_rate,
+        lambda changes, chosen: replace(changes, sensor_rate=chosen),
+        code_of_sensor_rate,
+    )

@@ -1,0 +1,101 @@
+"""The tour: a minute over a lesson that tells what each part of the screen is for."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+from textual.app import ComposeResult
+from textual.events import Click, Key
+from textual.widgets import Static
+
+from cbtui.keys.action import Scope
+from cbtui.keys.keymap import keymap_of
+from cbtui.keys.named_keys import with_keys_in_force
+from cbtui.looks.theme import Charset
+from cbtui.screens.windows.window import WindowScreen
+from cbtui.widgets.prose import Prose
+
+SECONDS_A_STOP = 6.0
+_TICK = 0.5
+
+
+class TourStop(NamedTuple):
+    """A part of the screen, ``lanes`` or a pane, and what it is for."""
+
+    place: str
+    text: str
+
+
+STOPS = (
+    TourStop("guide", "A lesson is an ordinary ROS 2 node. It runs now, very slowly, and this is its guide."),
+    TourStop(
+        "lanes",
+        "Time goes from left to right. The top lane is a thread: each stroke is a call of a callback.",
+    ),
+    TourStop("lanes", "Below are the callback groups. A letter and a colour belong to each, in every pane."),
+    TourStop("lanes", "When a callback has to wait, its lane is hatched, and says what it waits for."),
+    TourStop("code", "The code, as it would run on a robot. The mark at its side shows what runs."),
+    TourStop(
+        "factory", "The same as a factory: belts bring messages, areas are groups, workers are threads."
+    ),
+    TourStop("robot", "What the node does to its robot, and what the node knows of the world."),
+    TourStop("log", "What the node logs. `space` pauses, `[` looks back: every pane shows that moment."),
+    TourStop(
+        "lanes", "The line above the keys says who waits for whom. `d` tells what went wrong, and the cure."
+    ),
+    TourStop(
+        "guide",
+        "So a lesson goes: predict, run, `a` explains, `e` is the exercise. `?` has every sign and key.",
+    ),
+)
+
+
+class TourScreen(WindowScreen[None]):
+    """Shows the stops one after the other, until a key or click; ``show`` brings a place to the fore."""
+
+    SCOPE = Scope.TOUR
+
+    def __init__(self, show: Callable[[str], None], charset: Charset) -> None:
+        super().__init__(charset)
+        self._show = show
+        self._place = 0
+        self._left = SECONDS_A_STOP
+
+    def content(self) -> ComposeResult:
+        """Lay out the text and how much of the stop is left."""
+        yield Prose("")
+        yield Static(id="left")
+
+    def on_mount(self) -> None:
+        """Begin."""
+        self._stop()
+        self.set_interval(_TICK, self._go_on)
+
+    def on_key(self, event: Key) -> None:
+        """Leave."""
+        event.stop()
+        self.dismiss(None)
+
+    def on_click(self, event: Click) -> None:
+        """Leave."""
+        self.dismiss(None)
+
+    def _go_on(self) -> None:
+        self._left -= _TICK
+        if self._left > 0:
+            self._show_left()
+        elif self._place + 1 < len(STOPS):
+            self._place, self._left = self._place + 1, SECONDS_A_STOP
+            self._stop()
+        else:
+            self.dismiss(None)
+
+    def _stop(self) -> None:
+        stop = STOPS[self._place]
+        self.query_one(".window").border_title = f"Tour {self._place + 1}/{len(STOPS)}: {stop.place}"
+        self.query_one(Prose).text = with_keys_in_force(stop.text, keymap_of(self.app))
+        self._show_left()
+        self._show(stop.place)
+
+    def _show_left(self) -> None:
+        left = round(self._left / _TICK)
+        self.query_one("#left", Static).update("▪" * left)

@@ -1,0 +1,55 @@
+"""A window: a modal screen with a frame and the keys of its scope."""
+
+from typing import Any, ClassVar
+
+from textual.app import ComposeResult
+from textual.containers import Container
+from textual.content import Content
+from textual.screen import ModalScreen
+from textual.types import CSSPathType
+from textual.widgets.option_list import Option
+
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
+from cbtui.keys.keymap import keymap_of
+from cbtui.looks.theme import Charset
+from cbtui.screens.sized import Result, SizedScreen
+from cbtui.widgets.key_bar import KeyBar
+
+
+class WindowScreen(ModalScreen[Result], SizedScreen[Result]):
+    """A framed window with ``content`` and the keys of ``SCOPE``; closing it gives None."""
+
+    SCOPE: ClassVar[Scope]
+    heading: str | Content = ""
+    """The text in the frame."""
+    CSS_PATH: ClassVar[CSSPathType | None] = "window.tcss"
+
+    def __init_subclass__(cls, **options: Any) -> None:
+        if "SCOPE" in vars(cls):
+            cls.BINDINGS = [*bindings_of(cls.SCOPE)]
+        super().__init_subclass__(**options)
+
+    def __init__(self, charset: Charset) -> None:
+        super().__init__()
+        self._charset = charset
+
+    def compose(self) -> ComposeResult:
+        """Lay out the frame."""
+        with Container(classes="window") as window:
+            window.border_title = self.heading
+            yield from self.content()
+            yield KeyBar(self.SCOPE, self._charset)
+
+    def content(self) -> ComposeResult:
+        """Yield what is in the frame, above the keys."""
+        raise NotImplementedError
+
+    def option(self, choice: object, *text: str | tuple[str, str]) -> Option:
+        """Return an option of a list: the key of the action that chooses it, and a text with styles."""
+        key = keymap_of(self.app).sign(self.SCOPE, f"choose({choice!r})", self._charset)
+        return Option(Content.assemble((key, "bold $text-accent"), *text))
+
+    def action_close(self) -> None:
+        """Close the window without a result."""
+        self.dismiss(None)

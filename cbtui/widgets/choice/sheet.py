@@ -1,0 +1,62 @@
+"""The content of the pane that asks which thread goes on, in words."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from cbtui.widgets.lanes.names import short_thread
+from sim.trace.descriptions import name_of, why_waiting
+from sim.trace.events import ChoiceAsked, Reason
+from sim.trace.timeline import Timeline
+
+
+class ChoiceOption(NamedTuple):
+    """A thread that may go on, and the line in front of which it stands; 0 outside of the program."""
+
+    text: str
+    file: str = ""
+    line: int = 0
+
+
+@dataclass(frozen=True)
+class ChoiceSheet:
+    """The content of the pane: what is asked or has come of it, and what is to be brought about.
+
+    ``kept`` says why the others may not go on, ``advised`` is the option that a solution takes.
+    """
+
+    news: str
+    task: str = ""
+    options: tuple[ChoiceOption, ...] = ()
+    kept: tuple[str, ...] = ()
+    advised: int | None = None
+
+
+def options_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[ChoiceOption]:
+    """The threads that may go on; the first one does if nobody wants otherwise."""
+    callbacks = {
+        timeline.threads[span.thread].name: name_of(span.entity, timeline)
+        for span in timeline.moment(timeline.end).running.values()
+    }
+    whole = zip(question.threads, question.functions, question.places, strict=True)
+    for number, (thread, function, (file, line)) in enumerate(whole):
+        begins = "looks for work" if thread.startswith("ThreadPoolExecutor") else "begins"
+        callback = callbacks.get(thread, function)
+        inside = function if callback == function else f"{callback} in {function}"
+        where = f"{inside}, line {line}" if line else begins
+        runs = "runs now, " if question.preempts and not number else ""
+        yield ChoiceOption(f"{where} ({runs}{short_thread(thread)})", file, line)
+
+
+def kept_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[str]:
+    """Why each of the other threads and callbacks may not go on."""
+    moment = timeline.moment(timeline.end)
+    for wait in moment.waiting.values():
+        free = wait.reason is Reason.NO_FREE_WORKER and "" in question.functions
+        why = "for a thread that looks for work" if free else why_waiting(wait, timeline)
+        yield f"{name_of(wait.entity, timeline)} is ready{' ' if free else ': '}{why}"
+    yield from (each.replace("ThreadPoolExecutor", "Pool") for each in question.others)
+    busy = {*moment.waiting, *(span.entity for span in moment.running.values())}
+    idle = [each for each in timeline.entities.values() if each.callback and each.id not in busy]
+    if idle:
+        yield f"not ready when the executor last looked: {', '.join(each.spoken_name for each in idle)}"

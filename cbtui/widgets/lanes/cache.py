@@ -1,0 +1,68 @@
+"""What is known of a timeline's lanes from earlier pictures: aggregates of the past, and painted rows."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import partial
+from typing import Any
+
+from cbtui.looks.theme import TextRun
+from cbtui.widgets.lanes.columns import I, InstantColumns, LaneColumn, LaneColumns
+from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
+from cbtui.widgets.lanes.scale import TimeScale
+from sim.trace.events import EntityId
+from sim.trace.model import Blocked, EntityInfo, Span, Wait, Window
+from sim.trace.timeline import Timeline
+
+
+@dataclass(frozen=True, slots=True)
+class LaneSummary:
+    """A lane's content, column by column.
+
+    ``lasting`` is the duration of the open interval, in words; ``unseen`` are the columns that are not
+    aggregated yet.
+    """
+
+    scale: TimeScale
+    calls: list[LaneColumn[Span] | None]
+    waits: list[LaneColumn[Wait] | None]
+    blocks: list[LaneColumn[Blocked] | None]
+    losses: list[int]
+    lasting: tuple[str, ...]
+    unseen: tuple[int, ...]
+
+
+@dataclass
+class LaneCache:
+    """The cache for one timeline: ``painted`` are lanes with what they show, the others rows with a key."""
+
+    timeline: Timeline
+    painted: dict[Lane, tuple[LaneSummary, list[TextRun]]] = field(default_factory=dict)
+    inside: dict[Lane, tuple[object, list[list[TextRun]]]] = field(default_factory=dict)
+    overview: tuple[object, list[TextRun]] = (None, [])
+    _columns: dict[tuple[str, int], LaneColumns[Any]] = field(default_factory=dict)
+    _losses: dict[EntityId, InstantColumns] = field(default_factory=dict)
+
+    def spans(self, lane: Lane) -> LaneColumns[Span]:
+        """Return the aggregated calls of a lane."""
+        match lane:
+            case ThreadLane(thread):
+                return self.columns(self.timeline.spans_on, thread.id)
+            case GroupLane(group):
+                return self.columns(self.timeline.spans_in, group.id)
+            case MemberLane(entity) | SoleLane(entity):
+                return self.columns(self.timeline.spans_of, entity.id)
+            case ServiceLane():
+                return LaneColumns(lambda _: ())
+
+    def columns(self, query: Callable[[int, Window], Sequence[I]], subject: int) -> LaneColumns[I]:
+        """Return the cached columns of a query of the timeline for an id."""
+        key = (query.__name__, subject)
+        if key not in self._columns:
+            self._columns[key] = LaneColumns(partial(query, subject))
+        return self._columns[key]
+
+    def losses(self, entity: EntityInfo) -> InstantColumns:
+        """Return when the queue of a callback lost messages."""
+        if entity.id not in self._losses:
+            self._losses[entity.id] = InstantColumns(partial(self.timeline.losses_of, entity.id))
+        return self._losses[entity.id]

@@ -1,0 +1,56 @@
+"""What stands at the left of each lane: names, and the letters and textures of groups."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from cbtui.looks.theme import Glyphs, Ink, Role, TextRun, texture_of
+from cbtui.widgets.lanes.names import entity_name, group_name, shortened, sole_name, thread_name
+from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
+from sim.trace.events import GroupId
+from sim.trace.model import GroupInfo
+
+_PLAIN = Ink(Role.TEXT)
+_TEXTURED_FROM = 20
+"""The smallest width of the names' column that shows the textures of groups."""
+_SWATCH = 2
+"""Columns of texture beside a group's letter."""
+
+
+@dataclass(frozen=True, slots=True)
+class LaneLabels:
+    """Labels of ``width`` columns; ``numbers`` are the places of the groups, by which they are coloured."""
+
+    width: int
+    glyphs: Glyphs
+    numbers: Mapping[GroupId, int]
+
+    def of(self, lane: Lane) -> list[TextRun]:
+        """Return a lane's label, the last run of which may have to be cut."""
+        ellipsis = self.glyphs.ellipsis
+        match lane:
+            case ThreadLane(thread):
+                name = thread_name(thread, self.width - 1, ellipsis)
+                return [TextRun(name, _PLAIN)]
+            case GroupLane(group):
+                letter = self._letter(group)
+                return [*letter, TextRun(group_name(group, self.room_after(letter)), _PLAIN)]
+            case MemberLane(entity):
+                return [TextRun(f"  {entity_name(entity, self.width - 3, ellipsis)}", _PLAIN)]
+            case SoleLane(entity, group):
+                letter = self._letter(group)
+                return [*letter, TextRun(sole_name(entity, group, self.room_after(letter), ellipsis), _PLAIN)]
+            case ServiceLane(service):
+                return [TextRun(shortened(service, self.width, ellipsis), _PLAIN)]
+
+    def room_after(self, runs: Sequence[TextRun]) -> int:
+        """Return the columns that are left after parts of a label."""
+        return self.width - sum(len(run.text) for run in runs)
+
+    def _letter(self, group: GroupInfo) -> list[TextRun]:
+        """A group's letter, and its texture where there is room."""
+        number = self.numbers[group.id]
+        letter = TextRun(f"{group.letter} ", Ink(Role.LETTER, number))
+        if self.width < _TEXTURED_FROM:
+            return [letter]
+        texture = texture_of(number, self.glyphs)
+        return [letter, texture._replace(text=texture.text * _SWATCH), TextRun(" ", _PLAIN)]

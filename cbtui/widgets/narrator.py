@@ -1,0 +1,181 @@
+"""The narrator: what the executor did at a moment, and why, callback by callback."""
+
+from collections.abc import Iterator, Sequence
+
+from textual.geometry import Size
+from textual.reactive import reactive
+
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
+from cbtui.text.cells import fit, lines_of_text
+from cbtui.widgets.lanes.names import short_thread
+from cbtui.widgets.painted_widget import PaintedWidget, painted
+from sim.diagnosis.words import group_of, thread_count
+from sim.durations import duration, timestamp
+from sim.plural import counted
+from sim.trace.descriptions import name_of, why_waiting
+from sim.trace.events import EntityId, EntityKind, Reason
+from sim.trace.model import Blocked, EntityInfo, Nanoseconds, Span, Wait, Window
+from sim.trace.timeline import Timeline
+
+ROWS = 4
+"""The number of rows; constant, so that the screen does not jump from event to event."""
+_FIRST = Ink(Role.STRONG)
+_NEXT = Ink(Role.TEXT)
+_ORDER = (
+    EntityKind.WAITABLE,
+    EntityKind.TIMER,
+    EntityKind.SUBSCRIPTION,
+    EntityKind.GUARD,
+    EntityKind.CLIENT,
+    EntityKind.SERVICE,
+)
+"""The order in which rclpy's executors go through what is ready in a node."""
+_IN_ORDER = {
+    EntityKind.WAITABLE: "waitables come first",
+    EntityKind.TIMER: "timers come first",
+    EntityKind.SUBSCRIPTION: "no timer is before it",
+    EntityKind.GUARD: "neither timer nor subscription is before it",
+    EntityKind.CLIENT: "neither timer nor subscription is before it",
+    EntityKind.SERVICE: "services come last",
+}
+
+
+class Narrator(PaintedWidget):
+    """Tells what the executor decided last, up to the moment ``now``."""
+
+    timeline: reactive[Timeline] = painted(Timeline, always_update=True)
+    now: reactive[Nanoseconds] = painted(0)
+    charset: reactive[Charset] = painted(Charset.BRAILLE)
+
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
+        """Paint the sentences, each on as many rows as it takes."""
+        width = max(20, size.width)
+        rows: list[list[TextRun]] = []
+        for place, told in enumerate(narration(self.timeline, self.now)):
+            sign = f" {GLYPHS[self.charset].forth} " if place == 0 else "   "
+            for line in lines_of_text(told, width - 4, self.charset):
+                rows.append([TextRun(fit(f"{sign}{line}", width, self.charset), _NEXT if place else _FIRST)])
+                sign = "     "
+        return rows[: size.height]
+
+
+def narration(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
+    """Return what the executor did last by a moment, and what it left waiting, in its own order."""
+    last = timeline.neighbour(at + 1, None, -1)
+    if last is None:
+        return ("nothing has happened yet",)
+    moment = timeline.moment(last)
+    left = [wait for wait in moment.waiting.values() if wait.holder != wait.entity]
+    left.sort(key=lambda wait: _place(timeline.entities[wait.entity]))
+    did = (
+        *_ended(timeline, last),
+        *_blocked(timeline, last),
+        *_begun(timeline, last, left),
+        *_lost(timeline, last),
+        *(f"{name_of(each.entity, timeline)} is ready" for each in left if each.since == last),
+    )
+    first = f"{timestamp(last)}: {'; '.join(did) or 'the executor looks again'}"
+    told = [waiting(wait, timeline, last) for wait in left]
+    return (first, *told) if told else (first, _at_rest(timeline, last))
+
+
+def _place(entity: EntityInfo) -> tuple[int, int, EntityId]:
+    """The place of a callback in the order in which an executor looks at it."""
+    return entity.node, _ORDER.index(entity.kind), entity.id
+
+
+def _spans_at(timeline: Timeline, at: Nanoseconds) -> Iterator[Span]:
+    for thread in timeline.threads:
+        yield from timeline.spans_on(thread, Window(max(0, at - 1), at + 1))
+
+
+def _ended(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    for span in _spans_at(timeline, at):
+        if span.end == at and span.start < at:
+            yield returning(span, timeline)
+
+
+def returning(span: Span, timeline: Timeline) -> str:
+    """Return what it means that a call has ended."""
+    name, group = name_of(span.entity, timeline), group_of(span.entity, timeline)
+    return f"{name} returns after {duration(span.end_at(timeline.end) - span.start)}, {group} is free"
+
+
+def _blocked(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    stuck: Sequence[Blocked] = [each for each in timeline.moment(at).blocked.values() if each.start == at]
+    for each in stuck:
+        caller = name_of(each.entity, timeline) if each.entity else "the program"
+        yield f"{caller} calls {each.service}, and keeps its thread and its group until the reply"
+
+
+def _lost(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    for entity in timeline.entities.values():
+        if timeline.losses_of(entity.id, Window(at, at + 1)):
+            yield f"the full queue of {entity.spoken_name} loses its oldest message"
+
+
+def _begun(timeline: Timeline, at: Nanoseconds, left: Sequence[Wait]) -> Iterator[str]:
+    for span in _spans_at(timeline, at):
+        entity = timeline.entities.get(span.entity)
+        if span.start == at and entity is not None:
+            thread = short_thread(timeline.threads[span.thread].name)
+            yield ", ".join(
+                (
+                    f"{thread} is free: {entity.spoken_name} {_readiness(entity, span)}",
+                    *_why_first(entity, left, timeline),
+                    f"{group_of(entity.id, timeline)} lets it in → runs",
+                )
+            )
+
+
+def _readiness(entity: EntityInfo, span: Span) -> str:
+    match entity.kind:
+        case EntityKind.TIMER:
+            return f"is due, {duration(span.age)} late" if span.age > 0 else "is due"
+        case EntityKind.SUBSCRIPTION:
+            return f"has a message, {duration(span.age)} old"
+        case EntityKind.SERVICE:
+            return "has a request"
+        case EntityKind.CLIENT:
+            return "is there"
+    return "is ready"
+
+
+def _why_first(entity: EntityInfo, left: Sequence[Wait], timeline: Timeline) -> Iterator[str]:
+    """Why it was chosen, if a thread was what the others lack, or it came before them."""
+    if any(wait.reason is Reason.EVENT_QUEUE for wait in left):
+        yield "it came first"
+    others = [
+        timeline.entities[wait.entity]
+        for wait in left
+        if wait.reason is Reason.NO_FREE_WORKER and wait.entity != entity.id
+    ]
+    if others:
+        is_first = all(_place(entity) < _place(other) for other in others)
+        yield _IN_ORDER[entity.kind] if is_first else "it was ready when the executor looked last"
+
+
+def waiting(wait: Wait, timeline: Timeline, at: Nanoseconds) -> str:
+    """Return why a callback that is ready does not run at a moment."""
+    entity = timeline.entities[wait.entity]
+    queued = timeline.queue(entity.id, at).depth
+    waits = f"{entity.spoken_name} waits" + (f" since {timestamp(wait.since)}" if wait.since < at else "")
+    ready = f", {queued} queued" if queued else ", due" if entity.kind is EntityKind.TIMER else ""
+    match wait.reason:
+        case Reason.GROUP_HELD:
+            why = why_waiting(wait, timeline)
+        case Reason.NO_FREE_WORKER:
+            why = f"{group_of(entity.id, timeline)} would let it in, but no thread is free"
+        case Reason.EVENT_QUEUE:
+            why = "others came before it, and its EventsExecutor asks no group"
+        case Reason.NOBODY_SPINS:
+            why = "nobody spins its node"
+    return f"{waits}{ready}: {why}"
+
+
+def _at_rest(timeline: Timeline, at: Nanoseconds) -> str:
+    busy = len(timeline.moment(at).running)
+    threads = max(busy, thread_count(timeline))
+    if busy == threads:
+        return "nothing else is ready"
+    return f"nothing else is ready: {counted(threads - busy, 'thread')} of {threads} without work"

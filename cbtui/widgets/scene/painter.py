@@ -1,0 +1,109 @@
+"""Paints a scene at a moment: each figure where its callback has brought it, and what that callback does."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from cbtui.looks.theme import Charset, Ink, Role, TextRun
+from cbtui.text.cells import fit
+from cbtui.widgets.dots import DotGrid
+from cbtui.widgets.scene.figures import ACROSS, DOWN, FIGURES
+from lessons.description import Actor
+from sim.durations import duration
+from sim.plural import counted
+from sim.trace.descriptions import doing_of, why_waiting
+from sim.trace.model import EntityInfo, Moment, Nanoseconds, Window
+from sim.trace.timeline import Timeline
+
+_COLUMNS, _ROWS = 10, 2
+_GAP = 2
+_HALF_WAY: Nanoseconds = 300_000_000
+"""How long a callback runs until its figure has gone half of its way."""
+_BACK: Nanoseconds = 500_000_000
+"""How long its figure needs back."""
+_LATELY: Nanoseconds = 1_000_000_000
+_FAINT, _PLAIN, _STRONG, _WARN = Ink(Role.FAINT), Ink(Role.TEXT), Ink(Role.STRONG), Ink(Role.WARN)
+
+
+class _State(NamedTuple):
+    """How far a figure has come, from 0 to 1, what its callback does, and why."""
+
+    progress: float
+    words: str
+    reason: str = ""
+    is_trouble: bool = False
+
+
+def paint_scene(
+    actors: Sequence[Actor], timeline: Timeline, now: Nanoseconds, width: int, height: int, charset: Charset
+) -> list[list[TextRun]]:
+    """Return at most ``height`` rows of ``width`` columns."""
+    moment = timeline.moment(now)
+    numbers = {group: place for place, group in enumerate(timeline.groups)}
+    blank = [TextRun(" " * width, _PLAIN)]
+    apart = height >= len(actors) * (_ROWS + 1)
+    rows: list[list[TextRun]] = []
+    for actor in actors:
+        found = (each for each in timeline.entities.values() if actor.follows in (each.callback, each.name))
+        entity = next(found, None)
+        state = _State(0.0, "is not there yet") if entity is None else _state(entity, timeline, moment)
+        ink = _FAINT if entity is None else Ink(Role.LINE, numbers.get(entity.group, 0))
+        texts = (
+            [
+                TextRun(actor.follows, _STRONG),
+                TextRun(f" {state.words}", _WARN if state.is_trouble else _PLAIN),
+            ],
+            [TextRun(state.reason, _WARN if state.is_trouble else _FAINT)],
+        )
+        for figure, told in zip(_figure(actor.figure, state.progress, ink, charset), texts, strict=True):
+            rows.append(_fitted([*figure, TextRun(" " * _GAP, _PLAIN), *told], width, charset))
+        rows += [blank] if apart else []
+    return rows[:height]
+
+
+def _figure(name: str, progress: float, ink: Ink, charset: Charset) -> list[list[TextRun]]:
+    """Return the rows of a figure that has gone a part of its way."""
+    figure, grid = FIGURES[name], DotGrid(_COLUMNS, _ROWS, charset)
+    across, down = grid.across * _COLUMNS / ACROSS, grid.down * _ROWS / DOWN
+    parts = [((0, 0), figure.still, 1), *((by, lines, 2) for by, lines in figure.moving)]
+    for (right, below), lines, layer in parts:
+        x, y = round(right * progress), round(below * progress)
+        for left, top, end, bottom in lines:
+            start = (left + x) * across, (top + y) * down
+            grid.line(start, ((end + x) * across, (bottom + y) * down), layer)
+    return [row.runs() for row in grid.rows((_PLAIN, _FAINT, ink), " .#")]
+
+
+def _fitted(runs: Sequence[TextRun], width: int, charset: Charset) -> list[TextRun]:
+    """Cut runs to a width, or fill it."""
+    shown, room = list[TextRun](), width
+    for text, ink in runs:
+        shown.append(TextRun(fit(text, min(len(text), room), charset) if text and room else "", ink))
+        room -= len(shown[-1].text)
+    return [*shown, TextRun(" " * room, _PLAIN)]
+
+
+def _state(entity: EntityInfo, timeline: Timeline, moment: Moment) -> _State:
+    at = moment.at
+    lost = len(timeline.losses_of(entity.id, Window(max(0, at - _LATELY), at + 1)))
+    losses = f"lost {counted(lost, 'message')} in a second" if lost else ""
+    running = next((span for span in moment.running.values() if span.entity == entity.id), None)
+    if running is not None:
+        elapsed = at - running.start
+        blocked = moment.blocked.get(running.thread)
+        position = timeline.position_on(running.thread, at)
+        if blocked is not None and blocked.entity == entity.id:
+            doing = f"blocked in the call of {blocked.service}"
+        else:
+            doing = "" if position is None or position.entity != entity.id else doing_of(position)
+        return _State(elapsed / (elapsed + _HALF_WAY), f"runs {duration(elapsed)}", doing, bool(blocked))
+    wait = moment.waiting.get(entity.id)
+    if wait is not None:
+        reasons = filter(None, (why_waiting(wait, timeline), losses))
+        return _State(0.0, f"waits {duration(at - wait.since)}", "; ".join(reasons), True)
+    before = timeline.spans_of(entity.id, Window(max(0, at - _BACK), at + 1))
+    if before:
+        since = at - before[-1].end_at(at)
+        return _State(1 - min(1.0, since / _BACK), "has just run", before[-1].error or losses)
+    return _State(
+        0.0, "rests" if timeline.calls_of(entity.id, Window(0, at + 1)) else "has not run yet", losses
+    )

@@ -1,0 +1,67 @@
+"""A belt with a speed limit that holds.
+
+Its callback sets nothing. It returns what is to be set in place of what
+was asked for, before anything is stored.
+"""
+
+import rclpy
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from std_srvs.srv import SetBool
+
+LIMIT = 4.0  # steps per second
+CALM, HURRIED = 2.0, 9.0
+
+
+class Belt(Node):
+    """Moves at the speed that its parameter says, up to a limit."""
+
+    def __init__(self):
+        super().__init__("belt")
+        self.declare_parameter("speed", CALM)
+        # Asked first of all: what shall be set?
+        self.add_pre_set_parameters_callback(self.limit_callback)
+        self.srv = self.create_service(SetBool, "/hurry", self.hurry_callback)
+        self.timer = self.create_timer(0.5, self.belt_callback)
+
+    def belt_callback(self):
+        speed = self.get_parameter("speed").value
+        self.get_logger().info(f"SPEED {speed}")
+
+    def hurry_callback(self, request, response):
+        """Set the speed to 9.0 (true) or 2.0 (false)."""
+        speed = HURRIED if request.data else CALM
+        result = self.set_parameters([Parameter("speed", value=speed)])[0]
+        response.success = result.successful
+        response.message = result.reason
+        return response
+
+    def limit_callback(self, parameters):
+        """Return what is to be set: no speed above the limit."""
+        return [self.limited(parameter) for parameter in parameters]
+
+    def limited(self, parameter):
+        if parameter.name != "speed" or parameter.value <= LIMIT:
+            return parameter
+        self.get_logger().warning(f"TOO FAST, SO {LIMIT}")
+        return Parameter("speed", value=LIMIT)
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    node = Belt()
+    executor = SingleThreadedExecutor()
+    executor.add_node(node)
+    try:
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # Ctrl-C is the usual way to end a node
+    finally:
+        executor.shutdown()
+        node.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,1 +1,0 @@
-../exclusive-2-threads/node.py

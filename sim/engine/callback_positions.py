@@ -1,0 +1,114 @@
+"""Tells at which line of the learner's code each running callback is, and what it does there."""
+
+import ast
+import linecache
+import sys
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from itertools import takewhile
+from types import FrameType
+from typing import TypeAlias
+
+from sim.clock import RunClock
+from sim.marks import calls_the_program, waits_for_keyboard
+from sim.probes.own_code import is_library, is_own, outwards
+from sim.probes.probe import Probe, RunningCallback
+from sim.trace.events import AnyEvent, CallbackAt, Doing, EntityId
+
+_WAITING = ("sim.clock.", "threading", "queue")
+"""Modules in which threads wait for each other."""
+
+LOCK = "Lock.acquire"
+"""What a position calls every way of taking a lock."""
+
+Place: TypeAlias = tuple[str, int]
+Position: TypeAlias = tuple[Doing, str, tuple[tuple[str, str, int], ...], Place, int]
+
+
+class CallbackPositions:
+    """Looks at the threads' frames, and records the position of each running callback when it has changed."""
+
+    def __init__(self, probe: Probe, clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
+        self._probe = probe
+        self._clock = clock
+        self._record = record
+        self._latest: dict[int, tuple[RunningCallback, Position]] = {}
+
+    def look(self) -> None:
+        """Look once; any one thread at a time may call this."""
+        running = self._probe.running()
+        if not running:
+            return
+        tops = sys._current_frames()
+        for ident, callback in running.items():
+            position = _position(tops.get(ident), running)
+            if position is not None and self._latest.get(ident) != (callback, position):
+                self._latest[ident] = callback, position
+                self._record(CallbackAt(self._clock.now(), callback.entity, callback.thread, *position))
+
+    def callback_on(self, ident: int) -> EntityId:
+        """The callback that runs on a thread (0: none), after a look."""
+        self.look()
+        callback = self._probe.running().get(ident)
+        return 0 if callback is None else callback.entity
+
+
+def _position(top: FrameType | None, running: Mapping[int, RunningCallback]) -> Position | None:
+    """Where a thread is in the callback that it runs; None if it runs none of the program's code."""
+    stack = list(takewhile(lambda frame: frame not in calls_the_program, outwards(top)))
+    own = [place for place, frame in enumerate(stack) if is_own(frame) and not is_library(frame)]
+    if not own:
+        return None
+    inside = stack[: own[0]]
+    doing, call = _activity(inside)
+    holder = running.get(_lock_holder(inside)) if call == LOCK else None
+    lines = [(stack[place].f_code, stack[place].f_lineno) for place in reversed(own)]
+    loops = (loop_around(code.co_filename, line) for code, line in reversed(lines))
+    frames = tuple((code.co_filename, code.co_name, line) for code, line in lines)
+    thread = 0 if holder is None else holder.thread
+    return doing, call, frames, next(filter(None, loops), ("", 0)), thread
+
+
+def _activity(inside: list[FrameType]) -> tuple[Doing, str]:
+    """What goes on in the frames that the innermost line of the program has called, the outermost last."""
+    if any(frame in waits_for_keyboard for frame in inside):
+        return Doing.READS, "input"
+    if not inside:
+        return Doing.COMPUTES, ""
+    code, module = inside[-1].f_code, str(inside[-1].f_globals.get("__name__"))
+    name, own = code.co_name, code.co_qualname
+    if name.startswith("sleep") and not own.startswith("Rate."):
+        return Doing.SLEEPS, own if module.startswith("sim.ros.") else "time.sleep"
+    if module.startswith("sim.ros."):
+        return Doing.CALLS_ROS, own
+    if any(str(frame.f_globals.get("__name__")).startswith(_WAITING) for frame in inside):
+        return Doing.WAITS, {"acquire": LOCK, "__enter__": LOCK, "join": "Thread.join"}.get(name, own)
+    return Doing.COMPUTES, ""
+
+
+def _lock_holder(inside: list[FrameType]) -> int:
+    """The identifier of the thread that holds the lock which these frames wait for; 0 if unknown."""
+    for frame in inside:
+        ident = getattr(frame.f_locals.get("self"), "holder_ident", None)
+        if ident is not None:
+            return int(ident)
+    return 0
+
+
+def loop_around(file: str, line: int) -> Place | None:
+    """The innermost ``while`` around a line of a file; None for none."""
+    found = [(first, last) for first, last in _loops(file) if first <= line <= last]
+    return (file, max(found)[0]) if found else None
+
+
+@lru_cache(maxsize=64)
+def _loops(file: str) -> tuple[tuple[int, int], ...]:
+    try:
+        tree = ast.parse("".join(linecache.getlines(file)))
+    except (SyntaxError, ValueError):
+        return ()
+    return tuple(
+        (node.lineno, node.end_lineno or node.lineno)
+        for node in ast.walk(tree)
+        if isinstance(node, ast.While)
+    )

@@ -1,0 +1,86 @@
+"""Lets threads switch in front of each line of the program that touches data which threads may share."""
+
+import linecache
+import sys
+import threading
+from collections.abc import Hashable
+from types import CodeType, FrameType
+from typing import Any
+
+from sim.clock import VirtualClock
+from sim.engine.exploration.conflicts import Conflicts
+from sim.engine.exploration.shared_data import SharedData, shared_data
+from sim.marks import calls_the_program
+from sim.probes.own_code import is_library, is_own, outwards
+
+
+class LineSwitches:
+    """Traces the program's own code on every thread of the clock.
+
+    A line is atomic: CPython could leave it only where it calls something, and that has lines of its own.
+    """
+
+    def __init__(self, clock: VirtualClock, conflicts: Conflicts) -> None:
+        self._clock = clock
+        self._conflicts = conflicts
+        self._files: dict[str, SharedData] = {}
+        self._written: set[str] = set()
+        self._own: dict[CodeType, SharedData | None] = {}
+
+    def start(self) -> None:
+        """Trace the calling thread, and each that starts from now on."""
+        threading.settrace(self._called)
+        sys.settrace(self._called)
+
+    def _called(self, frame: FrameType, _event: str, _argument: object) -> Any:
+        code = frame.f_code
+        if code not in self._own:
+            own = is_own(frame) and not is_library(frame)
+            self._own[code] = self._shared_data(code.co_filename) if own else None
+        data = self._own[code]
+        # A coroutine that goes on keeps the trace of its frame.
+        return None if data is None else frame.f_trace or _FrameTrace(self, data).take
+
+    def _shared_data(self, file: str) -> SharedData:
+        if file not in self._files:
+            found = self._files[file] = shared_data("".join(linecache.getlines(file)))
+            self._written |= found.written
+        return self._files[file]
+
+    def come_to_line(self, frame: FrameType, data: SharedData) -> None:
+        """Let other threads go first if the line touches shared data, and note what it touches."""
+        accesses: dict[Hashable, bool] = {
+            name: writes
+            for name, writes in data.lines.get(frame.f_lineno, {}).items()
+            if name in self._written
+        }
+        if not accesses:
+            return
+        self._clock.switch_point(accesses)
+        if self._clock.owns_current_thread():
+            unit, owner = _outermost(frame), id(frame.f_locals.get("self"))
+            for name, writes in accesses.items():
+                self._conflicts.take((name, owner), unit, frame.f_code.co_filename, frame.f_lineno, writes)
+
+
+class _FrameTrace:
+    """The trace of one call of a function."""
+
+    def __init__(self, lines: LineSwitches, data: SharedData) -> None:
+        self._lines = lines
+        self._data = data
+
+    def take(self, frame: FrameType, event: str, _argument: object) -> Any:
+        if event == "line":
+            self._lines.come_to_line(frame, self._data)
+        return self.take
+
+
+def _outermost(frame: FrameType) -> Hashable:
+    """What stands for the call of a callback, or for the outermost call of the program outside callbacks."""
+    trace = frame.f_trace
+    for each in outwards(frame):
+        if each in calls_the_program:
+            break
+        trace = each.f_trace or trace
+    return trace

@@ -1,0 +1,116 @@
+"""Finds the lines of a source file that touch data which several threads may share."""
+
+import ast
+import re
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+_MUTATES = re.compile(
+    "add|append(left)?|clear|discard|extend(left)?|insert|pop(item|left)?|remove|reverse|rotate|setdefault|"
+    "sort|update|heap(push|pop|ify|replace|pushpop)|insort|next"
+)
+"""Names of methods that change their object, and of functions that change their first argument."""
+_Function: TypeAlias = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
+
+
+@dataclass
+class SharedData:
+    """The accesses of a source file to attributes, globals and nonlocal names.
+
+    ``lines`` has for each line the names, an attribute's with a dot in front, and whether they are written.
+    ``written`` are the names that functions other than ``__init__`` write, or change in place: others are
+    constant once the program runs. What a local name stands for is not followed, but for objects that the
+    function makes itself, which are left out.
+    """
+
+    lines: defaultdict[int, dict[str, bool]] = field(default_factory=lambda: defaultdict(dict))
+    written: set[str] = field(default_factory=set)
+
+    def note(self, name: str, line: int, *, writes: bool, counts: bool) -> None:
+        """Add an access; a write that ``counts`` makes the name one that changes."""
+        self.lines[line][name] = writes or self.lines[line].get(name, False)
+        if writes and counts:
+            self.written.add(name)
+
+
+def shared_data(source: str) -> SharedData:
+    """Return the accesses of a source file, none if it cannot be parsed."""
+    found = SharedData()
+    try:
+        tree = ast.parse(source)
+    except (SyntaxError, ValueError):
+        return found
+    for function in ast.walk(tree):
+        if isinstance(function, _Function):
+            _Accesses(function, found).collect()
+    return found
+
+
+class _Accesses:
+    """The accesses of one function."""
+
+    def __init__(self, function: _Function, found: SharedData) -> None:
+        self._nodes = list(_inside(function))
+        self._counts = getattr(function, "name", "") != "__init__"
+        self._found = found
+        stored = {each.id for each in self._names() if isinstance(each.ctx, ast.Store)}
+        arguments = {each.arg for each in ast.walk(function.args) if isinstance(each, ast.arg)}
+        declared = {
+            name for each in self._nodes if isinstance(each, ast.Global | ast.Nonlocal) for name in each.names
+        }
+        self._locals = (stored | arguments) - declared
+        self._made = {
+            target.id
+            for each in self._nodes
+            if isinstance(each, ast.Assign) and _makes_object(each.value)
+            for target in each.targets
+            if isinstance(target, ast.Name)
+        }
+
+    def _names(self) -> Iterator[ast.Name]:
+        return (each for each in self._nodes if isinstance(each, ast.Name))
+
+    def collect(self) -> None:
+        """Add the accesses to what was found."""
+        for node in self._nodes:
+            match node:
+                case ast.Attribute() | ast.Name():
+                    self._note(node, writes=not isinstance(node.ctx, ast.Load))
+                case ast.Subscript(value=value, ctx=ast.Store() | ast.Del()):
+                    self._note(value, writes=True)
+                case ast.Call(func=called, args=arguments) if _MUTATES.fullmatch(_last_name(called)):
+                    for changed in [called.value] if isinstance(called, ast.Attribute) else arguments[:1]:
+                        self._note(changed, writes=True)
+
+    def _note(self, node: ast.expr, *, writes: bool) -> None:
+        while isinstance(node, ast.Subscript):
+            node = node.value
+        root: ast.expr = node
+        while isinstance(root, ast.Attribute | ast.Subscript):
+            root = root.value
+        if isinstance(root, ast.Name) and root.id in self._made:
+            return
+        line = node.end_lineno or node.lineno
+        if isinstance(node, ast.Attribute):
+            self._found.note(f".{node.attr}", line, writes=writes, counts=self._counts)
+        elif isinstance(node, ast.Name) and node.id not in self._locals:
+            self._found.note(node.id, line, writes=writes, counts=self._counts)
+
+
+def _inside(function: ast.AST) -> Iterator[ast.AST]:
+    """The nodes of a function without those of the functions in it."""
+    for child in ast.iter_child_nodes(function):
+        yield child
+        if not isinstance(child, _Function):
+            yield from _inside(child)
+
+
+def _last_name(node: ast.expr) -> str:
+    return node.attr if isinstance(node, ast.Attribute) else node.id if isinstance(node, ast.Name) else ""
+
+
+def _makes_object(value: ast.expr) -> bool:
+    """Whether it is a call of something named like a class, ``Twist()``."""
+    return isinstance(value, ast.Call) and _last_name(value.func)[:1].isupper()

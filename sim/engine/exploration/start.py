@@ -1,0 +1,40 @@
+"""Sets a run up for exploring: where its program's own lines switch threads, and what is told of that."""
+
+from collections.abc import Callable
+
+from sim.clock import VirtualClock
+from sim.clock.played import Choice, Played
+from sim.engine.exploration.asking import AskedChoices, position
+from sim.engine.exploration.conflicts import Conflicts
+from sim.engine.exploration.line_switches import LineSwitches
+from sim.ros.middleware.host import Host
+from sim.trace.events import AnyEvent, ThreadChosen
+
+
+def explore(clock: VirtualClock, host: Host, record: Callable[[AnyEvent], None]) -> AskedChoices | None:
+    """Switch threads at the program's own lines from now on, and record choices and conflicts.
+
+    Returns what gets the answers, None for a schedule that asks nobody.
+    """
+    schedule, asked = clock.schedule, None
+    if isinstance(schedule, Played):
+        if schedule.asks:
+            asked = AskedChoices(clock, schedule, host, record)
+            schedule.decide = asked.decide
+        _tell_choices(clock, schedule, record)
+    LineSwitches(clock, Conflicts(clock, host.probe.callback_here, record)).start()
+    return asked
+
+
+def _tell_choices(clock: VirtualClock, schedule: Played, record: Callable[[AnyEvent], None]) -> None:
+    decide = schedule.decide
+
+    def told(choice: Choice) -> int:
+        chosen = decide(choice)
+        texts = (position(choice.options[0]), position(choice.options[chosen])) if chosen else ("", "")
+        able, preempts, state = len(choice.options), choice.preempts, choice.state
+        record(ThreadChosen(clock.now(), choice.number, able, chosen, preempts, state, *texts))
+        return chosen
+
+    schedule.decide = told
+    schedule.now = clock.now

@@ -1,0 +1,122 @@
+"""Reads XML and YAML into the same tree: elements with attributes, and elements inside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+from xml.parsers import expat
+
+import yaml
+
+from sim.launch.errors import LaunchError, LaunchFailure
+
+
+@dataclass
+class Element:
+    """One element of a launch file, and the line that it begins on."""
+
+    tag: str
+    line: int
+    attributes: dict[str, str] = field(default_factory=dict)
+    inside: list[Element] = field(default_factory=list)
+    taken: set[str] = field(default_factory=set)
+    """The attributes that somebody has asked for."""
+
+    def get(self, *names: str) -> str | None:
+        """The attribute of the first of these names that it has."""
+        self.taken.update(names)
+        return next((self.attributes[name] for name in names if name in self.attributes), None)
+
+    def need(self, *names: str) -> str:
+        """As `get`, for one that it must have.
+
+        Raises:
+            LaunchFailure: it has none.
+        """
+        found = self.get(*names)
+        if found is None:
+            raise LaunchFailure(f"<{self.tag}> needs the attribute {names[0]!r}")
+        return found
+
+    def all(self, *tags: str) -> list[Element]:
+        """The elements inside that have one of these tags."""
+        return [each for each in self.inside if each.tag in tags]
+
+
+def read_elements(file: Path, source: bytes) -> Element:
+    """The root of a launch file.
+
+    Raises:
+        LaunchError: it is not well-formed, or its root is no ``launch``.
+    """
+    read: Callable[[bytes], Element] = _xml if file.suffix == ".xml" else _yaml
+    try:
+        root = read(source)
+    except expat.ExpatError as error:
+        raise LaunchError(f"{file.name}:{error.lineno}: {expat.errors.messages[error.code]}") from None
+    except yaml.MarkedYAMLError as error:
+        line = error.problem_mark.line + 1 if error.problem_mark is not None else 1
+        raise LaunchError(f"{file.name}:{line}: {error.problem}") from None
+    except (LaunchFailure, yaml.YAMLError, UnicodeError) as error:
+        raise LaunchError(f"{file.name}: {error}") from None
+    if root.tag != "launch":
+        raise LaunchError(f"{file.name}:{root.line}: a launch file's root is 'launch', not {root.tag!r}")
+    return root
+
+
+def _xml(source: bytes) -> Element:
+    parser = expat.ParserCreate()
+    open_ones = [Element("", 0)]
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        element = Element(tag, parser.CurrentLineNumber, attributes)
+        open_ones[-1].inside.append(element)
+        open_ones.append(element)
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda _: open_ones.pop()
+    parser.Parse(source, True)
+    return open_ones[0].inside[0]
+
+
+def _yaml(source: bytes) -> Element:
+    root = yaml.compose(source, yaml.SafeLoader)
+    if not isinstance(root, yaml.MappingNode) or len(root.value) != 1:
+        raise LaunchFailure("a launch file in YAML is 'launch:' and a list of actions")
+    tag, content = root.value[0]
+    return _element(tag, content)
+
+
+def _element(tag: Any, content: Any) -> Element:
+    """An element of YAML: its attributes and elements by name, or a list of the elements inside."""
+    made = Element(str(tag.value), tag.start_mark.line + 1)
+    if isinstance(content, yaml.SequenceNode):
+        for each in content.value:
+            made.inside += _elements(each)
+    elif isinstance(content, yaml.MappingNode):
+        for name, value in content.value:
+            _add(made, name, value)
+    return made
+
+
+def _elements(node: Any) -> list[Element]:
+    if not isinstance(node, yaml.MappingNode):
+        raise LaunchFailure(f"line {node.start_mark.line + 1}: an action is wanted, as '- node: …'")
+    return [_element(tag, content) for tag, content in node.value]
+
+
+def _add(made: Element, name: Any, value: Any) -> None:
+    if isinstance(value, yaml.ScalarNode):
+        made.attributes[name.value] = value.value
+    elif name.value == "children":
+        made.inside += [inside for each in value.value for inside in _elements(each)]
+    elif isinstance(value, yaml.SequenceNode) and all(
+        isinstance(each, yaml.ScalarNode) for each in value.value
+    ):
+        made.attributes[name.value] = yaml.serialize(value).strip()
+    elif isinstance(value, yaml.SequenceNode):
+        made.inside += [_element(name, each) for each in value.value]
+    else:
+        made.inside.append(_element(name, value))

@@ -1,0 +1,1 @@
+"""``launch_xml``: launch files in XML."""

@@ -1,0 +1,1 @@
+"""``launch_yaml``: launch files in YAML."""

@@ -1,0 +1,91 @@
+"""At which line of the program's own code each running callback is."""
+
+from __future__ import annotations
+
+import sys
+import sysconfig
+from typing import TYPE_CHECKING, Any
+
+from .callbacks import is_own
+from .recorder import now
+
+if TYPE_CHECKING:
+    from types import CodeType, FrameType
+
+    from .executors import Executors
+    from .recorder import Recorder
+
+_LIBRARIES = (
+    *(sysconfig.get_path(name) for name in ("purelib", "platlib")),
+    *("/usr/lib/python3/", "/opt/ros/"),
+)
+"""Folders of packages that are nobody's own; a workspace's packages lie elsewhere."""
+_DEEPEST = 20
+"""Lines of one stack that are told: the innermost."""
+_UNKNOWN = (0, 0, 0, 0)
+
+
+class Positions:
+    """Samples the threads that run callbacks, and tells where each is when that has changed.
+
+    For one thread.
+    """
+
+    def __init__(self, recorder: Recorder, executors: Executors) -> None:
+        self._recorder = recorder
+        self._executors = executors
+        self._latest: dict[int, tuple[Any, ...]] = {}
+
+    def look(self) -> None:
+        """Look once."""
+        running = [each for spinner in self._executors.all() for each in spinner.busy.copy().items()]
+        tops = sys._current_frames() if running else {}
+        for thread, entity in running:
+            stack = _stack(tops.get(self._recorder.idents[thread]))
+            instructions = entity, [(frame.f_code, frame.f_lasti) for frame in stack]
+            if self._latest.get(thread) != instructions:
+                self._latest[thread] = instructions
+                position = _position(stack)
+                if position is not None:
+                    self._recorder.put("at", now(), entity, thread, *position)
+
+
+def _stack(top: FrameType | None) -> list[FrameType]:
+    """The frames of a callback, the innermost first."""
+    stack = []
+    while top is not None and _module(top) != "cbtui_probe.callbacks":
+        stack.append(top)
+        top = top.f_back
+    return stack if top is not None else []
+
+
+def _position(stack: list[FrameType]) -> tuple[Any, ...] | None:
+    """The program's lines, the innermost last, the instruction there, and the function that it called."""
+    own = [
+        place
+        for place, frame in enumerate(stack)
+        if is_own(frame) and not frame.f_code.co_filename.startswith(_LIBRARIES)
+    ]
+    if not own:
+        return None
+    lines = [
+        (frame.f_code.co_filename, frame.f_code.co_name, frame.f_lineno)
+        for frame in (stack[place] for place in reversed(own[:_DEEPEST]))
+    ]
+    if own[0] == 0:
+        return lines, _place(stack[0].f_code, stack[0].f_lasti), "", ""
+    inside = reversed(stack[: own[0]])
+    called = next((frame for frame in inside if not _module(frame).startswith("cbtui_probe")), stack[0])
+    return lines, _UNKNOWN, _module(called), getattr(called.f_code, "co_qualname", called.f_code.co_name)
+
+
+def _module(frame: FrameType) -> str:
+    return str(frame.f_globals.get("__name__"))
+
+
+def _place(code: CodeType, instruction: int) -> tuple[int, ...]:
+    """First and last line, first and last column in bytes, of an instruction; zeros before Python 3.11."""
+    places = getattr(code, "co_positions", None)
+    if places is None:
+        return _UNKNOWN
+    return tuple(number or 0 for number in list(places())[instruction // 2])

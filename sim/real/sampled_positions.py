@@ -1,0 +1,77 @@
+"""What a callback does where a probe saw it: told from the source, as functions made of C leave no frame."""
+
+import ast
+import linecache
+from functools import lru_cache
+
+from sim.engine.callback_positions import LOCK, loop_around
+from sim.real.wire import At
+from sim.trace.events import CallbackAt, Doing
+
+_WAITING = ("threading", "queue", "concurrent.futures", "multiprocessing")
+"""Modules in which threads wait for each other."""
+_COMPUTES = Doing.COMPUTES, ""
+_FUNCTIONS = {
+    "sleep": (Doing.SLEEPS, "time.sleep"),
+    "acquire": (Doing.WAITS, LOCK),
+    "input": (Doing.READS, "input"),
+    "readline": (Doing.READS, "input"),
+}
+"""What those made of C do, by their names."""
+
+
+def position_of(seen: At, t: int) -> CallbackAt:
+    """The event of the trace; who holds a lock is not known."""
+    doing, call = _called(seen.module, seen.function) if seen.module else _built_in(seen)
+    loops = (loop_around(file, line) for file, _, line in reversed(seen.frames))
+    return CallbackAt(
+        t, seen.entity, seen.thread, doing, call, seen.frames, next(filter(None, loops), ("", 0))
+    )
+
+
+def _called(module: str, function: str) -> tuple[Doing, str]:
+    """What goes on in a function of Python's library or rclpy's, by its qualified name."""
+    if module.partition(".")[0] == "rclpy":
+        is_pause = function.rpartition(".")[2].startswith("sleep") and not function.startswith("Rate.")
+        return (Doing.SLEEPS if is_pause else Doing.CALLS_ROS), function
+    return (Doing.WAITS, function) if module.startswith(_WAITING) else _COMPUTES
+
+
+def _built_in(seen: At) -> tuple[Doing, str]:
+    """What goes on in an instruction of the program's own that has called nothing made of Python."""
+    file, _, line = seen.frames[-1]
+    text = _source(file, seen.instruction)
+    try:
+        does = ast.parse(f"({text})", mode="eval").body
+    except (SyntaxError, ValueError):
+        return _COMPUTES
+    if isinstance(does, ast.Call):
+        return _FUNCTIONS.get(ast.unparse(does.func).rpartition(".")[2], _COMPUTES)
+    return (Doing.WAITS, LOCK) if _is_entered(file, line, text) else _COMPUTES
+
+
+def _source(file: str, place: tuple[int, int, int, int]) -> str:
+    """The text of an instruction; "" if it is not known."""
+    first, last, start, end = place
+    lines = [line.encode() for line in linecache.getlines(file)[first - 1 : last]] if first else []
+    if not lines:
+        return ""
+    lines[-1] = lines[-1][:end]
+    lines[0] = lines[0][start:]
+    return b"".join(lines).decode(errors="replace")
+
+
+@lru_cache(maxsize=256)
+def _is_entered(file: str, line: int, text: str) -> bool:
+    """Whether a line has a ``with`` that enters this.
+
+    What takes time to be entered and is not made of Python is a lock.
+    """
+    try:
+        tree = ast.parse("".join(linecache.getlines(file)))
+    except (SyntaxError, ValueError):
+        return False
+    entered = (
+        item.context_expr for node in ast.walk(tree) if isinstance(node, ast.With) for item in node.items
+    )
+    return any(each.lineno == line and ast.unparse(each) == text for each in entered)

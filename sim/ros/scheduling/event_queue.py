@@ -1,0 +1,95 @@
+"""What an EventsExecutor has to do, in the order in which it came."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from contextlib import AbstractContextManager
+from heapq import heappop, heappush
+from itertools import count
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from sim.clock import RunClock
+
+Event: TypeAlias = Callable[[], None]
+"""Something to do, without the host's lock held."""
+
+
+class Appointment:
+    """What ``EventQueue.at`` was told to do later, unless it is called off."""
+
+    __slots__ = ("action",)
+
+    def __init__(self, action: Callable[[], None]) -> None:
+        self.action: Callable[[], None] | None = action
+
+    def call_off(self) -> None:
+        """Do it no more."""
+        self.action = None
+
+
+class EventQueue:
+    """Events, first come, first served. Everything but ``next`` is called with the host's lock held."""
+
+    def __init__(self, clock: RunClock, lock: AbstractContextManager[bool]) -> None:
+        self.stopped = False
+        """Whether ``next`` gives nothing more."""
+        self._clock = clock
+        self._lock = lock
+        self._events: deque[Event] = deque()
+        self._appointments: list[tuple[int, int, Appointment]] = []
+        self._numbers = count()
+        self._signal = clock.auto_reset_event()
+        self._waiting = False
+
+    def put(self, event: Event) -> None:
+        """Add an event, behind what fell due before it."""
+        if self._appointments:
+            self._keep_appointments(self._clock.now())
+        self._events.append(event)
+        self._wake()
+
+    def at(self, due: int, action: Callable[[], None]) -> Appointment:
+        """Have ``action``, which may add events, done at a time: with the lock held, whatever runs then."""
+        made = Appointment(action)
+        heappush(self._appointments, (due, next(self._numbers), made))
+        self._wake()
+        return made
+
+    def stop(self) -> None:
+        """Give nothing more, though the present event goes on to its end."""
+        self.stopped = True
+        self._wake()
+
+    def next(self, deadline: int | None) -> Event | None:
+        """Wait for the next event until ``deadline``; None: it was stopped, or time is up and none came."""
+        while True:
+            with self._lock:
+                self._waiting = False
+                now = self._clock.now()
+                self._keep_appointments(now)
+                if self.stopped:
+                    return None
+                if self._events:
+                    return self._events.popleft()
+                if deadline is not None and deadline <= now:
+                    return None
+                dues = [due for due in (deadline, self._next_appointment()) if due is not None]
+                self._waiting = True
+            self._signal.wait(min(dues, default=None))
+
+    def _wake(self) -> None:
+        if self._waiting:
+            self._signal.set()
+
+    def _next_appointment(self) -> int | None:
+        while self._appointments and self._appointments[0][2].action is None:
+            heappop(self._appointments)
+        return self._appointments[0][0] if self._appointments else None
+
+    def _keep_appointments(self, now: int) -> None:
+        while (due := self._next_appointment()) is not None and due <= now:
+            appointment = heappop(self._appointments)[2]
+            if appointment.action is not None:
+                appointment.action()

@@ -1,0 +1,354 @@
+"""rclpy's EventsExecutor: one queue, which everything that arrives goes into, and nobody asks a group.
+
+Its rules are those of rclpy's C++ code (Jazzy 7.1.9), and these were measured too, on Jazzy 7.1.6: the order
+of what arrives, timers called twice, exceptions, timeouts, tasks, guard conditions, what is destroyed while
+it is queued, ``call`` and ``shutdown`` in a callback. Read from the code alone: jumps of ROS time, waitables.
+The wheels' own ``spin()`` never wakes, for its endless deadline overflows; what was measured had a timeout.
+Two things the real one leaves to chance are done in the order of creation: what is found when a node is
+added, and timers that are due at the same moment.
+"""
+
+from __future__ import annotations
+
+import traceback
+from collections.abc import Coroutine, Iterable
+from functools import partial
+from typing import TYPE_CHECKING, Any, cast
+
+from sim.marks import sends_responses
+from sim.probes.own_code import is_own
+from sim.ros.context.utilities import get_default_context, timeout_sec_to_nsec
+from sim.ros.logging.logger import get_logger
+from sim.ros.scheduling.clock_timers import ClockTimer, ClockTimers
+from sim.ros.scheduling.entity import NEVER, Entity
+from sim.ros.scheduling.event_queue import EventQueue
+from sim.ros.scheduling.executor import Executor
+from sim.ros.scheduling.task import Future, Task
+from sim.ros.scheduling.waitable_entity import WaitableEntity, ask_waitables
+from sim.ros.scheduling.waiting_ends import ExternalShutdownException
+from sim.trace.events import EntityKind
+from sim.units import wait_ns
+
+if TYPE_CHECKING:
+    from sim.clock import AutoResetEvent
+    from sim.ros.clocks.clock import Clock
+    from sim.ros.context.context import Context
+    from sim.ros.logging.logger import RcutilsLogger
+    from sim.ros.scheduling.event_queue import Appointment
+
+_PLURALS = {
+    EntityKind.SUBSCRIPTION: "subscriptions",
+    EntityKind.TIMER: "timers",
+    EntityKind.CLIENT: "clients",
+    EntityKind.SERVICE: "services",
+}
+_TASK = "task"
+_REGISTRATION_ORDER = (*_PLURALS, EntityKind.WAITABLE)
+
+
+class EventsExecutor(Executor):
+    """Runs callbacks in the thread that spins, in the order in which messages, ticks and tasks came.
+
+    Callback groups are never asked: none keeps a callback waiting, and nothing runs beside anything. What
+    ``spin`` does not take from the queue is there when it spins again. A timer's coroutine runs as a
+    task. In releases that do so for no other, a subscription's never runs, and a service's raises TypeError.
+
+    Raises:
+        RuntimeError: out of ``spin``, when a node has a guard condition.
+    """
+
+    already_spinning = "Attempt to spin an already-spinning Executor"
+
+    def __init__(self, *, context: Context | None = None) -> None:
+        chosen = get_default_context() if context is None else context
+        self._queue = EventQueue(chosen.host.clock, chosen.host.lock)
+        self._update_queued = False
+        super().__init__(context=chosen)
+        self._runner.asks_groups = False
+        self._registered: dict[Entity, None] = {}
+        self._timers: dict[Clock, ClockTimers] = {}
+        self._stops_after_one = False
+        self._postponed = False
+        self._taken: Entity | None = None
+        self._parked: list[Task[Any]] = []
+        self._queued_waitables: set[Entity] = set()
+        self._next_asking: Appointment | None = None
+        self._end_signals: list[AutoResetEvent] = []
+
+    # Spinning
+
+    def spin(self) -> None:
+        """Run callbacks until the context ends or the executor is shut down.
+
+        Raises:
+            RuntimeError: it is already spinning.
+            ExternalShutdownException: the context ended.
+        """
+        self._run_events(None)
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Run events up to the first that is a callback's, even if that finds nothing to take any more.
+
+        It waits at most ``timeout_sec`` seconds (None: for ever; negative: not at all).
+        """
+        self._run_events(timeout_sec, stop_after_one=True)
+
+    def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """Run callbacks until the future is done.
+
+        After ``timeout_sec`` seconds it comes back once the queue is empty, which a busy one never is.
+        """
+        self._run_until_complete(future, timeout_sec, stop_after_one=False)
+
+    def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """Run events up to the first that is a callback's, unless the future is done first."""
+        self._run_until_complete(future, timeout_sec, stop_after_one=True)
+
+    def _refuses_second_spin(self) -> bool:
+        return True
+
+    def _run_until_complete(
+        self, future: Future[Any], timeout_sec: float | None, *, stop_after_one: bool
+    ) -> None:
+        def stop(_future: Future[Any]) -> None:
+            self._stop()
+
+        future.add_done_callback(stop)
+        self._run_events(timeout_sec, stop_after_one=stop_after_one)
+        future.remove_done_callback(stop)
+
+    def _run_events(self, timeout_sec: float | None, *, stop_after_one: bool = False) -> None:
+        """Run events until stopped, or until the time is up and there is none.
+
+        An exception leaves the queue stopped if it was: the next spin then comes back at once.
+        """
+        try:
+            with self._enter_spin():
+                self._stops_after_one = stop_after_one
+                deadline = None
+                if timeout_sec is not None:
+                    deadline = self._clock.now() + wait_ns(max(timeout_sec, 0.0))
+                    self._clock.poll()
+                while (event := self._queue.next(deadline)) is not None:
+                    event()
+                    if self._asks_waitables:
+                        self._queue_ready_waitables()
+                self._queue.stopped = False
+        finally:
+            for signal in self._end_signals:
+                signal.set()
+        if not self._context.ok():
+            raise ExternalShutdownException
+
+    def _stop(self) -> None:
+        with self._lock:
+            self._queue.stop()
+
+    def _stop_if_one_is_enough(self) -> None:
+        if self._stops_after_one:
+            self._stop()
+
+    def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """Stop spinning, and let all nodes go; False if ``timeout_sec`` seconds were not enough.
+
+        A callback that shuts its own executor down waits for itself.
+        """
+        nanoseconds = timeout_sec_to_nsec(timeout_sec)
+        ended = self._clock.auto_reset_event()
+        with self._lock:
+            self._queue.stop()
+            self._end_signals.append(ended)
+        if self._spinning and not ended.wait(None if nanoseconds < 0 else self._clock.now() + nanoseconds):
+            return False
+        self._end_signals.remove(ended)
+        with self._lock:
+            self._let_all_go()
+        return True
+
+    # Which entities it has
+
+    def wake(self) -> None:
+        """Queue a look at what the nodes have; until it is that look's turn, nothing new is served."""
+        with self._lock:
+            if not self._update_queued:
+                self._update_queued = True
+                self._queue.put(self._update)
+
+    def _update(self) -> None:
+        with self._lock:
+            self._update_queued = False
+            if self._context.ok():
+                self._register(each for node in self._nodes for each in node._agenda.entities)
+            else:
+                self._let_all_go()
+
+    def _let_all_go(self) -> None:
+        for node in self.get_nodes():
+            self.remove_node(node)
+        self._register(())
+        self._queue.stop()
+
+    def _register(self, entities: Iterable[Entity]) -> None:
+        wanted = dict.fromkeys(entities)
+        if any(each.kind is EntityKind.GUARD or _waits_for_guards(each) for each in wanted):
+            raise RuntimeError("Guard conditions not supported")
+        added = [each for each in wanted if each not in self._registered]
+        for each in sorted(added, key=lambda each: _REGISTRATION_ORDER.index(each.kind)):
+            self._registered[each] = None
+            self._begin_to_hear_of(each)
+        for each in [each for each in self._registered if each not in wanted]:
+            del self._registered[each]
+            if each.kind is EntityKind.TIMER:
+                timer = cast("ClockTimer", each)
+                self._timers[timer.clock].remove(timer)
+                if not self._timers[timer.clock].timers:
+                    del self._timers[timer.clock]
+
+    def _begin_to_hear_of(self, entity: Entity) -> None:
+        if entity.kind is EntityKind.TIMER:
+            timer = cast("ClockTimer", entity)
+            if timer.clock not in self._timers:
+                self._timers[timer.clock] = ClockTimers(
+                    timer.clock, self._clock, self._lock, self._queue, self._call_timer
+                )
+            self._timers[timer.clock].add(timer)
+        elif entity.queued:
+            self._queue.put(partial(self._serve, entity, entity.queued))
+        elif entity.due < NEVER:
+            self._timer_set(entity)
+
+    # Being told; with the host's lock held
+
+    def _entity_ready(self, entity: Entity) -> None:
+        """Something arrived: one event each. Timers are looked at when they fall due, and when time jumps."""
+        if entity in self._registered and entity.kind is not EntityKind.TIMER:
+            self._queue.put(partial(self._serve, entity, 1))
+
+    _entity_has_more = _entity_ready
+
+    def _timer_set(self, timer: Entity) -> None:
+        if timer not in self._registered or timer is self._taken:
+            return
+        if timer.kind is EntityKind.TIMER:
+            self._timers[cast("ClockTimer", timer).clock].look_soon()
+        else:
+            self._queue.at(timer.due, partial(_come_due, timer, timer.due))
+
+    def _wake(self) -> None:
+        """Nothing is looked for: what is ready is in the queue."""
+
+    def _resume(self, task: Task[Any]) -> None:
+        with self._lock:
+            self._queue.put(partial(self._step, task))
+
+    def _resume_at_wake_up(self, task: Task[Any]) -> None:
+        """Something foreign is asked again after the next callback."""
+        with self._lock:
+            self._parked.append(task)
+
+    def _waitables_changed(self) -> None:
+        self._asks_waitables = any(node._agenda.asked for node in self._nodes)
+        self.wake()
+
+    # Events
+
+    def _serve(self, entity: Entity, times: int) -> None:
+        """Run an entity's callback, as often as it was told of something that has not been dropped since."""
+        if entity not in self._registered:
+            return
+        self._stop_if_one_is_enough()
+        if entity.kind is EntityKind.WAITABLE:
+            with self._lock:
+                self._queue.put(partial(self._call, entity))
+            return
+        for _ in range(times):
+            self._call(entity)
+        self._go_on_with_parked()
+
+    def _call_timer(self, timer: ClockTimer) -> None:
+        self._postponed = False
+        self._call(cast("Entity", timer))
+        if not self._postponed:
+            self._stop_if_one_is_enough()
+        self._go_on_with_parked()
+
+    def _call(self, entity: Entity) -> None:
+        with self._lock:
+            self._taken = entity
+            self._queued_waitables.discard(entity)
+            taken = self._runner.take(entity, self._clock.now())
+            self._taken = None
+            if taken is None:
+                return
+            started = self._runner.start((entity, taken))
+        try:
+            self._runner.run(started)
+        except Exception as error:
+            if not sends_responses.raised(error):
+                _log(error, entity.node.get_logger(), _PLURALS.get(entity.kind, _TASK))
+            raise
+
+    @sends_responses
+    def _coroutine_came(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
+        """A callback has returned a coroutine."""
+        runs_all = self._profile.events_executor_runs_coroutines
+        if runs_all or entity.kind not in (EntityKind.SUBSCRIPTION, EntityKind.SERVICE):
+            self._postponed = True
+            self._runner.postpone(entity, coroutine, outer)
+        elif entity.kind is EntityKind.SERVICE:
+            coroutine.close()
+            error = TypeError("a service's callback returned a coroutine, which is no response")
+            self._runner.fail(entity, error, outer)
+            raise error
+        else:
+            self._runner.end(entity, outer)
+
+    def _step(self, task: Task[Any]) -> None:
+        """Run a task as far as it gets; what it awaits queues it again."""
+        self._stop_if_one_is_enough()
+        with self._lock:
+            self._runner.begin(task, self._clock.now())
+        try:
+            self._runner.run(task)
+        except Exception as error:
+            nodes = self.get_nodes()
+            _log(error, nodes[0].get_logger() if len(nodes) == 1 else get_logger("UNKNOWN"), _TASK)
+            raise
+
+    def _go_on_with_parked(self) -> None:
+        with self._lock:
+            parked, self._parked = self._parked, []
+            for task in parked:
+                self._resume(task)
+
+    # A program's waitables
+
+    def _queue_ready_waitables(self) -> None:
+        """Ask those of which only the program knows whether they are ready."""
+        due = ask_waitables(self, self.get_nodes())
+        with self._lock:
+            if self._next_asking is not None:
+                self._next_asking.call_off()
+            self._next_asking = None if due is None else self._queue.at(due, self.wake)
+            for each in [each for node in self._nodes for each in node._agenda.asked]:
+                if each.pending and each not in self._queued_waitables:
+                    self._queued_waitables.add(each)
+                    self._entity_ready(each)
+
+
+def _come_due(entity: Entity, due: int) -> None:
+    if entity.falls_due(due):
+        entity.become_ready(due)
+
+
+def _waits_for_guards(entity: Entity) -> bool:
+    return isinstance(entity, WaitableEntity) and entity.waitable.get_num_entities().num_guard_conditions > 0
+
+
+def _log(error: Exception, logger: RcutilsLogger, kind: str) -> None:
+    """Log an exception that comes out of ``spin``, and where the program raised it."""
+    trace = error.__traceback__
+    while trace is not None and not is_own(trace.tb_frame):
+        trace = trace.tb_next
+    logger.fatal(f"Exception in '{kind}' callback: {error}")
+    logger.warning("Error occurred at:\n" + "".join(traceback.format_tb(trace)))

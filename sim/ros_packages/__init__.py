@@ -1,0 +1,1 @@
+"""Packages that nodes import besides rclpy: each folder is what the package of its name gives."""

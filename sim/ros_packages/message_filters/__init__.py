@@ -1,0 +1,213 @@
+"""``message_filters``: messages of several topics, brought together by their stamps."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from itertools import product
+from threading import Lock
+from typing import Any
+
+from rclpy.clock import ROSClock
+from rclpy.duration import Duration
+from rclpy.logging import get_logger
+from rclpy.time import Time
+
+__all__ = ["ApproximateTimeSynchronizer", "Cache", "SimpleFilter", "Subscriber", "TimeSynchronizer"]
+
+
+class SimpleFilter:
+    """Hands what comes out of it to the callbacks that were registered."""
+
+    def __init__(self) -> None:
+        self.callbacks: dict[int, tuple[Callable[..., Any], tuple[Any, ...]]] = {}
+
+    def registerCallback(self, cb: Callable[..., Any], *args: Any) -> int:
+        """Have ``cb`` called with each output and ``args``; the number of the connection."""
+        connection = len(self.callbacks)
+        self.callbacks[connection] = (cb, args)
+        return connection
+
+    def signalMessage(self, *msg: Any) -> None:
+        """Hand on messages."""
+        for callback, arguments in self.callbacks.values():
+            callback(*msg, *arguments)
+
+
+class Subscriber(SimpleFilter):
+    """A subscription of a node, with ``create_subscription``'s arguments but the callback.
+
+    The executor runs it as any other, in the node's default group unless ``callback_group`` says otherwise.
+    """
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__()
+        self.node, msg_type, self.topic, *others = args
+        kwargs.setdefault("qos_profile", 10)
+        self.sub = self.node.create_subscription(msg_type, self.topic, self.callback, *others, **kwargs)
+
+    def callback(self, msg: Any) -> None:
+        """Hand on a message."""
+        self.signalMessage(msg)
+
+    def getTopic(self) -> str:
+        """The topic's name, as it was given."""
+        return str(self.topic)
+
+    def __getattr__(self, key: str) -> Any:
+        if key == "sub":
+            raise AttributeError(key)
+        return getattr(self.sub, key)
+
+
+class Cache(SimpleFilter):
+    """Remembers the last ``cache_size`` messages, and hands them on.
+
+    Messages without a header are remembered by the time they came, if ``allow_headerless``.
+    """
+
+    def __init__(self, f: Any, cache_size: int = 1, allow_headerless: bool = False) -> None:
+        super().__init__()
+        self.cache_size = cache_size
+        self.allow_headerless = allow_headerless
+        self.cache_msgs: list[Any] = []
+        self.cache_times: list[Any] = []
+        self.connectInput(f)
+
+    def connectInput(self, f: Any) -> None:
+        """Listen to a filter."""
+        self.incoming_connection = f.registerCallback(self.add)
+
+    def add(self, msg: Any) -> None:
+        """Remember a message, and hand it on."""
+        stamp = _stamp(msg, self.allow_headerless, "message_filters_cache")
+        if stamp is None:
+            return
+        self.cache_msgs.append(msg)
+        self.cache_times.append(stamp)
+        del self.cache_msgs[: -self.cache_size], self.cache_times[: -self.cache_size]
+        self.signalMessage(msg)
+
+    def getInterval(self, from_stamp: Any, to_stamp: Any) -> list[Any]:
+        """The messages from one time to another, both included."""
+        assert from_stamp <= to_stamp
+        return [msg for msg, time in self._timed() if from_stamp <= time <= to_stamp]
+
+    def getElemAfterTime(self, stamp: Any) -> Any:
+        """The first message that is not older than a time; None if there is none."""
+        return next((msg for msg, time in self._timed() if time >= stamp), None)
+
+    def getElemBeforeTime(self, stamp: Any) -> Any:
+        """The last message that is not newer than a time; None if there is none."""
+        return next((msg for msg, time in reversed(self._timed()) if time <= stamp), None)
+
+    def getLastestTime(self) -> Any:
+        """The stamp of the message that came last, None without one. The name has always been spelt so."""
+        return self.cache_times[-1] if self.cache_times else None
+
+    getLatestTime = getLastestTime  # noqa: N815
+
+    def getOldestTime(self) -> Any:
+        """The stamp of the message that came first, None without one."""
+        return self.cache_times[0] if self.cache_times else None
+
+    def getLast(self) -> Any:
+        """The first message that is not older than the one that came last; None if there is none."""
+        latest = self.getLastestTime()
+        return None if latest is None else self.getElemAfterTime(latest)
+
+    def _timed(self) -> Sequence[tuple[Any, Any]]:
+        return list(zip(self.cache_msgs, self.cache_times, strict=True))
+
+
+class TimeSynchronizer(SimpleFilter):
+    """Hands on a message of each of several filters together, once all of one and the same stamp have come.
+
+    Each filter's last ``queue_size`` stamps are remembered. The callbacks run in the callback of the message
+    that completed the set, and one set at a time.
+    """
+
+    def __init__(self, fs: Iterable[Any], queue_size: int) -> None:
+        super().__init__()
+        self.queue_size = queue_size
+        self.lock = Lock()
+        self.connectInput(fs)
+
+    def connectInput(self, fs: Iterable[Any]) -> None:
+        """Listen to filters, and to nothing that was listened to before."""
+        filters = list(fs)
+        self.queues: list[dict[int, Any]] = [{} for _ in filters]
+        self.input_connections = [
+            each.registerCallback(self.add, queue, index)
+            for index, (each, queue) in enumerate(zip(filters, self.queues, strict=True))
+        ]
+
+    def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
+        """Remember a message, and hand on the sets that it completes."""
+        with self.lock:
+            self._remember(msg, Time.from_msg(msg.header.stamp).nanoseconds, my_queue)
+            for stamp in sorted(set.intersection(*map(set, self.queues))):
+                self._hand_on([stamp] * len(self.queues))
+
+    def _remember(self, msg: Any, stamp: int, queue: dict[int, Any]) -> None:
+        queue[stamp] = msg
+        while len(queue) > self.queue_size:
+            del queue[min(queue)]
+
+    def _hand_on(self, stamps: Sequence[int]) -> None:
+        """Hand on the messages of these stamps, one of each filter, and forget them."""
+        chosen = list(zip(self.queues, stamps, strict=True))
+        self.signalMessage(*(queue[stamp] for queue, stamp in chosen))
+        for queue, stamp in chosen:
+            del queue[stamp]
+
+
+class ApproximateTimeSynchronizer(TimeSynchronizer):
+    """As `TimeSynchronizer`, for stamps that lie less than ``slop`` seconds apart.
+
+    Messages without a header count as of the time they came, if ``allow_headerless``.
+    """
+
+    def __init__(
+        self, fs: Iterable[Any], queue_size: int, slop: float, allow_headerless: bool = False
+    ) -> None:
+        super().__init__(fs, queue_size)
+        self.slop = Duration(seconds=slop)
+        self.allow_headerless = allow_headerless
+
+    def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
+        """Remember a message, and hand it on with the nearest of each other filter, if near enough."""
+        time = _stamp(msg, self.allow_headerless, "message_filters_approx")
+        if time is None:
+            return
+        stamp = time.nanoseconds
+        with self.lock:
+            self._remember(msg, stamp, my_queue)
+            if stamp not in my_queue:
+                return  # older than all that are remembered
+            others = [
+                (stamp,) if index == my_queue_index else self._near(queue, stamp)
+                for index, queue in enumerate(self.queues)
+            ]
+            for stamps in product(*others):
+                if max(stamps) - min(stamps) < self.slop.nanoseconds:
+                    self._hand_on(stamps)
+                    return
+
+    def _near(self, queue: dict[int, Any], stamp: int) -> Sequence[int]:
+        near = (each for each in queue if abs(each - stamp) <= self.slop.nanoseconds)
+        return sorted(near, key=lambda each: abs(each - stamp))
+
+
+def _stamp(msg: Any, allow_headerless: bool, logger: str) -> Any:
+    """When a message is of, an ``rclpy.time.Time``; None, and a warning, if that is not known."""
+    if hasattr(msg, "header") and hasattr(msg.header, "stamp"):
+        stamp = msg.header.stamp
+        return stamp if hasattr(stamp, "nanoseconds") else Time.from_msg(stamp)
+    if allow_headerless:
+        return ROSClock().now()
+    get_logger(logger).warning(
+        "can not use message filters for messages without timestamp information when 'allow_headerless' is "
+        "disabled. auto assign ROSTIME to headerless messages once enabling constructor option of "
+        "'allow_headerless'."
+    )
+    return None

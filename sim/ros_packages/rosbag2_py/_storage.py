@@ -1,0 +1,73 @@
+"""``rosbag2_py._storage``: what a bag is asked for, and what it says of itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+
+@dataclass
+class StorageOptions:
+    """Where a bag lies: a folder with ``metadata.yaml``, or a file; ``mcap`` or ``sqlite3``."""
+
+    uri: str
+    storage_id: str = ""
+    max_bagfile_size: int = 0
+    max_bagfile_duration: int = 0
+    max_cache_size: int = 0
+    storage_preset_profile: str = ""
+    storage_config_uri: str = ""
+    snapshot_mode: bool = False
+    start_time_ns: int = -1
+    end_time_ns: int = -1
+    custom_data: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass
+class ConverterOptions:
+    """How messages are serialized: ``cdr``, whichever is asked for."""
+
+    input_serialization_format: str = ""
+    output_serialization_format: str = ""
+
+
+@dataclass
+class StorageFilter:
+    """Which topics are read: those of ``topics``, all without any."""
+
+    topics: Sequence[str] = ()
+
+
+@dataclass
+class TopicMetadata:
+    """A topic of a bag."""
+
+    id: int
+    name: str
+    type: str
+    serialization_format: str
+    offered_qos_profiles: Sequence[Any] = ()
+    type_description_hash: str = ""
+
+
+@dataclass
+class TopicInformation:
+    """A topic of a bag, and how many messages it has."""
+
+    topic_metadata: TopicMetadata
+    message_count: int
+
+
+@dataclass
+class BagMetadata:
+    """What a bag says of itself. ``duration`` and ``starting_time`` are rclpy's ``Duration`` and ``Time``."""
+
+    storage_identifier: str
+    duration: Any
+    starting_time: Any
+    message_count: int
+    topics_with_message_count: Sequence[TopicInformation]
+    compression_format: str = ""
+    compression_mode: str = ""
+    ros_distro: str = ""

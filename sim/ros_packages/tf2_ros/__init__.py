@@ -1,0 +1,16 @@
+"""``tf2_ros``: listening to transforms, sending them, and asking for them."""
+
+from sim.ros_packages.tf2_py import *
+from sim.ros_packages.tf2_ros.buffer import Buffer
+from sim.ros_packages.tf2_ros.buffer_interface import (
+    BufferInterface,
+    ConvertRegistration,
+    NotImplementedException,
+    Stamped,
+    TransformRegistration,
+    TypeException,
+    convert,
+)
+from sim.ros_packages.tf2_ros.static_transform_broadcaster import StaticTransformBroadcaster
+from sim.ros_packages.tf2_ros.transform_broadcaster import TransformBroadcaster
+from sim.ros_packages.tf2_ros.transform_listener import TransformListener

@@ -1,0 +1,29 @@
+"""``tf2_ros.static_transform_broadcaster``: sends transforms that hold for all time."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from tf2_msgs.msg import TFMessage
+
+__all__ = ["StaticTransformBroadcaster"]
+
+
+class StaticTransformBroadcaster:
+    """Publishes transforms on ``/tf_static``, where those who come later hear them, too."""
+
+    def __init__(self, node: Any, qos: Any = None) -> None:
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self.pub_tf = node.create_publisher(TFMessage, "/tf_static", latched if qos is None else qos)
+        self.net_message = TFMessage()
+
+    def sendTransform(self, transform: Any) -> None:
+        """Send one ``TransformStamped`` or a list of them, with all that were sent before.
+
+        One for a frame that was sent before replaces it.
+        """
+        several = transform if hasattr(transform, "__iter__") else [transform]
+        sent = {each.child_frame_id: each for each in (*self.net_message.transforms, *several)}
+        self.net_message = TFMessage(transforms=list(sent.values()))
+        self.pub_tf.publish(self.net_message)

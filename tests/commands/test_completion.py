@@ -1,0 +1,79 @@
+"""What shells complete, and the manual page."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from cbtui import cli
+
+
+@pytest.fixture
+def script(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
+    assert cli.main(["completion", "bash"]) == 0
+    path = tmp_path / "cbtui.bash"
+    path.write_text(capsys.readouterr().out)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("words", "completed"),
+    [
+        (["ex"], {"explore", "export"}),
+        (["run", "--clo"], {"--clock"}),
+        (["run", "split"], {"split-groups", "split_mine.py"}),
+        (["check", "spin"], {"spin-inside-a-callback"}),
+    ],
+)
+def test_bash_completes(script: Path, words: list[str], completed: set[str]) -> None:
+    (script.parent / "split_mine.py").touch()
+    line = " ".join(f"'{word}'" for word in ("cbtui", *words))
+    asked = (
+        f"source {script.name}; COMP_WORDS=({line}); COMP_CWORD={len(words)}; "
+        f"_shtab_cbtui cbtui '{words[-1]}' '{['cbtui', *words][-2]}'; printf '%s\\n' \"${{COMPREPLY[@]}}\""
+    )
+    done = subprocess.run(
+        ["bash", "--norc", "-c", asked], cwd=script.parent, capture_output=True, text=True, check=True
+    )
+    assert set(done.stdout.split()) == completed
+
+
+@pytest.mark.parametrize("shell", ["zsh", "fish"])
+def test_other_shells_are_told_the_lessons(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["completion", shell]) == 0
+    assert "split-groups" in capsys.readouterr().out
+
+
+def test_the_manual_has_every_command(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["man"]) == 0
+    page = capsys.readouterr().out
+    assert page.startswith('.TH CBTUI "1"')
+    for command in ("run", "open", "explore", "lint\\-lesson"):
+        assert f"cbtui {command}" in page or f"cbtui\\fR \\fI\\,{command}" in page
+
+
+@pytest.mark.parametrize(
+    ("words", "near"),
+    [
+        (["opne"], "did you mean open?"),
+        (["my_node.py"], "my_node.py is no command; cbtui open my_node.py opens it"),
+        (["split-groups", "--threads", "2"], "cbtui run split-groups runs it"),
+        (
+            ["run", "single-thread", "--sede"],
+            "cbtui run: unrecognized arguments: --sede; did you mean --seed?",
+        ),
+        (["run", "single-thread", "--clock", "vitual"], "did you mean virtual?"),
+        (
+            ["run", "single-thread", "--frobnicate"],
+            "unrecognized arguments: --frobnicate (see cbtui run --help)",
+        ),
+    ],
+)
+def test_a_word_that_is_nearly_right_is_told_the_right_one(
+    words: list[str], near: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit):
+        cli.main(words)
+    error = capsys.readouterr().err
+    assert near in error
+    assert error.count("\n") == 1

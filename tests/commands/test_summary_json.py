@@ -1,0 +1,31 @@
+"""The summary of a run as JSON, from a run and from its recording."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from tests.support.commands import cbtui
+
+WORDS = ("run", "call-in-a-callback", "--for", "5", "--no-robot")
+
+
+def test_a_run_and_its_recording_tell_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    ran = cbtui(*WORDS, "--json", "run.json", "--record", "run.mcap")
+    assert "Diagnosis" in ran.stdout
+    told = json.loads(Path("run.json").read_text())
+    assert told["seconds"] == 5.0
+    assert {each["callback"]: each["calls"] for each in told["callbacks"]}["pick"] == 1
+    deadlock = told["findings"][0]
+    assert "deadlock" in deadlock["what"]
+    assert Path(deadlock["file"]).name == "node.py"
+    assert deadlock["line"] > 0
+    assert json.loads(cbtui("info", "run.mcap", "--json").stdout) == told
+
+
+def test_a_summary_that_cannot_be_written_is_complained_of(tmp_path: Path) -> None:
+    ran = cbtui("run", "missed-ticks", "--for", "1", "--json", str(tmp_path / "none" / "run.json"))
+    assert ran.returncode == 1
+    assert "cannot write the summary to" in ran.stderr
+    assert ran.stdout.startswith("missed-ticks, 1.0 s")

@@ -1,0 +1,42 @@
+"""What real ROS 2 said of some systems, kept so that the model is compared with it where there is none."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import msgspec
+
+from tests.conformance.comparing import Case, Outcome, Result, on_model, outcome
+from tests.conformance.running import Said
+from tests.conformance.systems import System
+
+FILE = Path(__file__).with_name("recorded.jsonl")
+
+
+class Recorded(NamedTuple):
+    """A system, and what its runs on the wheels of a distribution said."""
+
+    distro: str
+    seed: str
+    pace: float
+    system: System
+    real: tuple[Said, ...]
+
+
+def record(distro: str, results: list[Result]) -> None:
+    """Keep what real runs said, beside what is kept already."""
+    with FILE.open("ab") as file:
+        for each in results:
+            kept = Recorded(distro, each.case.seed, each.case.pace, each.case.system, each.real)
+            file.write(msgspec.json.encode(kept) + b"\n")
+
+
+def against_recorded() -> list[tuple[Recorded, Outcome]]:
+    """How the model compares with what is kept."""
+    kept = [msgspec.json.decode(line, type=Recorded) for line in FILE.read_bytes().splitlines()]
+    outcomes = []
+    for distro in sorted({each.distro for each in kept}):
+        of_distro = [each for each in kept if each.distro == distro]
+        for each, said in zip(of_distro, on_model([each.system for each in of_distro], distro), strict=True):
+            assert said is not None
+            outcomes.append((each, outcome(Case(each.seed, each.system, said, each.pace), list(each.real))))
+    return outcomes

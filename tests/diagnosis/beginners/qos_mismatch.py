@@ -1,0 +1,28 @@
+import rclpy
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from std_msgs.msg import String
+
+
+class Robot(Node):
+    def __init__(self):
+        super().__init__("robot")
+        offered = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self.publisher = self.create_publisher(String, "chatter", offered)
+        self.create_subscription(String, "chatter", self.on_chatter, 10)
+        self.create_timer(0.5, self.tick)
+
+    def tick(self):
+        self.publisher.publish(String(data="hello"))
+
+    def on_chatter(self, message):
+        self.get_logger().info(message.data)
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Robot())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,32 @@
+import time
+
+import rclpy
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+
+class Robot(Node):
+    def __init__(self):
+        super().__init__("robot")
+        self.create_service(SetBool, "/gripper", self.gripper)
+        self.client = self.create_client(SetBool, "/gripper")
+        self.create_timer(0.5, self.tick)
+
+    def gripper(self, request, response):
+        response.success = True
+        return response
+
+    def tick(self):
+        future = self.client.call_async(SetBool.Request(data=True))
+        while not future.done():
+            time.sleep(0.1)
+        self.get_logger().info("done")
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Robot())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,20 @@
+import rclpy
+from rclpy.node import Node
+
+
+class Robot(Node):
+    def __init__(self):
+        super().__init__("robot")
+        self.create_timer(0.5, self.tick)
+
+    def tick(self, event):
+        self.get_logger().info("tick")
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Robot())
+
+
+if __name__ == "__main__":
+    main()

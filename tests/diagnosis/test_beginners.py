@@ -1,0 +1,54 @@
+"""Programs with a beginner's mistake each: one problem, with the line of the culprit and a cure.
+
+The programs lie beside this file, in ``beginners``.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from sim.diagnosis import Weight, diagnose
+from tests.support.engine_runs import program_setup, run_to_end
+
+PROGRAMS = Path(__file__).parent / "beginners"
+
+
+@pytest.mark.parametrize(
+    ("program", "rule", "culprit", "cure"),
+    [
+        ("nested_spin", "nested-spin", "rclpy.spin_until_future_complete(self, future)", "add_done_callback"),
+        ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
+        ("call_in_subscription", "self-made-deadlock", "self.client.call(", "use call_async()"),
+        ("wait_for_future", "self-made-deadlock", "time.sleep(0.1)", "add_done_callback"),
+        ("while_true", "endless-loop", "while True:", "keep the state in self and return"),
+        ("qos_mismatch", "qos-mismatch", "self.create_subscription(", "the same QoSProfile"),
+        ("rate_sleep", "self-made-deadlock", "self.rate.sleep()", "num_threads=2"),
+        ("wrong_arity", "program-raised", "def on_chatter(self):", "def on_chatter(self, message)"),
+        ("wrong_arity_of_timer", "program-raised", "def tick(self, event):", "def tick(self)"),
+        ("wait_for_service", "service-never-comes", "self.client.wait_for_service()", "start the node"),
+        ("lock_across_callbacks", "self-made-deadlock", "with self.", "in the same order"),
+        (
+            "lock_during_call",
+            "self-made-deadlock",
+            "self.storage.call(",
+            "let go of the lock before the call",
+        ),
+        ("goal_in_timer", "self-made-deadlock", "self.client.send_goal(", "add_done_callback"),
+        ("call_in_parameter_callback", "self-made-deadlock", "self.client.call(", "use call_async()"),
+        ("held_group", "group-starvation", "time.sleep(0.8)", "a callback group of its own"),
+        ("sleep_in_service", "group-starvation", "time.sleep(1.5)", "num_threads=2"),
+    ],
+)
+def test_a_beginners_mistake_is_one_problem_at_its_line(
+    program: str, rule: str, culprit: str, cure: str
+) -> None:
+    path = PROGRAMS / f"{program}.py"
+    timeline = run_to_end(program_setup(path, 4.0)).timeline
+    found = diagnose(timeline)
+    problems = [each for each in found if each.rule.weigh(each, timeline) is Weight.PROBLEM]
+    assert [each.rule.id for each in problems] == [rule]
+    told = problems[0].rule.explain(problems[0], timeline)
+    assert told.place is not None
+    assert told.place.file == str(path)
+    assert culprit in path.read_text().splitlines()[told.place.first_line - 1]
+    assert cure in told.cure

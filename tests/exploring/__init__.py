@@ -1,0 +1,1 @@
+"""Exploring: programs with seeded bugs, and how soon each strategy finds them."""

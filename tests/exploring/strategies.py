@@ -1,0 +1,58 @@
+"""Measures how soon each strategy finds each seeded bug: ``python -m tests.exploring.strategies``.
+
+``--record`` keeps the table in ``strategies.toml``: how many schedules it takes on average, 0 for a bug that
+no schedule showed.
+"""
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+
+from cbtui.runs.judged.exploring import Exploration
+from cbtui.runs.setup.lesson_setup import RunRequest
+from sim.clock.schedule import STRATEGIES
+from tests.exploring.seeded_bugs import BUGS, SECONDS
+from tests.soak.results import record, today
+
+FILE = Path(__file__).with_name("strategies.toml")
+_LIMIT = 60.0
+
+
+def exploration(source: str, folder: Path) -> Exploration:
+    """The exploration of a program."""
+    path = folder / "mine.py"
+    path.write_text(source)
+    return Exploration(
+        RunRequest(files=[path], clock="virtual", seconds=SECONDS).setup(), path.name, None, _LIMIT
+    )
+
+
+def schedules_to_bug(source: str, strategy: str, schedules: int) -> float:
+    """How many schedules of a strategy show the bug of a program once on average; 0 if none did."""
+    with tempfile.TemporaryDirectory() as folder:
+        seeds = [f"{strategy}:{number}" for number in range(1, schedules + 1)]
+        results = exploration(source, Path(folder)).results(seeds, processes=1)
+        failed = sum(not result.well for _, result in results)
+    return round(schedules / failed, 1) if failed else 0
+
+
+def main() -> None:
+    """Measure the bugs and print a line for each."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("bugs", nargs="*", help="parts of their names (all)")
+    parser.add_argument("--schedules", type=int, default=20, help="of each strategy (%(default)s)")
+    parser.add_argument("--record", action="store_true", help=f"put the table into {FILE.name}")
+    options = parser.parse_args()
+    for name, source in BUGS.items():
+        if options.bugs and not any(part in name for part in options.bugs):
+            continue
+        figures = {strategy: schedules_to_bug(source, strategy, options.schedules) for strategy in STRATEGIES}
+        sys.stdout.write(f"{name:<50}{''.join(f'{each:>8g}' for each in figures.values())}\n")
+        sys.stdout.flush()
+        if options.record:
+            record("schedules-to-bug", name, {"date": today(), "of": options.schedules, **figures}, FILE)
+
+
+if __name__ == "__main__":
+    main()

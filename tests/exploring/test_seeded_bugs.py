@@ -1,0 +1,32 @@
+"""The programs with seeded bugs: the usual order shows none, and a search within a bound finds them."""
+
+from pathlib import Path
+
+import pytest
+
+from cbtui.runs.judged.bounded_search import BoundedSearch
+from tests.exploring.seeded_bugs import BUGS, SHOWN_BY_USUAL_ORDER
+from tests.exploring.strategies import exploration
+from tests.support.daily import first_daily
+
+
+def test_there_are_enough_of_them() -> None:
+    assert len(BUGS) >= 30
+
+
+@pytest.mark.parametrize("name", first_daily(*(name for name in BUGS if name not in SHOWN_BY_USUAL_ORDER)))
+def test_the_usual_order_shows_no_bug(name: str, tmp_path: Path) -> None:
+    ((_, result),) = exploration(BUGS[name], tmp_path).results([0])
+    assert result.well
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(name, marks=pytest.mark.bulk if place % 20 else pytest.mark.slow)
+        for place, name in enumerate(BUGS)
+    ],
+)
+def test_at_most_two_preemptions_show_each_bug(name: str, tmp_path: Path) -> None:
+    results = exploration(BUGS[name], tmp_path).search(BoundedSearch(2, 300))
+    assert any(not result.well for _, result in results)

@@ -1,0 +1,60 @@
+"""The page that plays a run: nothing comes from outside, nothing breaks out, and a browser shows the run."""
+
+import json
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from sim.export.html import page
+from tests.export.examples import NASTY, small_run, timeline_of
+from tests.support.lesson_runs import shared_group_run
+from tests.web.chromium import PROGRAM
+
+
+def data(text: str) -> dict[str, object]:
+    found = re.search(r'<script type="application/json" id="run">(.*?)</script>', text, re.DOTALL)
+    assert found is not None
+    run: dict[str, object] = json.loads(found[1])
+    return run
+
+
+def test_a_page_has_all_rows_log_lines_findings_and_the_robot() -> None:
+    run = timeline_of(shared_group_run().events)
+    shown = data(page(run))
+    names = [row["name"] for row in shown["rows"]]  # type: ignore[attr-defined]
+    assert names[-3:] == ["odom_callback", "scan_callback", "timer_callback"]
+    assert len(shown["log"]) == len(run.logs)  # type: ignore[arg-type]
+    assert shown["robot"]
+    assert shown["arena"]
+    assert any("waited" in each["what"] for each in shown["findings"])  # type: ignore[attr-defined]
+
+
+def test_what_a_program_prints_stays_data_and_nothing_comes_from_outside() -> None:
+    text = page(timeline_of(small_run()))
+    assert NASTY in [callback["name"] for callback in data(text)["callbacks"]]  # type: ignore[attr-defined]
+    assert "<b>" not in text.partition('id="run">')[2].partition("</script>")[0]
+    assert "default-src 'none'" in text
+    assert not re.search(r"https?:|src=|href=|import\(|fetch\(", text)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(PROGRAM is None, reason="there is no Chromium")
+def test_a_browser_shows_what_waits_at_a_moment(tmp_path: Path) -> None:
+    file = tmp_path / "run.html"
+    file.write_text(page(timeline_of(shared_group_run().events)), encoding="utf-8")
+    command = [
+        str(PROGRAM),
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--dump-dom",
+        f"{file.as_uri()}#6.5",
+    ]
+    dom = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+    assert '<output id="now">6.500 s</output>' in dom
+    assert re.search(
+        r"<b>scan_callback</b><span class=\"waits\">waits 2\.\d+ s: group A held by timer_callback", dom
+    )
+    assert re.search(r"<b>timer_callback</b><span class=\"\">has run for 2\.5", dom)

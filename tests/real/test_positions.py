@@ -1,0 +1,85 @@
+"""A run on real rclpy tells at which line each callback is, and what it does there."""
+
+from pathlib import Path
+
+import pytest
+
+from sim.trace.events import Doing
+from tests.real import programs
+
+LOCKS = """
+import threading
+
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.lock = threading.Lock()
+        group = ReentrantCallbackGroup()
+        for callback in (self.keep, self.take, self.ask):
+            self.create_timer(0.3, callback, callback_group=group)
+        self.create_service(SetBool, "switch", self.serve)
+        self.client = self.create_client(SetBool, "switch", callback_group=group)
+
+    def keep(self):
+        with self.lock:
+            time.sleep(0.2)
+
+    def take(self):
+        time.sleep(0.05)
+        self.lock.acquire()
+        self.lock.release()
+
+    def ask(self):
+        self.client.call(SetBool.Request(data=True))
+
+    def serve(self, request, response):
+        time.sleep(0.1)
+        return response
+"""
+
+
+COMPUTES = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.create_timer(0.3, self.compute)
+
+    def compute(self):
+        end = time.monotonic() + 0.1
+        while time.monotonic() < end:
+            sum(range(20_000))
+"""
+
+
+@programs.needs_ros
+@pytest.mark.parametrize("ground", ["model", "ros2"])
+def test_the_line_of_a_callback_is_seen(tmp_path: Path, ground: str) -> None:
+    executor = "MultiThreadedExecutor(num_threads=6)"
+    timeline = programs.run(tmp_path, LOCKS, executor, ground=ground, seconds=0.6).timeline
+    seen = {
+        (each.frames[-1].function, each.doing, each.call)
+        for entity in timeline.entities
+        for each in timeline.positions_of(entity, programs.whole(timeline))
+    }
+    assert {
+        ("keep", Doing.SLEEPS, "time.sleep"),
+        ("take", Doing.SLEEPS, "time.sleep"),
+        ("take", Doing.WAITS, "Lock.acquire"),
+        ("ask", Doing.CALLS_ROS, "Client.call"),
+        ("serve", Doing.SLEEPS, "time.sleep"),
+    } <= seen
+
+
+@programs.needs_ros
+def test_what_computes_is_seen_in_its_loop(tmp_path: Path) -> None:
+    timeline = programs.run(tmp_path, COMPUTES, ground="ros2", seconds=0.6).timeline
+    found = [
+        each
+        for entity in timeline.entities
+        for each in timeline.positions_of(entity, programs.whole(timeline))
+    ]
+    assert {each.doing for each in found} == {Doing.COMPUTES}
+    loops = {each.loop for each in found}
+    assert len(loops) == 1
+    first = loops.pop()[1]
+    assert {each.frames[-1].line for each in found} <= {first, first + 1}

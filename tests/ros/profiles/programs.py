@@ -1,0 +1,345 @@
+"""Programs that say different things on different releases of rclpy."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+_HEAD = """
+import os
+import threading
+import time
+import warnings
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup as Exclusive
+from rclpy.callback_groups import ReentrantCallbackGroup as Reentrant
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.task import Future
+from std_msgs.msg import Int32
+from std_srvs.srv import SetBool
+
+warnings.simplefilter("ignore")
+rclpy.init()
+node = rclpy.create_node("n")
+lines = []
+say = lines.append
+
+def finish():
+    print(*lines, sep="\\n", flush=True)
+    os._exit(0)
+
+def after(seconds, work):
+    threading.Timer(seconds, work).start()
+
+def attempt(work):
+    try:
+        say(f"{work()}")
+    except Exception as error:
+        say(type(error).__name__)
+
+def executor_of(*nodes, kind=SingleThreadedExecutor):
+    executor = kind()
+    for each in nodes:
+        executor.add_node(each)
+    return executor
+
+def spin(executor):
+    while True:
+        try:
+            executor.spin()
+        except Exception as error:
+            told = f"{type(error).__name__} out of spin"
+            if lines[-1:] != [told]:  # some releases raise it as often as they handed its callback over
+                say(told)
+
+"""
+
+
+@dataclass(frozen=True)
+class Differing:
+    """A program, and what it says on releases: on their wheels, where there are any, and on the model."""
+
+    behaviour: str
+    program: str
+    said: Mapping[str, str]
+
+    @property
+    def source(self) -> str:
+        """The whole program."""
+        return _HEAD + self.program
+
+
+DIFFERING = (
+    Differing(
+        "newest_task_first",
+        """
+executor = executor_of(node)
+def make():
+    timer.cancel()
+    for each in "abc":
+        executor.create_task(say, each)
+timer = node.create_timer(0.2, make)
+after(0.6, finish)
+spin(executor)
+""",
+        {"jazzy@7.1.6": "c, b, a", "jazzy@7.1.9": "c, b, a", "kilted@9.1.2": "a, b, c", "lyrical": "a, b, c"},
+    ),
+    Differing(
+        "resumes_at_once",
+        """
+future = Future()
+async def wait():
+    timer.cancel()
+    say("awaits")
+    await future
+    say("goes on")
+timer = node.create_timer(0.2, wait)
+node.create_timer(1.0, lambda: say("tick"), Exclusive())
+after(0.5, lambda: (say("set"), future.set_result(None)))
+after(1.4, finish)
+spin(executor_of(node))
+""",
+        {
+            "jazzy@7.1.6": "awaits, set, tick, goes on",
+            "kilted@9.1.2": "awaits, set, tick, goes on",
+            "jazzy@7.1.9": "awaits, set, goes on, tick",
+            "lyrical": "awaits, set, goes on, tick",
+        },
+    ),
+    Differing(
+        "resumes_at_once",
+        """
+other = rclpy.create_node("o")
+other.create_service(SetBool, "s", lambda _, response: response)
+client = other.create_client(SetBool, "s", callback_group=Reentrant())
+async def ask():
+    timer.cancel()
+    await client.call_async(SetBool.Request())
+    say(f"goes on in {threading.current_thread().name}")
+timer = node.create_timer(0.3, ask)
+node.create_timer(1.0, lambda: say("tick"), Exclusive())
+for name, each in (("own", node), ("other", other)):
+    threading.Thread(target=spin, args=(executor_of(each),), name=name, daemon=True).start()
+time.sleep(1.5)
+finish()
+""",
+        {
+            "jazzy@7.1.6": "tick, goes on in own",
+            "kilted@9.1.2": "tick, goes on in own",
+            "jazzy@7.1.9": "goes on in other, tick",
+        },
+    ),
+    Differing(
+        "resumes_at_once",
+        """
+executor = executor_of(node)
+future = Future()
+async def wait():
+    await future
+    say("goes on")
+def begin():
+    first.cancel()
+    executor.create_task(wait)
+def go_on():
+    second.cancel()
+    future.set_result(None)
+    executor.create_task(say, "later task")
+first = node.create_timer(0.2, begin)
+second = node.create_timer(0.5, go_on)
+after(0.8, finish)
+spin(executor)
+""",
+        {
+            "jazzy@7.1.6": "later task, goes on",
+            "jazzy@7.1.9": "later task, goes on",
+            "kilted@9.1.2": "goes on, later task",
+            "lyrical": "goes on, later task",
+        },
+    ),
+    Differing(
+        "loses_errors_after_await",
+        """
+future = Future()
+async def wait():
+    timer.cancel()
+    await future
+    raise ValueError
+timer = node.create_timer(0.2, wait)
+node.create_timer(0.8, lambda: say("tick"), Exclusive())
+after(0.5, lambda: future.set_result(None))
+after(1.2, finish)
+spin(executor_of(node))
+""",
+        {
+            "jazzy@7.1.6": "tick, ValueError out of spin",
+            "kilted@9.1.2": "tick, ValueError out of spin",
+            "jazzy@7.1.9": "tick",
+            "humble@3.3.22": "ValueError out of spin, tick",
+        },
+    ),
+    Differing(
+        "refuses_second_spin",
+        """
+executor = executor_of(node)
+node.create_service(SetBool, "s", lambda _, response: response, callback_group=Reentrant())
+client = node.create_client(SetBool, "s", callback_group=Reentrant())
+def ask():
+    timer.cancel()
+    future = client.call_async(SetBool.Request())
+    attempt(lambda: executor.spin_until_future_complete(future, 1.0))
+    say(f"answered {future.done()}")
+timer = node.create_timer(0.3, ask)
+after(1.7, lambda: (attempt(executor.spin), finish()))
+spin(executor)
+""",
+        {
+            "jazzy@7.1.6": "None, answered True, ValueError",
+            "kilted@9.1.2": "None, answered True, ValueError",
+            "jazzy@7.1.9": "RuntimeError, answered False, RuntimeError",
+            "kilted@9.1.5": "RuntimeError, answered False, RuntimeError",
+        },
+    ),
+    Differing(
+        "wakes_once_for_a_future",
+        """
+executor = executor_of(node)
+ticks = []
+node.create_timer(0.2, lambda: ticks.append(0))
+future = Future(executor=executor)
+after(0.7, lambda: future.set_result(None))
+executor.spin_until_future_complete(future)
+began, empty = time.monotonic(), 0
+while time.monotonic() < began + 0.03:
+    executor.spin_once(timeout_sec=0.03)
+    empty += 1
+say(f"{len(ticks)} calls, {empty - 1} returns for nothing")
+finish()
+""",
+        {
+            "jazzy@7.1.6": "3 calls, 5 returns for nothing",
+            "kilted@9.1.2": "3 calls, 1 returns for nothing",
+            "jazzy@7.1.9": "3 calls, 1 returns for nothing",
+        },
+    ),
+    Differing(
+        "ends_workers",
+        """
+executor = executor_of(node, kind=lambda: MultiThreadedExecutor(2))
+node.create_timer(0.2, lambda: (time.sleep(0.6), say("ends")))
+threading.Thread(target=executor.spin, daemon=True).start()
+time.sleep(0.5)
+attempt(executor.shutdown)
+attempt(lambda: executor.shutdown(wait_for_threads=False))
+time.sleep(0.7)
+finish()
+""",
+        {
+            "jazzy@7.1.6": "True, TypeError, ends",
+            "jazzy@7.1.9": "True, TypeError, ends",
+            "jazzy@7.1.12": "ends, True, True",
+            "kilted@9.1.2": "ends, True, True",
+        },
+    ),
+    Differing(
+        "events_executor_runs_coroutines",
+        """
+from rclpy.experimental import EventsExecutor
+async def hear(message):
+    say(f"hears {message.data}")
+async def serve(_, response):
+    say("serves")
+    return response
+node.create_subscription(Int32, "t", hear, 10)
+node.create_service(SetBool, "s", serve)
+client = node.create_client(SetBool, "s")
+publisher = node.create_publisher(Int32, "t", 10)
+def send():
+    timer.cancel()
+    publisher.publish(Int32(data=1))
+    client.call_async(SetBool.Request()).add_done_callback(lambda _: say("answered"))
+timer = node.create_timer(0.3, send)
+attempt(lambda: executor_of(node, kind=EventsExecutor).spin_until_future_complete(Future(), 0.8))
+finish()
+""",
+        {
+            "jazzy@7.1.6": "TypeError",
+            "jazzy@7.1.11": "hears 1, serves, answered, None",
+            "kilted@9.1.2": "hears 1, serves, answered, None",
+        },
+    ),
+    Differing(
+        "call_takes_timeout",
+        """
+attempt(lambda: node.create_client(SetBool, "s").call(SetBool.Request(), timeout_sec=0.2))
+finish()
+""",
+        {
+            "humble": "TypeError",
+            "jazzy@7.1.6": "None",
+            "jazzy@7.1.9": "None",
+            "kilted@9.1.2": "TimeoutError",
+            "lyrical": "TimeoutError",
+        },
+    ),
+    Differing(
+        "gives_timer_info",
+        """
+attempt(lambda: __import__("rclpy.timer", fromlist=["TimerInfo"]).TimerInfo.__name__)
+timer = node.create_timer(0.2, None)
+attempt(lambda: executor_of(node).spin_once())
+finish()
+""",
+        {
+            "jazzy@7.1.6": "AttributeError, TypeError",
+            "jazzy@7.1.9": "AttributeError, TypeError",
+            "kilted@9.1.2": "TimerInfo, UnboundLocalError",
+            "lyrical": "TimerInfo, UnboundLocalError",
+        },
+    ),
+    Differing(
+        "skips_cancelled_timers",
+        """
+def first():
+    timer.cancel()
+    time.sleep(0.4)
+    second.cancel()
+    say("cancelled")
+timer = node.create_timer(0.3, first, Exclusive())
+second = node.create_timer(0.5, lambda: say("called"), Exclusive())
+node.create_timer(1.0, lambda: say("tick"), Exclusive())
+after(1.4, finish)
+spin(executor_of(node, kind=lambda: MultiThreadedExecutor(1)))
+""",
+        {
+            "jazzy@7.1.6": "cancelled, RCLError out of spin, tick",
+            "jazzy@7.1.9": "cancelled, RCLError out of spin, tick",
+            "kilted@9.1.2": "cancelled, tick",
+            "lyrical": "cancelled, tick",
+        },
+    ),
+    Differing(
+        "keeps_attached_nodes",
+        """
+executor = executor_of(node)
+rclpy.spin_once(node, executor=executor, timeout_sec=0.1)
+say(f"{len(executor.get_nodes())}")
+finish()
+""",
+        {
+            "humble@3.3.16": "0",
+            "jazzy@7.1.4": "0",
+            "jazzy@7.1.6": "1",
+            "jazzy@7.1.9": "1",
+            "kilted@9.1.2": "1",
+        },
+    ),
+    Differing(
+        "warns_of_one_thread",
+        """
+with warnings.catch_warnings(record=True) as warned:
+    warnings.simplefilter("always")
+    MultiThreadedExecutor(1)
+say(f"{len(warned)}")
+finish()
+""",
+        {"humble": "0", "jazzy@7.1.6": "1", "kilted@9.1.2": "1"},
+    ),
+)

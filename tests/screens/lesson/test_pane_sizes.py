@@ -1,0 +1,85 @@
+"""The sizes of panes: what the keys change, what is offered, and that a next console finds them."""
+
+import pytest
+from textual.pilot import Pilot
+
+from cbtui.widgets.lanes import Lanes
+from lessons.personal import state_folder
+from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.runs import shared_group_run, split_groups_run
+
+EVENTS = shared_group_run().events
+
+
+def width(app: RecordedConsole, pane: str) -> int:
+    return app.lesson_screen.query_one(f"#{pane}").outer_size.width
+
+
+def height(app: RecordedConsole, pane: str) -> int:
+    return app.lesson_screen.query_one(f"#{pane}").outer_size.height
+
+
+async def press(pilot: Pilot[None], *keys: str) -> None:
+    for key in keys:
+        await pilot.press(key)
+        await settle(pilot)
+
+
+@pytest.mark.slow
+async def test_a_pane_takes_room_from_its_neighbours_which_a_next_console_finds() -> None:
+    app = RecordedConsole("split-groups", split_groups_run().events, 9.4)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        before = {pane: (width(app, pane), height(app, pane)) for pane in ("guide", "code", "robot", "log")}
+        await press(pilot, "2", "ctrl+right", "ctrl+right", "ctrl+up", "5", "ctrl+left")
+        changed = {pane: (width(app, pane), height(app, pane)) for pane in before}
+        assert changed["guide"][0] == before["guide"][0]
+        assert changed["code"][0] > before["code"][0]
+        assert changed["robot"][0] < before["robot"][0]
+        assert changed["log"][0] < before["log"][0]
+        assert changed["code"][1] > before["code"][1]
+        assert changed["log"][1] < before["log"][1]
+    again = RecordedConsole("split-groups", split_groups_run().events, 9.4)
+    async with again.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        assert {pane: (width(again, pane), height(again, pane)) for pane in before} == changed
+        await press(pilot, "equals_sign")
+        assert {pane: (width(again, pane), height(again, pane)) for pane in before} == before
+
+
+async def test_rows_go_between_lanes_and_pane_on_a_small_screen() -> None:
+    app = RecordedConsole("shared-group", EVENTS, 12.9)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        lanes = app.lesson_screen.query_one(Lanes)
+        assert lanes.outer_size.height == 7
+        await press(pilot, "ctrl+up", "ctrl+up")
+        assert lanes.outer_size.height == 5
+        await press(pilot, "enter", "ctrl+up")
+        assert lanes.outer_size.height == 6
+        assert not app.lesson_screen.check_action("wider", ())
+
+
+@pytest.mark.slow
+async def test_a_size_ends_where_something_else_would_have_no_room() -> None:
+    app = RecordedConsole("split-groups", split_groups_run().events, 9.4)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        await press(pilot, "1", *["ctrl+right"] * 30)
+        assert not app.lesson_screen.check_action("wider", ())
+        assert app.lesson_screen.check_action("narrower", ())
+        assert min(width(app, pane) for pane in ("code", "robot")) >= 20
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "content", ['{"layout": "-grid", "left": 99}', '{"layout": "-grid", "left": 11, "right": 11}']
+)
+async def test_a_file_of_sizes_that_cannot_be_is_not_followed(content: str) -> None:
+    state_folder().mkdir(parents=True, exist_ok=True)
+    (state_folder() / "sizes.jsonl").write_text(content)
+    app = RecordedConsole("split-groups", split_groups_run().events, 9.4)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        assert width(app, "guide") > 30
+        assert width(app, "code") > 30

@@ -1,0 +1,211 @@
+"""The learner is the scheduler: in a puzzle, and from a moment of a paused run on."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+
+from cbtui.app import CbtuiApp
+from cbtui.screens.choosing import ChoosingScreen
+from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.run import RunScreen
+from cbtui.widgets.choice import ChoiceView, kept_of, options_of
+from cbtui.widgets.code import CodeView
+from cbtui.widgets.key_bar import KeyBar
+from lessons.progress import Progress
+from lessons.puzzles import Puzzle, puzzles
+from sim.engine.commands import Choose, Resume
+from sim.trace.events import Reason
+from sim.trace.timeline import Timeline
+from tests.support.asking import PUZZLE, Asking, question
+from tests.support.builder import Run
+from tests.support.console import NARROW, WIDE, settle
+from tests.support.exercises import until
+from tests.support.pictures import lines_of, text_of
+
+
+def console(sessions: Callable[..., object] | None, puzzle: Puzzle = PUZZLE) -> CbtuiApp:
+    app = CbtuiApp(start_puzzle=puzzle, open_session=sessions)  # type: ignore[arg-type]
+    app.animation_level = "none"
+    return app
+
+
+def news(app: CbtuiApp) -> str:
+    return app.screen.query_one(ChoiceView).sheet.news
+
+
+def offered(app: CbtuiApp) -> set[str]:
+    return {action.id for action in app.screen.query_one(KeyBar).working()}
+
+
+async def test_who_may_go_on_is_asked_and_shown_in_the_code() -> None:
+    app = console(Asking())
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        text = text_of(app)
+        assert PUZZLE.task.split(".")[0] in " ".join(text.split("│")[0].split()) or "keeps one" in text
+        assert "Choice 1, 0 moves. Who goes on?" in text
+        assert "1 order, line 20 (runs now, Pool-0_0)" in text
+        assert "2 looks for work (Pool-0_1)" in text
+        assert app.screen.query_one(CodeView).picked == 20
+        assert any("self.sent.publish" in line or "publish" in line for line in lines_of(app))
+        assert {"take", "resume", "solution", "lesson", "run_again"} <= offered(app)
+        assert not {"undo", "step", "pause"} & offered(app)
+
+
+async def test_choices_are_moves_until_the_goal_is_reached_which_is_kept() -> None:
+    sessions = Asking()
+    app = console(sessions)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        await pilot.press("2")
+        await settle(pilot)
+        assert news(app) == "Choice 2, 1 move. Who goes on?"
+        await pilot.press("9", "down", "enter")  # there is no ninth
+        await settle(pilot)
+        assert sessions.latest.commands == [Choose(1), Choose(1)]
+        assert news(app) == "✓ Done in 2 moves; the solution takes 2."
+        assert Progress().of(PUZZLE.id).passed
+
+
+async def test_a_choice_is_taken_back_by_a_run_up_to_it() -> None:
+    sessions = Asking()
+    app = console(sessions)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        await pilot.press("2", "1")
+        await settle(pilot)
+        assert news(app) == "✗ Not this time. u takes a choice back, r begins again."
+        await pilot.press("u")
+        await until(pilot, lambda: len(sessions.sessions) == 2)
+        await settle(pilot)
+        assert sessions.latest.setup.seed == "ask:0=1"
+        assert news(app) == "Choice 2, 1 move. Who goes on?"
+        await pilot.press("r")
+        await until(pilot, lambda: len(sessions.sessions) == 3)
+        assert sessions.latest.setup.seed == "ask:"
+        assert not Progress().of(PUZZLE.id).passed
+
+
+async def test_the_rest_goes_on_by_itself_when_wanted() -> None:
+    sessions = Asking()
+    app = console(sessions)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        await pilot.press("space")
+        await settle(pilot)
+        assert sessions.latest.commands == [Resume()]
+        await pilot.press("1")
+        assert sessions.latest.commands == [Resume()]
+
+
+async def test_the_solution_is_shown_choice_by_choice_and_solves_nothing() -> None:
+    sessions = Asking(questions=3)
+    app = console(sessions)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        await pilot.press("H")
+        await until(pilot, lambda: len(sessions.sessions) == 2)
+        for advised in (0, 1, 1):  # moves:1=1,2=1
+            await settle(pilot)
+            assert f"The solution takes {advised + 1}." in news(app)
+            await pilot.press("enter")
+        assert sessions.latest.commands == [Choose(0), Choose(1), Choose(1)]
+        assert Progress().of(PUZZLE.id).solution
+        assert not Progress().of(PUZZLE.id).passed
+
+
+def test_it_is_told_why_the_others_may_not_go_on() -> None:
+    run = Run()
+    thread, node = run.thread("ThreadPoolExecutor-0_0"), run.node("/node")
+    shared = run.exclusive(node)
+    slow, quick = run.timer(shared, "slow", 1.0), run.timer(shared, "quick", 1.0)
+    run.timer(run.exclusive(node), "idle", 1.0)
+    ready = run.timer(run.exclusive(node), "ready", 1.0)
+    run.start(slow, thread, 0.1)
+    run.wait(quick, 0.1, reason=Reason.GROUP_HELD, holder=slow)
+    run.wait(ready, 0.1, reason=Reason.NO_FREE_WORKER)
+    timeline = Timeline()
+    timeline.extend(run.events)
+    asked = question(0, ("MainThread (node.py:9, in main) waits for time or work",))
+    assert [*kept_of(asked, timeline)] == [
+        "quick is ready: group A held by slow",
+        "ready is ready for a thread that looks for work",
+        "MainThread (node.py:9, in main) waits for time or work",
+        "not ready when the executor last looked: idle",
+    ]
+    assert [(option.text, option.line) for option in options_of(asked, timeline)] == [
+        ("slow in order, line 20 (runs now, Pool-0_0)", 20),
+        ("looks for work (Pool-0_1)", 0),
+    ]
+
+
+async def choose(pilot: Pilot[None], key: str, after: int) -> None:
+    """Press a key at the choice with a number from 1, once it is asked."""
+    await until(pilot, lambda: news(pilot.app).startswith(f"Choice {after}, "))  # type: ignore[arg-type]
+    await pilot.press(key)
+
+
+@pytest.mark.slow
+async def test_a_puzzle_is_solved_on_an_engine_after_a_choice_was_taken_back() -> None:
+    app = console(None, next(puzzle for puzzle in puzzles() if puzzle.id == "two-locks"))
+    async with app.run_test(size=WIDE) as pilot:
+        for number, key in enumerate("11u", start=1):
+            await choose(pilot, key, number)
+        for number, key in enumerate("22", start=2):
+            await choose(pilot, key, number)
+        for number in (4, 5, 6):
+            await choose(pilot, "1", number)
+        await until(pilot, lambda: "✓" in news(app))
+        assert "✓ Done in 2 moves; the solution takes 2." in text_of(app)
+        assert Progress().of("two-locks").passed
+
+
+MINE = """
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+
+rclpy.init()
+node = Node("mine")
+node.n = 0
+
+def count():
+    n = node.n
+    node.n = n + 1
+
+node.create_timer(0.5, count)
+executor = MultiThreadedExecutor(2)
+executor.add_node(node)
+executor.spin()
+"""
+
+
+@pytest.mark.slow
+async def test_on_a_paused_run_the_learner_becomes_the_scheduler_and_goes_back(tmp_path: Path) -> None:
+    file = tmp_path / "mine.py"
+    file.write_text(MINE)
+    app = CbtuiApp(start_file=(file, (), "virtual"))
+    async with app.run_test(size=NARROW) as pilot:
+        await until(pilot, lambda: bool(shown(app).runs.timeline.entities))
+        assert "take_over" not in offered(app)
+        await pilot.press("space")
+        await until(pilot, lambda: "take_over" in offered(app))
+        before = shown(app).runs.timeline.end
+        await pilot.press("W")
+        await until(pilot, lambda: isinstance(app.screen, ChoosingScreen))
+        await until(pilot, lambda: news(app).startswith("Choice 1, "))
+        assert shown(app).runs.timeline.end >= before
+        assert "lesson" not in offered(app)
+        await choose(pilot, "2", 1)
+        await until(pilot, lambda: news(app).startswith("Choice 2, 1 move"))
+        await pilot.press("q")
+        await until(pilot, lambda: isinstance(app.screen, LessonScreen))
+        assert shown(app).runs.timeline.end == before
+
+
+def shown(app: CbtuiApp) -> RunScreen[object]:  # type: ignore[type-var]
+    """The run's screen that is on top."""
+    assert isinstance(app.screen, RunScreen)
+    return app.screen

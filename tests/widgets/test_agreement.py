@@ -1,0 +1,84 @@
+"""At any moment of any run, all panes say the same."""
+
+import re
+from functools import cache
+from pathlib import Path
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cbtui.looks.theme import Charset
+from cbtui.widgets.code.marks import marks_at
+from cbtui.widgets.code.source_files import SourceFiles
+from cbtui.widgets.diagnosis import diagnosis_at
+from cbtui.widgets.factory.scene import scene_of
+from cbtui.widgets.factory.texts import wait_texts
+from cbtui.widgets.lanes.rows import GroupLane, all_lanes
+from cbtui.widgets.lanes.service_calls import LatestCalls
+from cbtui.widgets.lanes.status import LaneStatus
+from cbtui.widgets.scene import paint_scene
+from lessons.description import Actor
+from sim.durations import duration
+from sim.trace.descriptions import name_of
+from sim.trace.events import GroupId, Reason
+from sim.trace.figures.concurrency import Concurrency
+from sim.trace.figures.waiting import waits_for_others
+from sim.trace.model import Window
+from sim.trace.timeline import Timeline
+from tests.support.builder import ns
+from tests.support.runs import dummy_server_run, shared_group_run, split_groups_run
+from tests.widgets.pictures import plain
+
+FILES = SourceFiles(Path("node.py"), "", {})
+_RUNS = (shared_group_run, split_groups_run, dummy_server_run)
+
+
+@cache
+def timeline_of(number: int) -> Timeline:
+    timeline = Timeline()
+    timeline.extend(_RUNS[number]().events)
+    return timeline
+
+
+def waiting_by_lanes(timeline: Timeline, at: int) -> dict[GroupId, int]:
+    """How many callbacks wait in each group that has a lane of its own, by the status of that."""
+    moment = timeline.moment(at)
+    status = LaneStatus(timeline, Window(0, at + 1), moment, LatestCalls(timeline), Charset.BRAILLE, 25)
+    lanes = [lane for lane in all_lanes(timeline, "") if isinstance(lane, GroupLane)]
+    texts = {lane.group.id: status.of(lane, None).text for lane in lanes}
+    found = {group: re.search(r"(\d+) waits?$", text) for group, text in texts.items()}
+    return {group: int(match[1]) if match else 0 for group, match in found.items()}
+
+
+@given(st.integers(0, len(_RUNS) - 1), st.integers(0, ns(15.0)))
+@settings(deadline=None, max_examples=60)
+def test_all_panes_say_the_same_of_any_moment(number: int, at: int) -> None:
+    timeline = timeline_of(number)
+    at = min(at, timeline.end)
+    moment, scene = timeline.moment(at), scene_of(timeline, at, ns(0.1))
+    waits = waits_for_others(moment)
+    assert {wait.entity for wait in scene.waits()} == {wait.entity for wait in waits}
+    by_lanes = waiting_by_lanes(timeline, at)
+    in_factory = {area.group.id: area.waiting for area in scene.areas}
+    assert by_lanes == {group: in_factory[group] for group in by_lanes}
+    told = diagnosis_at(timeline, at, Concurrency(timeline))
+    in_code = {
+        mark.entity: mark.texts[0] for marks in marks_at(timeline, at, FILES).values() for mark in marks
+    }
+    belts = {belt.entity.id: belt for area in scene.areas for belt in area.belts}
+    for wait in waits:
+        actor = Actor(figure="hand", follows=timeline.entities[wait.entity].callback)
+        in_scene = plain(paint_scene([actor], timeline, at, 120, 2, Charset.BRAILLE))
+        reasons = {wait_texts(belts[wait.entity], timeline, at)[0], in_code[wait.entity], in_scene}
+        if wait == waits[0] and not told.stays:
+            reasons.add(told.text)
+        for text in reasons:
+            assert duration(at - wait.since) in text
+            assert (name_of(wait.holder, timeline) in text) == (wait.reason is Reason.GROUP_HELD)
+    if told.stays:
+        return
+    assert ("nothing waits" in told.text) <= (not waits and not moment.blocked)
+    if waits:
+        more = re.search(r"; (\d+) more", told.at_length)
+        assert 1 + (int(more[1]) if more else 0) == len(waits)
+    assert len(scene.workers) <= max(1, sum(executor.threads for executor in timeline.executors.values()))

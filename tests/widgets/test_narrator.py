@@ -1,0 +1,49 @@
+"""The narrator: what the executor did, and why, at any moment of any run."""
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cbtui.widgets.narrator import narration
+from sim.trace.events import Reason
+from sim.trace.timeline import Timeline
+from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
+from tests.widgets.pictures import told
+
+RUNS = [told(shared_group_run()), told(split_groups_run()), told(dummy_server_run())]
+
+
+def test_a_start_tells_the_thread_the_reason_the_order_and_the_group() -> None:
+    run = Run()
+    thread = run.thread("MainThread")
+    node = run.node("/n")
+    group, other = run.exclusive(node), run.exclusive(node)
+    tick, heard = run.timer(group, "tick", 1.0), run.subscription(other, "/a", "heard")
+    run.message(heard, 0.9)
+    run.callback(tick, thread, 1.0, 1.0)
+    run.wait(heard, 1.0, 2.0, Reason.NO_FREE_WORKER, tick)
+    first, second = narration(told(run, until=1.5), ns(1.0))
+    assert first.startswith("1.000 s: MainThread is free: tick is due, timers come first, group A lets it in")
+    assert second.startswith("heard waits")
+    assert "group B would let it in, but no thread is free" in second
+    ended = narration(told(run, until=2.5), ns(2.0))
+    assert "tick returns after 1.0 s, group A is free" in ended[0]
+
+
+def test_who_waits_for_a_group_is_told_with_its_holder() -> None:
+    told_at = narration(RUNS[0], ns(6.0))
+    assert any(
+        "odom_callback waits since 4.0" in line and "group A held by timer" in line for line in told_at
+    )
+    assert "loses its oldest message" in "".join(narration(RUNS[0], ns(8.0)))
+
+
+def test_nothing_has_happened_in_an_empty_run() -> None:
+    assert narration(Timeline(), 0) == ("nothing has happened yet",)
+
+
+@given(st.sampled_from(RUNS), st.integers(0, ns(15.0)))
+@settings(deadline=None, max_examples=60)
+def test_any_moment_can_be_told(timeline: Timeline, at: int) -> None:
+    lines = narration(timeline, at)
+    assert lines
+    assert all(line.strip() == line and "another callback" not in line for line in lines)
