@@ -20,11 +20,13 @@ from tests.real.programs import needs_ros
 
 @pytest.fixture
 def lesson(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A lesson of a few seconds, in the current folder."""
+    """A lesson of a few seconds, in the current folder; a busy machine may let one call in two fall out."""
     monkeypatch.chdir(tmp_path)
     assert cli.main(["new-lesson", "blinker"]) == 0
     description = tmp_path / "blinker" / "lesson.toml"
-    description.write_text(description.read_text().replace("seconds = 10", "seconds = 5.5"))
+    description.write_text(description.read_text().replace("seconds = 10", "seconds = 6.5"))
+    checks = tmp_path / "blinker" / "checks.py"
+    checks.write_text(checks.read_text().replace("at_least=1.5", "at_least=1"))
     monkeypatch.setenv("CBTUI_LESSONS", str(tmp_path))
     return tmp_path / "blinker"
 
@@ -134,7 +136,8 @@ def test_a_file_is_checked_on_real_ros(
     lesson: Path, file: str, code: int, capsys: pytest.CaptureFixture[str]
 ) -> None:
     capsys.readouterr()
-    assert cli.main(["check", "blinker", str(lesson / file), "--on", "ros2"]) == code
+    ended = cli.main(["check", "blinker", str(lesson / file), "--on", "ros2"])
     told = capsys.readouterr()
+    assert ended == code, told.out
     assert ("1 of 1 checks passed" in told.out) is (code == 0)
     assert told.err == ""

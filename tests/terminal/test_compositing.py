@@ -84,8 +84,11 @@ async def test_a_pane_without_news_is_not_asked_to_draw(monkeypatch: pytest.Monk
 
     app = RecordedConsole("shared-group", EVENTS, 2.0)
     async with app.run_test(size=WIDE) as pilot:
-        await settle(pilot)
         monkeypatch.setattr(Widget, "render_lines", spy)
+        await settle(pilot)
+        while asked:  # on a busy machine some of the screen's beginning comes late
+            asked.clear()
+            await settle(pilot)
         app.lesson_screen.query_one("Lanes").refresh()
         await settle(pilot)
         assert asked
