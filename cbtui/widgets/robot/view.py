@@ -91,6 +91,7 @@ class RobotView(PaintedWidget):
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint everything except the picture."""
         if self.actors and not self.shows_robot:
+            self._painting = RobotPainting(())
             return paint_scene(self.actors, self.timeline, self.now, size.width, size.height, self.charset)
         note = "" if self._fits() else self._why_none or _STARTING
         painter = RobotPainter(self.charset)

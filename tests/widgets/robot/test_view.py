@@ -12,6 +12,7 @@ from cbtui.looks.theme import Charset
 from cbtui.widgets.robot import RobotView, RobotViewMode
 from cbtui.widgets.robot.painter import RobotPainter
 from cbtui.widgets.robot.view import PICTURES_A_SECOND
+from lessons.description import Actor
 from sim.camera import Picture, Shot
 from sim.trace.timeline import Timeline
 from tests.support.runs import ns, shared_group_run
@@ -113,6 +114,22 @@ async def test_the_key_goes_from_map_to_camera_to_both_and_back() -> None:
             looks.append(app.view.look)
         assert looks == [RobotViewMode.CAMERA, RobotViewMode.BOTH, RobotViewMode.MAP]
         assert len(app.cameras) == 1
+
+
+async def test_no_picture_lies_over_a_scene() -> None:
+    app = OnePane()
+    async with app.run_test(size=(80, 14)) as pilot:
+        app.view.actors = (Actor(figure="belt", follows="timer_callback"),)
+        app.show(9.25)
+        await pilot.pause()
+        scene = app.text()
+        app.view.look, app.view.shows_robot = RobotViewMode.BOTH, True
+        await pilot.pause()
+        app.cameras[0].answer()
+        await settle(pilot, lambda: "▀" in app.text())
+        app.view.cycle_camera()
+        await pilot.pause()
+        assert app.text() == scene
 
 
 async def test_the_picture_wanted_is_that_of_the_moment_on_screen_and_fits_its_place() -> None:
