@@ -27,6 +27,14 @@ class SizedScreen(Screen[Result]):
         """Set the layout for the new size."""
         self._lay_out(event.size)
 
+    @property
+    def is_current(self) -> bool:
+        """Whether the screen can be seen.
+
+        Textual also counts one beneath an opaque screen, and draws that one anew whenever this one changes.
+        """
+        return super().is_current and (self.is_active or self.app.screen.styles.background.a < 1)
+
     def dismiss(self, result: Result | None = None) -> AwaitComplete:
         """Leave the screen; does nothing unless it is active.
 
