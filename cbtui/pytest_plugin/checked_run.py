@@ -13,6 +13,7 @@ from lessons import checks
 from lessons.checks import Check, Stretch
 from lessons.judge import Judge, JudgedCheck
 from lessons.lesson import Lesson
+from sim.diagnosis import findings_text
 from sim.engine.setup import RunSetup
 from sim.plural import counted
 from sim.trace.events import AnyEvent, encode
@@ -163,7 +164,10 @@ class CheckedRun:
             of = len(self._outcomes)
             lines.append(f"in {failed} of {counted(of, 'schedule')}, this one is --cbtui-seed {outcome.seed}")
         lines.append(self._recordings.keep(self._setup, outcome.seed, kept.events))
-        raise AssertionError("\n".join([*lines, "", *lanes_text(outcome.observed.timeline, at)]))
+        timeline = outcome.observed.timeline
+        lines += ["", *lanes_text(timeline, at)]
+        lines += ["", *findings_text(checks.problems(timeline), timeline).splitlines()]
+        raise AssertionError("\n".join(lines).rstrip())
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What a test that failed tells: the reason, the moment, the lanes as text, the seed and a recording."""
+"""What a test that failed tells of its run beside the reason: the lanes as text, and a recording."""
 
 import os
 import re
