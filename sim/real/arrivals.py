@@ -16,6 +16,8 @@ from sim.trace.events import AnyEvent, EntityAppeared, EntityKind, EntityReady, 
 
 _REMEMBERED = 2_000
 """Messages that are remembered of one queue, and calls of one service that nobody has answered."""
+_EARLY = 100
+"""Takings of one queue that are remembered because their sending is not known."""
 
 
 class Sending(NamedTuple):
@@ -38,8 +40,18 @@ class _Queue:
     told: list[int] = field(default_factory=list)
     """What was told to lie in it."""
     waits: bool = False
+    early: deque[int] = field(default_factory=lambda: deque(maxlen=_EARLY))
+    """When that was sent which was taken before its sending was told of, if it ever is: a busy machine is late."""
     heard: set[int] = field(default_factory=set)
     """The senders of which something was taken: they have found it."""
+
+    def was_taken(self, sending: Sending) -> bool:
+        """Whether a message that is told of only now was taken; that is remembered once."""
+        stamp = next((each for each in self.early if sending.before <= each <= sending.after), None)
+        if stamp is not None:
+            self.early.remove(stamp)
+            self.hears(sending.sender)
+        return stamp is not None
 
     def is_reached_by(self, sending: Sending) -> bool:
         """Whether a message comes to lie in it, as far as is known."""
@@ -81,6 +93,8 @@ class Arrivals:
     def sent(self, t: int, name: str, sending: Sending) -> Iterator[AnyEvent]:
         """Something was sent to a topic or service."""
         for queue in self._readers[name]:
+            if queue.was_taken(sending):
+                continue
             queue.untaken.append(sending)
             if queue.waits and queue.is_reached_by(sending):
                 yield from self._arrived(t, queue, sending.number)
@@ -148,6 +162,7 @@ class Arrivals:
                 queue.untaken.remove(sending)
                 self._leaves(queue, sending.number)
                 return sending.number, len(queue.told), lost
+        queue.early.append(sent)
         return 0, len(queue.told), []
 
     def reply_taken(self, entity: int, call: int) -> tuple[int, int]:

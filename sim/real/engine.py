@@ -50,6 +50,9 @@ from sim.trace.integrity.sealing import Seal
 
 _PERIOD = 0.01
 """Seconds between two looks at what is due."""
+_LONGEST_HOLD = 500_000_000
+"""Nanoseconds for which events are held back at most."""
+_HOLD_DECAY = 0.995
 _GRACE = 3.0
 """Seconds that the programs have to end once they were told to."""
 _TO_BEGIN = 10_000_000_000
@@ -141,6 +144,7 @@ class RealEngine:
         self._robot = RunRobot(
             setup.robot, setup.sensor_rate, setup.physics, self._selector, graph, self._translation.take
         )
+        self._hold = HOLD
         self._cause: Outcome | None = None
         self._time_was_up = False
         self._given_up_at: int | None = None
@@ -218,7 +222,7 @@ class RealEngine:
         now = time.monotonic_ns()
         if now > self._began_to_wait + _TO_BEGIN and self._due:
             self._translation.begin_at(now)
-        self._translation.release(now - HOLD)
+        self._translation.release(now - self._hold)
         while self._start and self._due and self._due[0].at <= self._now():
             self._due.pop(0).do()
         if self._given_up_at is not None and now > self._given_up_at:
@@ -246,7 +250,7 @@ class RealEngine:
         return time.monotonic_ns() - self._start if self._start else 0
 
     def _heartbeat(self) -> list[AnyEvent]:
-        now = self._now() - HOLD
+        now = self._now() - self._hold
         return [TimePassed(now)] if now > 0 else []
 
     # what happens
@@ -264,9 +268,15 @@ class RealEngine:
         self._record(Notice(0, severity, text))
 
     def _take(self, lines: list[ProbeLine], process: int = 0) -> None:
+        self._hold_for(lines)
         self._caller.hear(lines)
         self._translation.take(lines, process)
         self._robot.hear(lines)
+
+    def _hold_for(self, lines: list[ProbeLine]) -> None:
+        """Hold events back for longer while a busy machine brings them late, so that all come in order."""
+        late = max((time.monotonic_ns() - line.t for line in lines[:1]), default=0)
+        self._hold = min(max(HOLD, late, round(self._hold * _HOLD_DECAY)), _LONGEST_HOLD)
 
     def _take_untrusted(self, lines: list[ProbeLine], process: int = 0) -> None:
         """Take what a program tells that may lie: of the run and of the robot it can know nothing."""

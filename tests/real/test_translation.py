@@ -154,6 +154,15 @@ def test_what_was_sent_before_a_publisher_was_heard_first_is_not_lost() -> None:
     assert not told.all(MessageDropped)
 
 
+def test_what_was_taken_before_its_sending_was_told_of_is_not_lost() -> None:
+    told = Told()
+    told.tell(sent(START + 10, 500), Taken(START + 15, HEARD, THREAD, 502, 9))
+    told.tell(Taken(START + 25, HEARD, THREAD, 602, 9))
+    assert told.all(MessageDropped) == []
+    told.tell(sent(START + 20, 600), sent(START + 30, 700), Taken(START + 40, HEARD, THREAD, 702, 9))
+    assert told.all(MessageDropped) == []
+
+
 def test_a_call_keeps_its_number_from_request_to_reply() -> None:
     told = Told()
     told.tell(Called(START + 10, 4711, "/switch", 0, "request", 500, 505))
