@@ -19,6 +19,8 @@ _PATIENCE = 30
 """Looks without a step after which the person is told."""
 _LAST_PATIENCE = 35
 """Looks without a step after which ``give_up`` is called."""
+_PATIENCE_WITH_C_CODE = 10.0
+"""Real seconds in which this thread must come to look; on a busy machine it may be late without any C code."""
 _PATIENCE_WITH_IMPORTS = 150
 """The same for a thread that imports: large libraries take long, and nobody can mend that."""
 
@@ -51,7 +53,7 @@ class Watchdog:
     def _watch(self) -> None:
         steps, still, sentence = self._clock.time.steps, 0, ""
         while True:
-            self._be_back_in(_LOOK * (_LAST_PATIENCE + 1))
+            self._be_back_in(_PATIENCE_WITH_C_CODE)
             _real_sleep(_LOOK)
             still = still + 1 if self._clock.time.steps == steps and not self._clock.time.rests else 0
             steps = self._clock.time.steps
