@@ -1,19 +1,39 @@
 """The terminal driver: it tolerates a terminal that closes, and a process that is stopped at any moment."""
 
 import os
+import signal
+from asyncio import TimerHandle
 from collections.abc import Callable
 from typing import IO, Any, cast
 
 from textual.drivers.linux_driver import LinuxDriver
 
 
+_LOOK = 1.0
+"""Seconds between two looks whether the terminal is still there."""
+
+
 class TerminalDriver(LinuxDriver):
-    """Discards output once the terminal is gone, so that the console can still shut down."""
+    """Ends the app once the terminal is gone, and discards its output, so that it can shut down."""
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
         terminal: Any = self._file
         self._file = cast("Any", _SurvivingFile(terminal))
+        self._next_look: TimerHandle | None = None
+
+    def start_application_mode(self) -> None:
+        """Take the terminal, and look whether it stays: without job control, as after ``su -c``, no SIGHUP comes."""
+        super().start_application_mode()
+        self._look()
+
+    def _look(self) -> None:
+        if self._next_look is not None:
+            self._next_look.cancel()
+        if os.isatty(self.fileno):
+            self._next_look = self._loop.call_later(_LOOK, self._look)
+        else:
+            self._app.exit(None, 128 + signal.SIGHUP)
 
     def _sigcont_application(self, *signal_and_frame: Any) -> None:
         """Continue after SIGCONT; after SIGSTOP, which has no handler, the terminal is first released.

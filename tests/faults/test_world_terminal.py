@@ -42,6 +42,17 @@ def test_a_console_whose_window_is_closed_ends_and_finishes_its_recording(tmp_pa
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("words", [(), ("open", "split-groups")])
+def test_a_console_without_job_control_finds_that_its_window_was_closed(
+    words: tuple[str, ...], tmp_path: Path
+) -> None:
+    with nothing_left(), opened(100, 30, tmp_path, *words, has_job_control=False) as console:
+        console.until("Split groups")
+        console.close_window()
+        assert console.ended() == HUNG_UP
+
+
+@pytest.mark.slow
 def test_a_console_that_is_told_to_hang_up_gives_the_terminal_back(tmp_path: Path) -> None:
     with recording_console(tmp_path) as console:
         console.process.send_signal(signal.SIGHUP)

@@ -14,11 +14,12 @@ _TERMINAL = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "LC_ALL": "C.UT
 
 
 def start_in_terminal(
-    words: Sequence[str], columns: int, rows: int, home: Path
+    words: Sequence[str], columns: int, rows: int, home: Path, *, has_job_control: bool = True
 ) -> "tuple[subprocess.Popen[bytes], int, int]":
     """Start Python with these words; return the process, and the terminal's far and near end.
 
-    What is written to the far end is typed, what is read from it was drawn. Closing the far end hangs up.
+    What is written to the far end is typed, what is read from it was drawn. Closing the far end hangs up; it is
+    told to a process that has job control.
     """
     far, near = pty.openpty()
     fcntl.ioctl(near, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
@@ -32,6 +33,10 @@ def start_in_terminal(
         stderr=near,
         env=environment,
         start_new_session=True,
-        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),  # noqa: PLW1509 -- as a shell's, to hang up
+        preexec_fn=_control if has_job_control else None,  # noqa: PLW1509 -- as a shell's, to hang up
     )
     return process, far, near
+
+
+def _control() -> None:
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)

@@ -108,13 +108,20 @@ _WRAPS = 7
 
 @contextmanager
 def opened(
-    columns: int, rows: int, home: Path, *words: str, program: Sequence[str] = ("-m", "cbtui")
+    columns: int,
+    rows: int,
+    home: Path,
+    *words: str,
+    program: Sequence[str] = ("-m", "cbtui"),
+    has_job_control: bool = True,
 ) -> Iterator[TerminalConsole]:
     """A console in a terminal of this size, for somebody who has not used it yet.
 
     ``words`` are of its command line, ``program`` is what Python gets to run it.
     """
-    process, screen, terminal = start_in_terminal((*program, *words), columns, rows, home)
+    process, screen, terminal = start_in_terminal(
+        (*program, *words), columns, rows, home, has_job_control=has_job_control
+    )
     console = TerminalConsole(process, screen, terminal)
     try:
         yield console
