@@ -8,7 +8,6 @@ from typing import IO, Any, cast
 
 from textual.drivers.linux_driver import LinuxDriver
 
-
 _LOOK = 1.0
 """Seconds between two looks whether the terminal is still there."""
 
@@ -23,8 +22,8 @@ class TerminalDriver(LinuxDriver):
         self._next_look: TimerHandle | None = None
 
     def start_application_mode(self) -> None:
-        """Take the terminal, and look whether it stays: without job control, as after ``su -c``, no SIGHUP comes."""
-        super().start_application_mode()
+        """Take the terminal, and look whether it stays: without job control (``su -c``) no SIGHUP comes."""
+        super().start_application_mode()  # type: ignore[no-untyped-call]
         self._look()
 
     def _look(self) -> None:

@@ -41,7 +41,7 @@ class _Queue:
     """What was told to lie in it."""
     waits: bool = False
     early: deque[int] = field(default_factory=lambda: deque(maxlen=_EARLY))
-    """When that was sent which was taken before its sending was told of, if it ever is: a busy machine is late."""
+    """When messages were sent that were taken before their sending was told of, if it ever is."""
     heard: set[int] = field(default_factory=set)
     """The senders of which something was taken: they have found it."""
 

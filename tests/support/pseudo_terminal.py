@@ -18,8 +18,8 @@ def start_in_terminal(
 ) -> "tuple[subprocess.Popen[bytes], int, int]":
     """Start Python with these words; return the process, and the terminal's far and near end.
 
-    What is written to the far end is typed, what is read from it was drawn. Closing the far end hangs up; it is
-    told to a process that has job control.
+    What is written to the far end is typed, what is read from it was drawn. Closing the far end hangs up; a
+    process that has job control is told so.
     """
     far, near = pty.openpty()
     fcntl.ioctl(near, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))

@@ -20,7 +20,7 @@ _PATIENCE = 30
 _LAST_PATIENCE = 35
 """Looks without a step after which ``give_up`` is called."""
 _PATIENCE_WITH_C_CODE = 10.0
-"""Real seconds in which this thread must come to look; on a busy machine it may be late without any C code."""
+"""Real seconds in which this thread must come to look; on a busy machine it may be late without C code."""
 _PATIENCE_WITH_IMPORTS = 150
 """The same for a thread that imports: large libraries take long, and nobody can mend that."""
 
