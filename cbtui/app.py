@@ -25,6 +25,7 @@ from cbtui.screens.menu import MenuScreen
 from cbtui.terminal.ending import EndingApp
 from cbtui.text.ascii_filter import AsciiFilter
 from cbtui.text.harmless_filter import HarmlessFilter
+from cbtui.widgets.key_bar import say_at_once
 from lessons.catalogue import find, lessons
 from lessons.lesson import Lesson
 from lessons.progress import Progress
@@ -190,6 +191,7 @@ class CbtuiApp(EndingApp):
 
         With ``tour`` it is shown round first.
         """
+        say_at_once(self.screen, f"opening lesson {lesson.number}: {lesson.title} …")
         from cbtui.runs.setup.shown_program import of_lesson
 
         self._show_program(of_lesson(lesson, lessons()), changes, tour=tour)
@@ -200,6 +202,7 @@ class CbtuiApp(EndingApp):
 
         With ``real`` it runs on that ROS 2.
         """
+        say_at_once(self.screen, "opening the exercise …")
         from cbtui.learning.exercise_files import CannotPlaceError, own_file
         from cbtui.screens.exercise import ExerciseScreen
         from lessons.lesson import BadLesson
@@ -218,6 +221,7 @@ class CbtuiApp(EndingApp):
 
     def open_puzzle(self, puzzle: "Puzzle") -> None:
         """Let the learner schedule the threads of a puzzle."""
+        say_at_once(self.screen, f"opening the puzzle: {puzzle.title} …")
         from cbtui.runs.setup.shown_program import of_puzzle
         from cbtui.screens.choosing import ChoosingScreen
 
@@ -232,6 +236,7 @@ class CbtuiApp(EndingApp):
         from cbtui.runs.setup.own_files import check, read_recording
 
         path = Path(entry.what)
+        say_at_once(self.screen, f"opening {path.name} …")
         check(path)
         if entry.kind is RecentKind.RECORDING:
             self._show_recording(read_recording(path))

@@ -5,10 +5,11 @@ from typing import TypeVar
 from textual.await_complete import AwaitComplete
 from textual.events import Resize
 from textual.geometry import Size
-from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
+from textual.screen import ModalScreen, Screen, ScreenResultCallbackType, ScreenResultType
 from textual.widgets import Static
 
 from cbtui.screens.layout import Layout, layout_for, too_small
+from cbtui.widgets.key_bar import say_at_once
 
 Result = TypeVar("Result")
 
@@ -18,8 +19,12 @@ class SizedScreen(Screen[Result]):
 
     layout_now = Layout.TABBED
 
+    def on_compose(self) -> None:
+        """Set the layout before there are widgets, which would take on another look with it."""
+        self._take_layout(self.app.size)
+
     def on_mount(self) -> None:
-        """Set the layout before the first drawing."""
+        """Tell the layout before the first drawing."""
         self.mount(Static(classes="too-small"))
         self._lay_out(self.app.size)
 
@@ -46,16 +51,24 @@ class SizedScreen(Screen[Result]):
         self, question: Screen[ScreenResultType], take: ScreenResultCallbackType[ScreenResultType] | None
     ) -> None:
         """Lay another screen over this one; ``take`` gets its result."""
+        if not isinstance(question, ModalScreen):
+            say_at_once(self, "opening …")
         self.app.push_screen(question, take)
 
     def laid_out(self) -> None:
         """Hook that is called when the layout or size has changed."""
 
-    def _lay_out(self, size: Size) -> None:
+    def _take_layout(self, size: Size) -> bool:
+        """Whether the layout for a size is another one."""
         self.layout_now = layout_for(size)
-        if not self.has_class(self.layout_now.value):
-            for layout in Layout:
-                self.set_class(layout is self.layout_now, layout.value, update=False)
+        if self.has_class(self.layout_now.value):
+            return False
+        for layout in Layout:
+            self.set_class(layout is self.layout_now, layout.value, update=False)
+        return True
+
+    def _lay_out(self, size: Size) -> None:
+        if self._take_layout(size):
             self.update_node_styles(animate=False)
         for sentence in self.query(".too-small").results(Static):
             sentence.update(too_small(size))

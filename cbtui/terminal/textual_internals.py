@@ -46,6 +46,13 @@ def is_being_removed(widget: Widget) -> bool:
     return widget._pruning
 
 
+def paint_now(widget: Widget) -> None:
+    """Send a widget's picture to the terminal before what takes long in the same message."""
+    screen = widget.screen
+    screen._compositor.update_widgets({widget})
+    screen.app._display(screen, screen._compositor.render_update())
+
+
 def resize_content(widget: Widget, size: Size) -> None:
     """Set a scrollable widget's virtual size; assigning it would lay out the whole screen again."""
     widget.set_reactive(Widget.virtual_size, size)

@@ -2,9 +2,11 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from textual.events import Click
 from textual.geometry import Size
+from textual.screen import Screen
 
 from cbtui.keys.action import KeyAction, Scope, group_by, method_of
 from cbtui.keys.actions import actions_of
@@ -12,6 +14,8 @@ from cbtui.keys.bindings import perform
 from cbtui.keys.keymap import keymap_of
 from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
+from cbtui.terminal.textual_internals import paint_now
+from cbtui.text.cells import fit
 from cbtui.widgets.painted_widget import PaintedWidget
 
 _KEY = Ink(Role.STRONG)
@@ -58,6 +62,13 @@ class KeyBar(PaintedWidget):
         working.sort(key=lambda action: action.label not in self.first)
         return keymap_of(self.app).of(working)
 
+    def say(self, words: str) -> None:
+        """Show words in place of the keys, at once, until the current message has been handled."""
+        self._rows = [[TextRun(fit(f" {words}", self.size.width, self._charset), _KEY)]]
+        self.refresh()
+        paint_now(self)
+        self.changed()
+
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the keys."""
         return [key_row(self._entries(size.width), size.width)]
@@ -82,6 +93,12 @@ class KeyBar(PaintedWidget):
 
     def _works(self, action: KeyAction) -> bool:
         return self.screen.check_action(*method_of(action)) is not False
+
+
+def say_at_once(screen: Screen[Any], words: str) -> None:
+    """Show what a key has begun in the place of a screen's keys, before the work that takes its time."""
+    for bar in screen.query(KeyBar):
+        bar.say(words)
 
 
 def key_bar_entries(actions: Iterable[KeyAction], charset: Charset) -> list[KeyBarEntry]:

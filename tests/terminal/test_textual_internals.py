@@ -18,6 +18,7 @@ from textual.driver import Driver
 from textual.drivers.linux_driver import LinuxDriver
 from textual.drivers.web_driver import WebDriver
 from textual.message_pump import MessagePump
+from textual.screen import Screen
 from textual.widget import Widget
 from textual.widgets import OptionList
 
@@ -56,6 +57,10 @@ WORKAROUNDS: dict[str, tuple[str, list[Callable[..., Any]]]] = {
         [CommandPalette._gather_commands, CommandPalette._action_command_list, CommandPalette._on_click],
     ),
     "textual_internals.resize_content": ("edb9f6257285", [Widget._scroll_update]),
+    "textual_internals.paint_now: nothing is drawn before the message on hand has been handled": (
+        "a0d863d867bc",
+        [Screen._compositor_refresh, App._display, Compositor.update_widgets],
+    ),
     "textual_internals.is_being_removed": ("be1dc93ca461", [App._prune]),
     "textual_internals.forget_drawn_styles": ("d2509f3e7966", [StylesCache.get_inner_outer.__wrapped__]),
     "widgets.options: paging fails where no line is visible": ("85f7f3300576", [OptionList._move_page]),
