@@ -35,8 +35,21 @@ def often(count: int, what: str = "times in all") -> str:
 
 
 def thread_count(timeline: Timeline) -> int:
-    """The total number of threads of a run's executors."""
-    return sum(executor.threads for executor in timeline.executors.values())
+    """The total number of threads of a run's executors.
+
+    One that a callback made, such as that of a nested ``rclpy.spin_until_future_complete``, spins on the
+    callback's own thread and adds none.
+    """
+    return sum(
+        executor.threads
+        for executor in timeline.executors.values()
+        if executor.threads > 1 or not _is_any_running(timeline, executor.since)
+    )
+
+
+def _is_any_running(timeline: Timeline, at: Nanoseconds) -> bool:
+    window = Window(at, at + 1)
+    return any(timeline.spans_on(thread, window) for thread in timeline.threads)
 
 
 def threads_for(entities: Iterable[EntityId], at: Nanoseconds, timeline: Timeline) -> int:

@@ -56,6 +56,7 @@ class ExecutorInfo:
     id: ExecutorId
     kind: str
     threads: int
+    since: Nanoseconds
 
 
 @dataclass(frozen=True, slots=True)

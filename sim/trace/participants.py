@@ -60,7 +60,7 @@ class Participants:
 
     def add_executor(self, event: ExecutorAppeared) -> None:
         """Add an executor."""
-        self.executors[event.executor] = ExecutorInfo(event.executor, event.kind, event.threads)
+        self.executors[event.executor] = ExecutorInfo(event.executor, event.kind, event.threads, event.t)
 
     def add_node(self, event: NodeAppeared) -> None:
         """Add a node."""

@@ -95,10 +95,10 @@ class Run:
         self.add(ThreadAppeared(ns(at), thread, name, executor=executor))
         return thread
 
-    def executor(self, kind: str, threads: int) -> ExecutorId:
+    def executor(self, kind: str, threads: int, at: float = 0.0) -> ExecutorId:
         """Make an executor; ``kind`` is its class name."""
         executor = self._next("executor")
-        self.add(ExecutorAppeared(0, executor, kind, threads))
+        self.add(ExecutorAppeared(ns(at), executor, kind, threads))
         return executor
 
     def node(self, name: str) -> NodeId:

@@ -71,6 +71,18 @@ def test_a_worker_comes_works_leaves_and_waits(at: float, stay: WorkerState) -> 
     assert worker.stay is stay
 
 
+def test_an_executor_that_a_callback_made_has_no_worker_of_its_own() -> None:
+    run = Run()
+    pool = run.thread("ThreadPoolExecutor-0_0")
+    run.executor("MultiThreadedExecutor", 3)
+    run.executor("SingleThreadedExecutor", 1)
+    timer = run.timer(run.exclusive(run.node("/n")), "ask_callback", 10.0)
+    run.start(timer, pool, 1.0)
+    run.executor("SingleThreadedExecutor", 1, at=1.5)
+    run.stop(3.0)
+    assert len(scene_at(told(run), 2.0).workers) == 3 + 1
+
+
 def test_a_call_that_takes_no_time_is_seen_for_a_glance() -> None:
     timeline = one_call(length=0.0)
     assert [worker.stay for worker in scene_at(timeline, 1.1).workers] == [WorkerState.LEAVES]
