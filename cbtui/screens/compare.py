@@ -7,6 +7,7 @@ from typing import ClassVar
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.widgets import Static
 
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
@@ -100,7 +101,7 @@ class CompareScreen(SizedScreen[None]):
     def compose(self) -> ComposeResult:
         """Lay out both runs and the table."""
         yield HeadingLine(self.charset, id="status")
-        yield HeadingLine(self.charset, id="verdict")
+        yield Static(id="verdict", markup=False)
         for number in range(len(self._sides)):
             yield HeadingLine(self.charset, id=f"run{number}")
             yield Lanes(id=f"lanes{number}")
@@ -191,8 +192,8 @@ class CompareScreen(SizedScreen[None]):
         if not self._verdict:
             return
         at = self._first_difference
-        where = "no call differs" if at is None else f"they differ from {timestamp(at)}"
-        self.query_one("#verdict", HeadingLine).words = (TextRun(f" {self._verdict}; {where}", _STRONG),)
+        where = "no call differs" if at is None else f"they differ from {timestamp(at)} on"
+        self.query_one("#verdict", Static).update(f"{where[0].upper()}{where[1:]}; {self._verdict}")
         if at is not None and not self._has_moved:
             self.navigation.seek(at)
 

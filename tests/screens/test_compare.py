@@ -23,6 +23,8 @@ from cbtui.widgets.comparison import ComparisonTable
 from cbtui.widgets.lanes import Lanes, start_of
 from sim.durations import timestamp
 from sim.trace.events import AnyEvent, RobotMoved, RunEnded
+from sim.trace.figures.comparison import compare as figures_of
+from sim.trace.figures.comparison_rows import verdict
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
@@ -122,13 +124,20 @@ async def test_both_runs_have_the_same_stretch_and_cursor_whatever_is_pressed() 
             assert first.picture.layout == second.picture.layout
 
 
+async def test_the_verdict_is_whole_on_a_narrow_screen() -> None:
+    async with compared(*sides(), size=NARROW) as (app, _):
+        first, second = (side.timeline for side in sides())
+        sentence = verdict(figures_of(first, second, Window(0, second.end)))
+        assert sentence in " ".join(text_of(app).split())
+
+
 async def test_it_opens_where_the_runs_first_differ_with_a_verdict() -> None:
     app = ComparingConsole(*sides())
     async with app.run_test(size=WIDE) as pilot:
         await drawn(app, pilot)
         at = app.comparison.navigation.now
         assert 0 < at < lanes(app)[1].timeline.end
-        assert f"they differ from {timestamp(at)}" in text_of(app)
+        assert f"They differ from {timestamp(at)} on;" in text_of(app)
         assert "run B is better: losses of" in text_of(app)
 
 
@@ -279,12 +288,12 @@ async def test_a_run_that_has_only_begun_gets_its_verdict_and_the_first_differen
     app = ComparingConsole(sides()[0], ComparedSide("now", growing, alive=lambda: True))
     async with app.run_test(size=WIDE) as pilot:
         await drawn(app, pilot)
-        assert "no call differs" not in text_of(app)
+        assert "No call differs" not in text_of(app)
         growing.extend([event for event in split_groups_run().events if event.t <= ns(9.4)])
         await drawn(app, pilot)
         at = app.comparison.navigation.now
         assert 0 < at < growing.end
-        assert f"they differ from {timestamp(at)}" in text_of(app)
+        assert f"They differ from {timestamp(at)} on;" in text_of(app)
         await press(app, pilot, "0")
         assert app.comparison.navigation.now == growing.end
 
