@@ -124,7 +124,7 @@ class LessonScreen(RunScreen[LiveRun]):
             self._own_file.begin()
         changes = self.changes
         setup = changes.applied(self.subject.set_up(changes.threads, speed))
-        setup = msgspec.structs.replace(setup, keyboard=Keyboard.LIVE)
+        setup = msgspec.structs.replace(setup, keyboard=Keyboard.LIVE, inputs=self.restarts.inputs)
         return LiveRun(setup, self._open_session, deliver, ended)
 
     # the lesson

@@ -63,10 +63,12 @@ class CommandLoop:
             self._clock.call_at(typed.at, partial(self._type, typed.text, scheduled=True))
         if setup.until is not None:
             self._clock.call_at(setup.until, self._shutdown.time_is_up)
-        if self._virtual is not None:
-            for given in setup.inputs:
-                command = commands.input_of(given.command)
-                self._virtual.time.schedule_input(given.at, partial(self._carry_out, command), given.recess)
+        for given in setup.inputs:
+            carry_out = partial(self._carry_out, commands.input_of(given.command))
+            if self._virtual is None:
+                self._clock.call_at(given.at, carry_out)
+            else:
+                self._virtual.time.schedule_input(given.at, carry_out, given.recess)
 
     def _read(self) -> None:
         while True:

@@ -127,10 +127,10 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     the number of threads of the programs' executors, None leaves their own. ``service`` None means the
     first SetBool service that a program offers. ``lines`` get the numbers 1, 2, … on the trace.
     ``packages`` are folders in which packages are looked for, after those around the programs. A run
-    without programs ends with its lines. ``inputs``, in the order of their
-    moments, need the virtual clock. ``groups`` and ``periods`` change the programs' callbacks, the later of
-    two changes of one callback counts. ``sensor_rate`` (Hz) is that of the robot's odometry and scans, None
-    leaves the usual one;
+    without programs ends with its lines. ``inputs`` are in the order of their moments; the real clock
+    gives them as near to those as the machine can. ``groups`` and ``periods`` change the programs'
+    callbacks, the later of two changes of one callback counts. ``sensor_rate`` (Hz) is that of the
+    robot's odometry and scans, None leaves the usual one;
     ``physics`` None is PyBullet if it is installed, else numpy. With ``contents``
     the trace has what published messages hold. ``seed`` chooses,
     on the virtual clock, among the orders in which a machine could run threads; None and 0 are first come,

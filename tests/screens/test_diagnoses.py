@@ -1,6 +1,6 @@
 """The window that lists what the rules found, and the way from there to the moment and the code."""
 
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
 from pathlib import Path
 from threading import Event
@@ -252,8 +252,9 @@ def test_moments_of_findings_lie_in_the_run() -> None:
 async def test_a_cure_is_offered_once_it_was_found_to_help(way: str) -> None:
     asked: list[str] = []
 
-    def helps(told: ExplainedFinding, _given_up: Event) -> bool:
+    def helps(told: ExplainedFinding, _given_up: Event, note: Callable[[int], object]) -> bool:
         asked.append(told.name)
+        note(40)
         return told.name == "group starvation"
 
     async with console() as (app, pilot):

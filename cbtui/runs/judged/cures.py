@@ -1,5 +1,6 @@
 """Tries a cure out of sight: the run as it is and with the cure, on virtual time at full speed."""
 
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from threading import Event
@@ -14,15 +15,17 @@ from cbtui.runs.setup.changes import Changes
 from lessons.checks import problems
 from sim.diagnosis import Finding
 from sim.diagnosis.cures import Remedy
-from sim.engine.setup import RunSetup
+from sim.engine.setup import RunSetup, TimedInput
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
-_LIMIT = 20.0
+_LIMIT = 15.0
 """Real seconds after which a run is given up."""
 
 Problem: TypeAlias = tuple[str, str, str]
 """A rule's id, whom it is about, and whom it blames: the same in several runs of a program."""
+Problems: TypeAlias = Mapping[Problem, bool]
+"""What is wrong in a run, and whether for ever."""
 
 
 def problem_of(found: Finding, timeline: Timeline) -> Problem:
@@ -42,26 +45,30 @@ def changes_of(remedy: Remedy, before: Changes, timeline: Timeline) -> Changes |
     return None if changes == before else changes
 
 
-def helps(problem: Problem, as_it_is: RunSetup, cured: RunSetup, until: Nanoseconds, given_up: Event) -> bool:
+def with_inputs(setup: RunSetup, inputs: tuple[TimedInput, ...]) -> RunSetup:
+    """Return the set-up of a run that also gets the inputs of the one before."""
+    return msgspec.structs.replace(setup, inputs=inputs) if inputs else setup
+
+
+def helps(problem: Problem, before: Problems | None, after: Problems | None) -> bool:
     """Whether a run has a problem, and the same run with a cure has not, nor another one in its place.
 
-    Fewer problems that last for ever make up for others.
-
-    Raises:
-        GivenUpError: ``given_up`` was set meanwhile.
-        OSError: an engine could not be started.
+    Fewer problems that last for ever make up for others. None stands for a run that did not come to its end.
     """
-    before = _problems(as_it_is, until, given_up)
-    if before is None or problem not in before:
-        return False
-    after = _problems(cured, until, given_up)
-    if after is None or problem in after:
+    if before is None or problem not in before or after is None or problem in after:
         return False
     return (sum(after.values()), len(after)) < (sum(before.values()), len(before))
 
 
-def _problems(setup: RunSetup, until: Nanoseconds, given_up: Event) -> dict[Problem, bool] | None:
-    """What is wrong in a run, and whether for ever; None if it did not come to its end."""
+def problems_in(
+    setup: RunSetup, until: Nanoseconds, given_up: Event, note: Callable[[Nanoseconds], object] = lambda _: 0
+) -> Problems | None:
+    """Return what is wrong in a run; None if it did not come to its end. ``note`` gets how far it is.
+
+    Raises:
+        GivenUpError: ``given_up`` was set meanwhile.
+        OSError: the engine could not be started.
+    """
     timeline = Timeline(until_ending=True)
     unwatched = msgspec.structs.replace(setup, clock="virtual", speed=None, until=until)
     with FollowedRun(unwatched, ProcessSession, given_up) as run, suppress(EngineLostError, RunTimeoutError):
@@ -69,6 +76,7 @@ def _problems(setup: RunSetup, until: Nanoseconds, given_up: Event) -> dict[Prob
         run.limit(_LIMIT)
         for batch in run:
             timeline.extend(batch)
+            note(timeline.end)
     ended = timeline.ended
     if ended is None or not ended.time_was_up:
         return None

@@ -81,7 +81,7 @@ class LessonConsole(LinearConsole[LiveRun]):
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
         changes = self.restarts.changes
         setup = changes.applied(self.subject.set_up(changes.threads, speed))
-        setup = msgspec.structs.replace(setup, keyboard=Keyboard.LIVE)
+        setup = msgspec.structs.replace(setup, keyboard=Keyboard.LIVE, inputs=self.restarts.inputs)
         return LiveRun(setup, self._open_session, deliver, ended)
 
     def _open_choosing(self, subject: ShownProgram) -> None:
@@ -208,8 +208,10 @@ class CuresByNumber(ScreenPart):
         told = findings[int(line) - 1]
         self.host.tell(f"It is tried out of sight: {told.explanation.cure}.")
 
+        trial = self.trials.begin()
+
         def try_out() -> None:
-            helps = self.trials.helps(told, self.given_up)
+            helps = trial.helps(told, self.given_up)
             self.host.post(lambda: self._take_verdict(told, helps) if runs.number == number else None)
 
         Thread(target=try_out, name="cure", daemon=True).start()

@@ -25,6 +25,7 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.windows.setup import SetupScreen
 from cbtui.screens.windows.setup_rows import GroupRow, NumberRow, SettingRow, ThreadsRow
+from sim.engine.setup import TimedInput
 
 _TOLD = 2
 """The most statements of equivalent code in the notification of a restart."""
@@ -46,6 +47,8 @@ class Restarts(ScreenPart):
     at_any_time: bool = False
     before: ComparedSide | None = None
     """The previous run."""
+    inputs: tuple[TimedInput, ...] = ()
+    """What the run on screen is given besides what its program asks for."""
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer ``run_again`` at any time if the run has no robot to reset; ``start_over`` always works."""
@@ -54,16 +57,16 @@ class Restarts(ScreenPart):
         repeats = is_over or self.at_any_time or (bool(run.setup.programs) and not has_robot(run))
         return repeats or action != "run_again"
 
-    async def again(self, changes: Changes) -> None:
-        """Run again with these changes."""
-        await self.start(changes, self.speed())
+    async def again(self, changes: Changes, inputs: tuple[TimedInput, ...] = ()) -> None:
+        """Run again with these changes, and with inputs of a run before."""
+        await self.start(changes, self.speed(), inputs)
 
-    async def start(self, changes: Changes, speed: float | None) -> None:
+    async def start(self, changes: Changes, speed: float | None, inputs: tuple[TimedInput, ...] = ()) -> None:
         """Run again with these changes, at a speed."""
         before = self.runs.run
         if before.timeline.end > 0:
             self.before = compared_side(before, self.changes).ended()
-        self.changes = changes
+        self.changes, self.inputs = changes, inputs
         self.runs.begin(speed)
         self.began()
         self.host.tell(await asyncio.to_thread(before.stop))

@@ -108,7 +108,7 @@ class LaneSelection(ScreenPart):
         monitor = self.runs.findings
         monitor.look()
         self.host.redraw()
-        helps = None if self.cures is None else self.cures.helps
+        helps = None if self.cures is None else self.cures.begin().helps
         screen = DiagnosesScreen(monitor.findings, self.host.charset, helps, self._lesson_on)
         self.host.ask(screen, self._take)
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from functools import partial
 from threading import Event
+from typing import TypeAlias
 
 from textual import on
 from textual.app import ComposeResult
@@ -30,6 +31,9 @@ _ALL_IS_WELL = "✓ Nothing has gone wrong so far: no rule has found a problem."
 _TIME = 10
 
 
+Helps: TypeAlias = Callable[[ExplainedFinding, Event, Callable[[int], object]], bool]
+
+
 class Way(Enum):
     """What can be done about a finding."""
 
@@ -50,8 +54,8 @@ class DiagnosesScreen(WindowScreen[Chosen]):
     """Lists findings, problems first, each with the ways on; its result is the chosen one, None to stay.
 
     ``helps`` tells, on a thread of its own, whether the cure of a finding ends it when it is tried: only then
-    the window offers to try it. It has to come back soon once the event that it gets is set. ``lesson_on``
-    returns the lesson that shows a problem.
+    the window offers to try it. It has to come back soon once the event that it gets is set, and tells how
+    many per cent are done. ``lesson_on`` returns the lesson that shows a problem.
     """
 
     SCOPE = Scope.DIAGNOSES
@@ -60,7 +64,7 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         self,
         findings: Sequence[ExplainedFinding],
         charset: Charset,
-        helps: Callable[[ExplainedFinding, Event], bool] | None = None,
+        helps: Helps | None = None,
         lesson_on: Callable[[ExplainedFinding], Lesson | None] = lambda _: None,
     ) -> None:
         super().__init__(charset)
@@ -73,6 +77,8 @@ class DiagnosesScreen(WindowScreen[Chosen]):
             if helps is not None and each.explanation.remedy != NO_REMEDY
         }
         """Whether the cures of findings help; None while that is being tried."""
+        self._percent: dict[int, int] = {}
+        """How much of the trials is done."""
         self._rows = tuple(self._ways())
         self._given_up = Event()
         self.heading = title_of(findings)
@@ -116,11 +122,18 @@ class DiagnosesScreen(WindowScreen[Chosen]):
             elif lesson is not None:
                 yield Option(way_row(f"lesson {lesson.number} shows this: {lesson.title}", self._charset))
 
-    def _try_all(self, helps: Callable[[ExplainedFinding, Event], bool]) -> None:
+    def _try_all(self, helps: Helps) -> None:
         for place in self._helpful:
-            answer = not self._given_up.is_set() and helps(self._findings[place], self._given_up)
+            answer = not self._given_up.is_set() and helps(
+                self._findings[place], self._given_up, partial(self._note_progress, place)
+            )
             if not self._given_up.is_set():
                 self.app.call_from_thread(self._note_tried, place, answer)
+
+    def _note_progress(self, place: int, percent: int) -> None:
+        if percent != self._percent.get(place) and not self._given_up.is_set():
+            self._percent[place] = percent
+            self.app.call_from_thread(self._tell_highlighted)
 
     def _note_tried(self, place: int, helps: bool) -> None:
         """Offer to try a cure if it helps; the highlight stays where it is."""
@@ -146,11 +159,17 @@ class DiagnosesScreen(WindowScreen[Chosen]):
                 return chosen is not None and bool(self._helpful.get(chosen[0]))
         return True
 
+    def _tell_highlighted(self) -> None:
+        """Show what there is to say of the highlighted finding."""
+        if self._chosen is not None:
+            place, _ = self._chosen
+            percent = self._percent.get(place, 0) if self._helpful.get(place, False) is None else None
+            told = details_of(self._findings[place], self._charset, percent)
+            self.query_one(".told", Static).update(told)
+
     @on(OptionList.OptionHighlighted)
-    def _tell(self, event: OptionList.OptionHighlighted) -> None:
-        place, _ = self._rows[event.option_index]
-        told = details_of(self._findings[place], self._charset, self._helpful.get(place, False) is None)
-        self.query_one(".told", Static).update(told)
+    def _tell(self) -> None:
+        self._tell_highlighted()
         self.query_one(VerticalScroll).scroll_home(animate=False)
         self.query_one(KeyBar).changed()
 
@@ -205,16 +224,19 @@ def way_row(text: str, charset: Charset) -> Content:
     return Content.assemble((" " * (_TIME + 4) + "→ ", "bold"), (visible(text, charset), "$text-success"))
 
 
-def details_of(each: ExplainedFinding, charset: Charset, is_trying: bool = False) -> Content:
-    """Return what happened, why, what to do, whether that is being tried, and where in the code and when."""
+def details_of(each: ExplainedFinding, charset: Charset, percent: int | None = None) -> Content:
+    """Return what happened, why, what to do, and where in the code and when.
+
+    ``percent`` is how much of a trial of the cure is done, None while there is none.
+    """
     explained = each.explanation
     parts = [
         (f"{visible(explained.what, charset)}.", "bold"),
         (f"\n{visible(sentence(explained.why), charset)}", ""),
         (f"\n→ {visible(explained.cure, charset)}.", "$text-success"),
     ]
-    if is_trying:
-        parts.append(("\n· Whether that helps is being tried out of sight.", ""))
+    if percent is not None:
+        parts.append((f"\n· Whether that helps is being tried out of sight: {percent} %.", ""))
     where = location_text(each.finding, explained)
     if where:
         parts.append((f"\n{visible(where, charset)}", "$text-muted"))

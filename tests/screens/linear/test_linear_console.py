@@ -13,7 +13,7 @@ from cbtui.screens.linear.choosing import ChoosingConsole
 from cbtui.screens.linear.console import LinearConsole, LineTerminal
 from cbtui.screens.linear.lesson import LessonConsole
 from cbtui.screens.linear.replay import ReplayConsole
-from cbtui.screens.parts.cures import CureTrials
+from cbtui.screens.parts.cures import CureTrial, CureTrials
 from lessons.catalogue import find, lessons
 from lessons.progress import Progress
 from sim.engine.commands import CallService, Pause, Resume, RunLine, RunUntil, Step, TerminalInput
@@ -166,7 +166,7 @@ def test_a_cure_is_tried_by_its_number_and_the_run_with_it_is_compared(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     predict()
-    monkeypatch.setattr(CureTrials, "helps", lambda *_: True)
+    monkeypatch.setattr(CureTrial, "helps", lambda *_: True)
     monkeypatch.setattr(CureTrials, "can_try", lambda *_: True)
     script = [
         ("problem: ", "d"),
