@@ -17,6 +17,7 @@ from cbtui.keys.named_keys import with_keys_in_force
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram
+from cbtui.screens.linear.asking import AskedChain, AskedExport
 from cbtui.screens.linear.dialogue import Dialogue
 from cbtui.screens.linear.plain import plain, plain_lines, spoken_key
 from cbtui.screens.linear.telling import Telling
@@ -45,7 +46,10 @@ _OWN_WORDS = {
     "show_pane('guide')": "Read the guide",
     "show_pane('log')": "Tell every line of the log, or each text only once",
     "prompt": "Type a ros2 line, or the label of a key",
-    "exercise": "Tell the exercise, and how to do it",
+    "exercise": "Tell the exercise and make its file; once you have changed that, check it",
+    "chain": "Tell how long messages took from one topic or service to another, and where",
+    "export": "Write the run so far to a file: a picture, report, table or trace",
+    "group": "Give a callback another group, and run again",
     "help": "Tell the keys that do something now",
 }
 """What actions do here, where that is not what they do on a screen."""
@@ -103,7 +107,8 @@ class LinearConsole(Generic[RunT_co]):
 
     def add_parts(self, *parts: ScreenPart, **more: Callable[[], object]) -> None:
         """Add a console's own parts, and actions by their ids, to the common ones."""
-        every = (self.navigation, self.telling, *parts)
+        chain = AskedChain(self, self.runs, self.navigation)
+        every = (self.navigation, self.telling, chain, AskedExport(self, self.runs), *parts)
         self._parts = ScreenParts(
             self, self.SCOPE, *every, go_to_time=lambda: self.ask(self._go_to()), **more
         )

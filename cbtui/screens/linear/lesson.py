@@ -15,9 +15,11 @@ from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram
+from cbtui.screens.linear.asking import AskedGroup
 from cbtui.screens.linear.choosing import ChoosingConsole
 from cbtui.screens.linear.console import LinearConsole, LineTerminal
 from cbtui.screens.linear.dialogue import Dialogue
+from cbtui.screens.linear.exercise import ExerciseInLines
 from cbtui.screens.linear.teaching import Teaching
 from cbtui.screens.parts.choices import TakeOver
 from cbtui.screens.parts.cures import CureTrials
@@ -61,7 +63,9 @@ class LessonConsole(LinearConsole[LiveRun]):
         self._teaching = None if lesson is None else self._teaching_of(lesson, observe)
         take_over = TakeOver(runs, subject, self._open_choosing)
         keys = (PaceKeys(self, runs), WorldKeys(runs), TypedLines(self), self.restarts, take_over)
-        more = filter(None, (self._comparison, self._cures, self._teaching))
+        exercise = None if lesson is None else ExerciseInLines(self, lesson, self.progress)
+        group = AskedGroup(self, runs, self.restarts, subject)
+        more = filter(None, (self._comparison, self._cures, self._teaching, exercise, group))
         on = {} if following is None else {"next_lesson": partial(self.open_lesson, following)}
         self.add_parts(*keys, *more, **on)
         runs.begin(1.0)

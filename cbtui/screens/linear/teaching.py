@@ -1,4 +1,4 @@
-"""A lesson in lines: its predictions, its explanation and its exercise."""
+"""A lesson in lines: its predictions and its explanation."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -31,7 +31,7 @@ class Teaching(ScreenPart):
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer what is open."""
-        return {"predict": self.can_predict, "exercise": self.lesson.exercise is not None}.get(action, True)
+        return action != "predict" or self.can_predict
 
     @property
     def can_predict(self) -> bool:
@@ -74,12 +74,3 @@ class Teaching(ScreenPart):
         page = page_of(self.lesson, PageState(self.progress.of(self.lesson.id), outcome), signs())
         for section in (PageSection.SHOWN, PageSection.EXPLANATION):
             self.host.tell_page(page.get(section, ""))
-
-    def action_exercise(self) -> None:
-        """Tell the exercise."""
-        lesson = self.lesson
-        if lesson.exercise is not None:
-            self.host.tell_page(lesson.exercise.asks)
-            self.host.tell(
-                f"cbtui start {lesson.id} writes a file for it, cbtui check {lesson.id} checks that."
-            )

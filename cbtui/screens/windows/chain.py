@@ -49,7 +49,12 @@ class ChainScreen(WindowScreen[tuple[str, ...]]):
         await self.query_one(TypedLine).action_submit()
 
     def _take(self, text: str) -> None:
-        names = tuple(f"/{name.strip().removeprefix('/')}" for name in text.split(":") if name.strip())
+        names = names_in(text)
         if names:
             self._follow(names)
         self.dismiss(names)
+
+
+def names_in(text: str) -> tuple[str, ...]:
+    """Return the names of a chain that was typed as ``/scan:/cmd_vel``, or without the slashes."""
+    return tuple(f"/{name.strip().removeprefix('/')}" for name in text.split(":") if name.strip())

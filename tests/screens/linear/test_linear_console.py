@@ -27,6 +27,8 @@ from tests.support.fake_session import FakeEngines
 from tests.support.runs import shared_group_run
 
 EVENTS = shared_group_run().events
+EXERCISE = "split-groups"
+"""A lesson that has one."""
 
 
 class Typist:
@@ -65,10 +67,14 @@ class Lesson(Typist):
     """Types at the console of a lesson."""
 
     def __init__(
-        self, script: list[tuple[str, str]], keys: Keymap | None = None, more: Sequence[AnyEvent] = ()
+        self,
+        script: list[tuple[str, str]],
+        keys: Keymap | None = None,
+        more: Sequence[AnyEvent] = (),
+        lesson: str = "shared-group",
     ) -> None:
         self.engines = FakeEngines([*EVENTS, *more], ns(12.9))
-        subject = of_lesson(find("shared-group"), lessons())
+        subject = of_lesson(find(lesson), lessons())
         super().__init__(
             script,
             lambda terminal: LessonConsole(terminal, subject, Changes(), self.engines, observed(EVENTS)),
@@ -76,10 +82,10 @@ class Lesson(Typist):
         )
 
 
-def predict() -> None:
+def predict(lesson: str = "shared-group") -> None:
     """Let the lesson's predictions have been made before."""
-    for place, prediction in enumerate(find("shared-group").predictions):
-        Progress().answer("shared-group", place, prediction.right)
+    for place, prediction in enumerate(find(lesson).predictions):
+        Progress().answer(lesson, place, prediction.right)
 
 
 def test_a_lesson_is_predicted_watched_and_explained_in_lines() -> None:
@@ -227,3 +233,71 @@ def test_a_puzzle_is_played_by_numbers() -> None:
     assert "There is no thread 9 to choose now." in lines
     assert lines.count("Choice 1, 0 moves. Who goes on?") == 2
     assert Progress().of(PUZZLE.id).passed
+
+
+def test_a_chain_that_cannot_be_followed_is_refused_with_the_names_there_are() -> None:
+    predict()
+    script = [
+        ("problem: ", "k"),
+        ("From which to which", "odom"),
+        ("a chain has a first and a last", "k"),
+        ("From which to which", "/odom:/nowhere"),
+        ("nothing was sent on /nowhere", "q"),
+    ]
+    Lesson(script).run()
+
+
+def test_an_export_is_written_and_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    predict()
+    monkeypatch.chdir(tmp_path)
+    script = [
+        ("problem: ", "x"),
+        ("Export the run so far", "9"),
+        ("There is no format 9", "x"),
+        ("2: report", "2"),
+        ("Exported to", "q"),
+    ]
+    Lesson(script).run()
+    assert [path.suffix for path in tmp_path.iterdir()] == [".md"]
+
+
+def test_a_callback_gets_another_group() -> None:
+    predict()
+    script = [
+        ("problem: ", "g"),
+        ("Which callback", "2"),
+        ("Which group", "mine"),
+        ("There is no group mine", "g"),
+        ("Which callback", "2"),
+        ("Which group", "own"),
+        ("it runs again", "q"),
+    ]
+    typist = Lesson(script)
+    typist.run()
+    (change,) = typist.engines.latest.setup.groups
+    assert change.wish == "own"
+
+
+@pytest.mark.slow
+def test_an_exercise_is_made_and_a_changed_file_checked(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    predict(EXERCISE)
+    monkeypatch.chdir(tmp_path)
+    lesson = find(EXERCISE)
+    assert lesson.solution_path is not None
+    Lesson([("problem: ", "e"), ("checks it then", "q")], lesson=EXERCISE).run()
+    (file,) = tmp_path.iterdir()
+    file.write_text(lesson.solution_path.read_text(encoding="utf-8"), encoding="utf-8")
+    lines = Lesson([("problem: ", "e"), ("The exercise is solved", "q")], lesson=EXERCISE).run()
+    assert any(line.endswith("checks passed") for line in lines)
+    assert Progress().of(EXERCISE).passed
+
+
+def test_hints_come_one_by_one_once_the_lesson_is_explained() -> None:
+    predict(EXERCISE)
+    exercise = find(EXERCISE).exercise
+    assert exercise is not None
+    script = [("problem: ", "h"), ("hint is not possible", "a"), ("Checked against", "h|q")]
+    Lesson(script, lesson=EXERCISE).run()
+    assert Progress().of(EXERCISE).hints == 1
