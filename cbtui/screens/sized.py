@@ -19,12 +19,8 @@ class SizedScreen(Screen[Result]):
 
     layout_now = Layout.TABBED
 
-    def on_compose(self) -> None:
-        """Set the layout before there are widgets, which would take on another look with it."""
-        self._take_layout(self.app.size)
-
     def on_mount(self) -> None:
-        """Tell the layout before the first drawing."""
+        """Set the layout before the first drawing."""
         self.mount(Static(classes="too-small"))
         self._lay_out(self.app.size)
 
@@ -58,17 +54,11 @@ class SizedScreen(Screen[Result]):
     def laid_out(self) -> None:
         """Hook that is called when the layout or size has changed."""
 
-    def _take_layout(self, size: Size) -> bool:
-        """Whether the layout for a size is another one."""
-        self.layout_now = layout_for(size)
-        if self.has_class(self.layout_now.value):
-            return False
-        for layout in Layout:
-            self.set_class(layout is self.layout_now, layout.value, update=False)
-        return True
-
     def _lay_out(self, size: Size) -> None:
-        if self._take_layout(size):
+        self.layout_now = layout_for(size)
+        if not self.has_class(self.layout_now.value):
+            for layout in Layout:
+                self.set_class(layout is self.layout_now, layout.value, update=False)
             self.update_node_styles(animate=False)
         for sentence in self.query(".too-small").results(Static):
             sentence.update(too_small(size))

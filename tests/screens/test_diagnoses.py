@@ -247,6 +247,15 @@ def test_moments_of_findings_lie_in_the_run() -> None:
     assert all(each.at is not None and 0 < each.at <= ns(TURNED) for each in told)
 
 
+async def test_what_there_is_to_say_is_whole_as_the_window_opens() -> None:
+    async with console() as (app, pilot):
+        await app.push_screen(DiagnosesScreen(told_of(shared_group_run().until(TURNED)), Charset.BRAILLE))
+        await settle(pilot)
+        told = app.screen.query_one(".told")
+        assert told.size.height > 3
+        assert "A mutually exclusive group lets one callback in at a time" in text_of(app)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("way", ["t", "enter"])
 async def test_a_cure_is_offered_once_it_was_found_to_help(way: str) -> None:

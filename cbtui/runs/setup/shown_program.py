@@ -177,7 +177,7 @@ def of_moment(
         heading=f"{subject.heading}: you choose",
         guide=_CHOOSING_GUIDE.format(
             title="You are the scheduler",
-            task="The run is made again up to the moment at which you have paused it.",
+            task="The run is repeated up to the moment where you paused it.",
             keys="- `q` goes back to the paused run.\n",
         ),
         set_up=lambda _threads, _speed: setup,

@@ -44,7 +44,7 @@ class ExerciseInLines(ScreenPart):
             self.host.tell(str(error))
         else:
             if placed is StarterPlacement.CHANGED:
-                self.host.tell(f"{file.name} is run and checked, out of sight.")
+                self.host.tell(f"{file.name} is run and checked in the background.")
                 Thread(target=lambda: self._check(judge, file), name="check", daemon=True).start()
             else:
                 self.host.tell_page(self.lesson.exercise.asks)

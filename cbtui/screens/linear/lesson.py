@@ -210,7 +210,7 @@ class CuresByNumber(ScreenPart):
             self.host.tell(f"The cure of {line} cannot be tried." if line else None)
             return
         told = findings[int(line) - 1]
-        self.host.tell(f"It is tried out of sight: {told.explanation.cure}.")
+        self.host.tell(f"It is tried in the background: {told.explanation.cure}.")
 
         trial = self.trials.begin()
 

@@ -66,7 +66,7 @@ class Teaching(ScreenPart):
             yield from self.predict()
         self.progress.explain(self.lesson.id)
         run = OutcomeRun(self.lesson, self.observe, self.real())
-        self.host.tell("The lesson runs once more, out of sight.")
+        self.host.tell("The lesson runs once more, in the background.")
         Thread(target=lambda: self.found(run.run()), name="outcome", daemon=True).start()
 
     def tell_explanation(self, outcome: PredictionOutcome) -> None:
