@@ -2,7 +2,15 @@
 
 from sim.launch.arguments import describe_arguments
 from sim.launch.errors import LaunchError
-from sim.launch.machine import Machine, ProcessSpec, RunningProcess
+from sim.launch.machine import Machine, OnOutput, ProcessSpec, RunningProcess
 from sim.launch.run import LaunchRun
 
-__all__ = ["LaunchError", "LaunchRun", "Machine", "ProcessSpec", "RunningProcess", "describe_arguments"]
+__all__ = [
+    "LaunchError",
+    "LaunchRun",
+    "Machine",
+    "OnOutput",
+    "ProcessSpec",
+    "RunningProcess",
+    "describe_arguments",
+]

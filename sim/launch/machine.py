@@ -9,6 +9,8 @@ from typing import Protocol
 
 OnExit = Callable[[int], None]
 """Takes the exit status of a process, once."""
+OnOutput = Callable[[str, bool], None]
+"""Takes a line that a process prints or logs, and whether to stderr. Called on any thread; never waits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,10 +67,12 @@ class Machine(Protocol):
     started with, never two at once; ``on_exit`` may be called from inside ``start_process``.
     """
 
-    def start_process(self, spec: ProcessSpec, on_exit: OnExit) -> RunningProcess:
+    def start_process(self, spec: ProcessSpec, on_exit: OnExit, on_output: OnOutput) -> RunningProcess:
         """Start a program."""
 
-    def run_line(self, label: str, words: Sequence[str], on_exit: OnExit) -> RunningProcess:
+    def run_line(
+        self, label: str, words: Sequence[str], on_exit: OnExit, on_output: OnOutput
+    ) -> RunningProcess:
         """Start a ``ros2 …`` line; ``label`` names it in the log."""
 
     def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
 from sim.launch.launch.action import Action, LaunchDescriptionEntity
 from sim.launch.launch.events import ExecutionComplete, Shutdown
-from sim.launch.launch.events.process import ProcessExited, ProcessStarted
+from sim.launch.launch.events.process import (
+    ProcessExited,
+    ProcessIO,
+    ProcessStarted,
+    ProcessStderr,
+    ProcessStdout,
+)
 from sim.launch.launch.launch_context import LaunchContext
-from sim.launch.machine import Machine, OnExit, ProcessSpec, RunningProcess
+from sim.launch.machine import Machine, OnExit, OnOutput, ProcessSpec, RunningProcess
 
 Visit = Callable[[LaunchDescriptionEntity], None]
 Wake = Callable[[Callable[[], None]], None]
@@ -61,6 +68,7 @@ class Processes:
         self._labels = 0
         self._managed: list[_Managed] = []
         self._timers = 0
+        self._unheard: deque[Callable[[], None]] = deque()
 
     @property
     def any_left(self) -> bool:
@@ -82,17 +90,39 @@ class Processes:
         if self._context.is_shutdown:
             self._forget(managed)
             return
-        on_exit = self._on_exit(managed)
-        machine, what = self._context.machine, managed.what
-        managed.running = _begin(machine, what, on_exit)
-        self._context.say(f"process started with pid [{managed.running.number}]", logger=what.label)
+        running = _begin(
+            self._context.machine, managed.what, self._on_exit(managed), self._on_output(managed)
+        )
+        managed.running = running
+        self._context.say(f"process started with pid [{running.number}]", logger=managed.what.label)
         self._context.emit_event(ProcessStarted(**_about(managed)))
 
     def _on_exit(self, managed: _Managed) -> OnExit:
         return lambda status: self._wake(lambda: self._exited(managed, status))
 
+    def _on_output(self, managed: _Managed) -> OnOutput:
+        """What keeps a process's lines until the launch has time for them, if a handler may want them."""
+
+        def hear(text: str, error: bool) -> None:
+            if not any(each.may_match(ProcessIO) for each in self._context.handlers):
+                return
+            self._unheard.append(lambda: self._heard(managed, text, error))
+            self._context.machine.call_at(0, lambda: self._wake(self._hear))
+
+        return hear
+
+    def _hear(self) -> None:
+        while self._unheard:
+            self._unheard.popleft()()
+
+    def _heard(self, managed: _Managed, text: str, error: bool) -> None:
+        if managed.running is not None:  # what was killed may go on printing
+            kind = ProcessStderr if error else ProcessStdout
+            self._context.emit_event(kind(text=f"{text}\n".encode(), **_about(managed)))
+
     def _exited(self, managed: _Managed, status: int) -> None:
         assert managed.running is not None
+        self._hear()
         what, number = managed.what, managed.running.number
         if status == 0:
             self._context.say(f"process has finished cleanly [pid {number}]", logger=what.label)
@@ -196,10 +226,12 @@ class Processes:
         self._context.say(f"sending signal '{now}' to process[{label}]", logger=label)
 
 
-def _begin(machine: Machine, what: ProcessSpec | LaunchLine, on_exit: OnExit) -> RunningProcess:
+def _begin(
+    machine: Machine, what: ProcessSpec | LaunchLine, on_exit: OnExit, on_output: OnOutput
+) -> RunningProcess:
     if isinstance(what, LaunchLine):
-        return machine.run_line(what.label, what.words, on_exit)
-    return machine.start_process(what, on_exit)
+        return machine.run_line(what.label, what.words, on_exit, on_output)
+    return machine.start_process(what, on_exit, on_output)
 
 
 def _about(managed: _Managed) -> dict[str, Any]:

@@ -89,11 +89,11 @@ class LaunchedPrograms:
         on_exit: OnExit,
         *,
         shows_stdout: bool = True,
-        is_launched: bool = False,
+        hear_output: Callable[[str, bool], None] | None = None,
     ) -> Program:
         """Start one more program, as a process of its own on the trace.
 
-        One that a launch file started is ended by its launch.
+        ``hear_output`` is that of the launch file that started it, which is to end it, too.
         """
         number = self.announce(label)
 
@@ -102,7 +102,7 @@ class LaunchedPrograms:
                 self.show(text, error, process)
 
         program = Program(self._selector, start, label, number, self._take, show)
-        program.is_launched = is_launched
+        program.hear_output = hear_output
         return self._begin(program, on_exit)
 
     def _begin(self, program: Program, on_exit: OnExit) -> Program:
@@ -258,7 +258,7 @@ class LaunchedPrograms:
         for launching in self._launches:
             launching.interrupt()
         for program in self._running:
-            if not program.is_launched:
+            if program.hear_output is None:
                 program.interrupt()
 
     def kill(self) -> list[str]:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
-from sim.launch import LaunchRun, ProcessSpec, RunningProcess
+from sim.launch import LaunchRun, OnOutput, ProcessSpec, RunningProcess
 from sim.packages import Executable, Packages
 from sim.real.programs import OnExit, Start
 from sim.trace.events import ProcessEnded
@@ -56,7 +56,7 @@ class Launching:
 
     # What a launch needs of the machine
 
-    def start_process(self, spec: ProcessSpec, on_exit: OnExit) -> RunningProcess:
+    def start_process(self, spec: ProcessSpec, on_exit: OnExit, on_output: OnOutput) -> RunningProcess:
         """Start a program."""
         programs = self._programs
         executable = Executable(spec.executable, spec.path, spec.folder, spec.module, spec.function)
@@ -65,11 +65,15 @@ class Launching:
             programs.environment(spec.environment, spec.folder),
             spec.working_folder,
         )
-        return programs.begin(start, spec.label, on_exit, shows_stdout=spec.output != "log", is_launched=True)
+        return programs.begin(
+            start, spec.label, on_exit, shows_stdout=spec.output != "log", hear_output=on_output
+        )
 
-    def run_line(self, label: str, words: Sequence[str], on_exit: OnExit) -> RunningProcess:
+    def run_line(
+        self, label: str, words: Sequence[str], on_exit: OnExit, on_output: OnOutput
+    ) -> RunningProcess:
         """Start a ``ros2 …`` line."""
-        return _LaunchedLine(self._programs, label, words, on_exit)
+        return _LaunchedLine(self._programs, label, words, on_exit, on_output)
 
     def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:
         """Call ``action`` that many seconds from now."""
@@ -84,12 +88,18 @@ class _LaunchedLine:
     """A ``ros2`` line of a launch file: one more process of the launch."""
 
     def __init__(
-        self, programs: "LaunchedPrograms", label: str, words: Sequence[str], on_exit: OnExit
+        self,
+        programs: "LaunchedPrograms",
+        label: str,
+        words: Sequence[str],
+        on_exit: OnExit,
+        on_output: OnOutput,
     ) -> None:
         self.number = programs.announce(label)
 
         def show(text: str, error: bool) -> None:
             programs.show(text, error, self.number)
+            on_output(text, error)
 
         def end(status: int) -> None:
             programs.record(ProcessEnded(0, self.number, "the line is done", status))

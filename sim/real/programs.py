@@ -92,7 +92,9 @@ def environment(setup: RunSetup, python: str, folder: Path, domain: int) -> dict
         "ROS_DOMAIN_ID": str(domain),
         "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
         "RCUTILS_COLORIZED_OUTPUT": "0",
-        "RCUTILS_CONSOLE_OUTPUT_FORMAT": f"{_LOG_BEGINS}{{message}}{_LOG_ENDS}",
+        "RCUTILS_CONSOLE_OUTPUT_FORMAT": _LOG_BEGINS
+        + "[{severity}] [{time}] [{name}]: {message}"
+        + _LOG_ENDS,
     }
 
 
@@ -144,8 +146,8 @@ class Program:
         self.link = ProbeLink(selector, partial(take, process=number))
         self._show = show
         self._open = 2
-        self.is_launched = False
-        """Whether a launch file started it, and ends it."""
+        self.hear_output: Callable[[str, bool], None] | None = None
+        """Takes each line, logged ones too: that of the launch file that started it, and ends it."""
         self.reads = start.terminal is not None
         """Whether it has the keyboard."""
         self._ended_at = 0.0
@@ -230,9 +232,12 @@ class Program:
 
     def _printed(self, data: bytes, error: bool) -> None:
         text = data.decode(errors="replace")
+        if self.hear_output is not None:
+            for line in _lines(text):
+                self.hear_output(line, error)
         if error and self.link.hello is not None:
             text = _without_log(text)
-        for line in text.replace(_LOG_BEGINS, "").replace(_LOG_ENDS, "").splitlines():
+        for line in _lines(text):
             self._show(line, error, self.number)
 
 
@@ -244,6 +249,10 @@ def place_of(uncaught: Uncaught) -> str:
 
 def _own_terminal() -> None:
     fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
+def _lines(text: str) -> list[str]:
+    return text.replace(_LOG_BEGINS, "").replace(_LOG_ENDS, "").splitlines()
 
 
 def _without_log(text: str) -> str:

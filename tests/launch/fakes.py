@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from sim.launch import LaunchRun, ProcessSpec
-from sim.launch.machine import OnExit
+from sim.launch.machine import OnExit, OnOutput
 
 SETUP = """
 from setuptools import setup
@@ -52,6 +52,7 @@ class FakeProcess:
     number: int
     spec: ProcessSpec | tuple[str, ...]
     on_exit: OnExit
+    on_output: OnOutput
     stubborn: bool = False
     signals: list[str] = field(default_factory=list)
 
@@ -79,14 +80,16 @@ class FakeMachine:
     now: float = 0.0
     _agenda: list[tuple[float, Callable[[], None]]] = field(default_factory=list)
 
-    def start_process(self, spec: ProcessSpec, on_exit: OnExit) -> FakeProcess:
-        return self._begin(spec, on_exit)
+    def start_process(self, spec: ProcessSpec, on_exit: OnExit, on_output: OnOutput) -> FakeProcess:
+        return self._begin(spec, on_exit, on_output)
 
-    def run_line(self, label: str, words: Sequence[str], on_exit: OnExit) -> FakeProcess:
-        return self._begin(tuple(words), on_exit)
+    def run_line(self, label: str, words: Sequence[str], on_exit: OnExit, on_output: OnOutput) -> FakeProcess:
+        return self._begin(tuple(words), on_exit, on_output)
 
-    def _begin(self, what: ProcessSpec | tuple[str, ...], on_exit: OnExit) -> FakeProcess:
-        process = FakeProcess(len(self.processes) + 1, what, on_exit, self.stubborn)
+    def _begin(
+        self, what: ProcessSpec | tuple[str, ...], on_exit: OnExit, on_output: OnOutput
+    ) -> FakeProcess:
+        process = FakeProcess(len(self.processes) + 1, what, on_exit, on_output, self.stubborn)
         self.processes.append(process)
         return process
 

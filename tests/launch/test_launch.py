@@ -175,6 +175,34 @@ def test_event_handlers_start_what_follows(root: Path) -> None:
     assert "[INFO] [launch.user]: down" in started.machine.said
 
 
+def test_an_event_handler_hears_what_a_process_prints_and_logs_before_its_end(root: Path) -> None:
+    body = (
+        "a, b = node(name='a'), node(name='b')\n"
+        "told = lambda where: lambda event: LogInfo(msg=f'{where} {event.process_name} {event.text!r}')\n"
+        "return [a, b, RegisterEventHandler(OnProcessIO(target_action=b, on_stdout=told('out'),\n"
+        "  on_stderr=lambda event: [node(name='next')] if b'ready' in event.text else None)),\n"
+        " RegisterEventHandler(OnProcessExit(target_action=b, on_exit=[LogInfo(msg='over')]))]"
+    )
+    started = launch(root, body)
+    first, second = started.machine.processes
+    first.on_output("not asked for", False)
+    second.on_output("hello", False)
+    second.on_output("[INFO] [1.5] [b]: not yet", True)
+    second.on_output("[INFO] [1.5] [b]: ready", True)
+    assert len(started.machine.processes) == 2
+    second.on_exit(0)
+    started.machine.pass_time(0.0)
+    told = [each for each in started.machine.said if "launch.user" in each]
+    assert told == [
+        "[INFO] [launch.user]: out exercise51-2 b'hello\\n'",
+        "[INFO] [launch.user]: over",
+    ]
+    assert "__node:=next" in started.machine.spec(2).arguments
+    second.on_output("too late", False)
+    started.machine.pass_time(1.0)
+    assert "too late" not in started.machine.said[-1]
+
+
 def test_an_included_file_gets_its_arguments(root: Path) -> None:
     (root / "launch" / "inner.launch.py").write_text(
         "from launch import LaunchDescription\nfrom launch.actions import *\n"

@@ -18,7 +18,7 @@ from tests.support.engine_runs import program_setup, run_to_end
 _LAUNCH = """
 from launch import LaunchDescription
 from launch.actions import *
-from launch.event_handlers import OnProcessExit
+from launch.event_handlers import OnProcessExit, OnProcessIO
 from launch.events import Shutdown
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
@@ -129,6 +129,7 @@ def test_a_launch_file_starts_processes_and_its_handlers_follow_them(launched: L
         Node(executable={str(launched.folder / "a.py")!r}, name="first", namespace="b", output="screen",
              parameters=[{{"speed": LaunchConfiguration("speed")}}], remappings=[("x", "y")],
              respawn=True, respawn_max_retries=1),
+        RegisterEventHandler(OnProcessIO(on_stdout=lambda event: LogInfo(msg=f"{{event.text[:16]!r}}"))),
         ExecuteProcess(cmd=["ros2", "topic", "list"]),
     """
     started = launched.start(sys.executable, launch_file(launched.folder, actions, "speed:=7"))
@@ -138,6 +139,7 @@ def test_a_launch_file_starts_processes_and_its_handlers_follow_them(launched: L
     for word in ("'__node:=first'", "'__ns:=/b'", "'speed:=7'", "'x:=y'"):
         assert word in arguments
     assert launched.printed.count("[INFO] [launch.user]: it has died") == 3
+    assert launched.printed.count("[INFO] [launch.user]: b\"['--ros-args', '\"") == 2
     assert launched.lines == [["ros2", "topic", "list"]]
     labels = [event.label for event in launched.of(ProcessAppeared)]  # type: ignore[attr-defined]
     assert labels == ["a.py-1", "ros2-2", "a.py-1"]

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from sim.engine.programs.line_tools import LineTools
 from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.programs.starting import ProgramStarter
+from sim.launch import OnOutput
 from sim.shell import OnExit, ShellLine
 from sim.shell.model_ground import ModelGround
 from sim.trace.events import Printed, ProcessEnded
@@ -21,9 +22,11 @@ class LaunchedLine:
         label: str,
         words: Sequence[str],
         on_exit: OnExit,
+        on_output: OnOutput,
     ) -> None:
         self._programs = programs
         self._on_exit = on_exit
+        self._on_output = on_output
         self.number = programs.announce(label)
         tools = LineTools(starter, self._take, self._end)
         self._line = ShellLine(ModelGround(programs.host), shlex.join(words), tools)
@@ -37,6 +40,7 @@ class LaunchedLine:
 
     def _take(self, text: str, error: bool) -> None:
         self._programs.record(Printed(self._programs.host.clock.now(), text, error, self.number))
+        self._on_output(text, error)
 
     def _end(self, status: int) -> None:
         now = self._programs.host.clock.now()

@@ -8,7 +8,7 @@ from sim.engine.programs.launched_line import LaunchedLine
 from sim.engine.programs.program import ProgramOutcome, ProgramSpec
 from sim.engine.programs.programs import ProgramSupervisor, RunningProgram
 from sim.engine.programs.starting import ProgramStarter
-from sim.launch import LaunchRun, ProcessSpec, RunningProcess
+from sim.launch import LaunchRun, OnOutput, ProcessSpec, RunningProcess
 from sim.shell import OnExit
 from sim.trace.events import Printed
 from sim.units import wait_ns
@@ -81,7 +81,7 @@ class ModelLaunch:
 
     # What a launch needs of the machine
 
-    def start_process(self, spec: ProcessSpec, on_exit: OnExit) -> RunningProgram:
+    def start_process(self, spec: ProcessSpec, on_exit: OnExit, on_output: OnOutput) -> RunningProgram:
         """Start a program."""
         if spec.working_folder is not None:
             raise NotImplementedError("cwd: all programs of a run share one working folder")
@@ -105,11 +105,14 @@ class ModelLaunch:
             environment=spec.environment,
             shows_stdout=spec.output != "log",
             has_keyboard=False,
+            hear_output=on_output,
         )
 
-    def run_line(self, label: str, words: Sequence[str], on_exit: OnExit) -> RunningProcess:
+    def run_line(
+        self, label: str, words: Sequence[str], on_exit: OnExit, on_output: OnOutput
+    ) -> RunningProcess:
         """Start a ``ros2 …`` line."""
-        return LaunchedLine(self._programs, self._starter, label, words, self._under_lock(on_exit))
+        return LaunchedLine(self._programs, self._starter, label, words, self._under_lock(on_exit), on_output)
 
     def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:
         """Call ``action`` that many seconds from now."""

@@ -21,6 +21,8 @@ def redirect_output(clock: RunClock, record: Callable[[AnyEvent], None]) -> None
 
     def take_from(error: bool) -> Callable[[Process, str, bool], None]:
         def take(process: Process, text: str, ends: bool) -> None:
+            if process.hear_output is not None and ends:
+                process.hear_output(text, error)
             if process.take_output is not None:
                 process.take_output(text, error)
             elif error or process.shows_stdout:

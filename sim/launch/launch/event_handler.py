@@ -29,6 +29,10 @@ class EventHandler:
         """Whether it has to do with the event."""
         return self._matcher(event)
 
+    def may_match(self, kind: type[Event]) -> bool:
+        """Whether events of that class are worth making for it: only a matcher of its own could tell."""
+        return True
+
     def handle(self, event: Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:
         """What to visit because of the event."""
         if self.handle_once:

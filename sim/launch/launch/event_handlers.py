@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any, ClassVar
 
-from sim.launch.errors import unsupported
 from sim.launch.launch.action import Action
 from sim.launch.launch.event import Event
 from sim.launch.launch.event_handler import EventHandler, Reaction
 from sim.launch.launch.events import ExecutionComplete, Shutdown
-from sim.launch.launch.events.process import ProcessExited, ProcessStarted
+from sim.launch.launch.events.process import ProcessExited, ProcessIO, ProcessStarted
 
 __all__ = ["OnExecutionComplete", "OnProcessExit", "OnProcessIO", "OnProcessStart", "OnShutdown"]
 
@@ -30,6 +30,9 @@ class _OnActionEvent(EventHandler):
             )
         self._target = target_action
         super().__init__(matcher=self._is_meant, entities=reaction, handle_once=handle_once)
+
+    def may_match(self, kind: type[Event]) -> bool:
+        return issubclass(kind, self.event_class)
 
     def _is_meant(self, event: Event) -> bool:
         if not isinstance(event, self.event_class):
@@ -58,6 +61,31 @@ class OnProcessExit(_OnActionEvent):
         super().__init__(target_action, on_exit, handle_once=handle_once)
 
 
+class OnProcessIO(_OnActionEvent):
+    """Reacts to each line that a process prints or logs; each callable gets the event and gives a reaction.
+
+    Loggers write to standard error, as ``[INFO] [1.5] [node]: text``.
+    """
+
+    event_class = ProcessIO
+
+    def __init__(
+        self,
+        *,
+        target_action: Any = None,
+        on_stdin: Callable[[ProcessIO], Any] | None = None,
+        on_stdout: Callable[[ProcessIO], Any] | None = None,
+        on_stderr: Callable[[ProcessIO], Any] | None = None,
+        handle_once: bool = False,
+    ) -> None:
+        def react(event: ProcessIO, _context: Any) -> Any:
+            callbacks = ((event.from_stdout, on_stdout), (event.from_stderr, on_stderr), (True, on_stdin))
+            callback = next(each for is_from, each in callbacks if is_from)
+            return None if callback is None else callback(event)
+
+        super().__init__(target_action, react, handle_once=handle_once)
+
+
 class OnExecutionComplete(_OnActionEvent):
     """Reacts when an action has done all it does."""
 
@@ -76,6 +104,3 @@ class OnShutdown(EventHandler):
         super().__init__(
             matcher=lambda event: isinstance(event, Shutdown), entities=on_shutdown, handle_once=handle_once
         )
-
-
-OnProcessIO = unsupported("OnProcessIO", ": a launch does not read its nodes' output here")

@@ -117,6 +117,8 @@ class RcutilsLogger:
         process = current_process()
         loggers = process.keep(Loggers)
         if loggers.console_enabled:
+            if process.hear_output is not None:
+                process.keep(_Console).hand_to(process.hear_output, record)
             probe = process.probe or process.host.probe
             if process.take_output is not None:
                 process.keep(_Console).hand_to(process.take_output, record)

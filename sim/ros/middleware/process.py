@@ -31,11 +31,11 @@ class Process:
     ``number`` and ``label`` identify it on the trace, 0 and empty for the only one. ``arguments`` is its
     ``sys.argv``, ``environment`` has the variables that differ from the machine's. ``probe`` None: the
     host's. ``shows_stdout``: whether its output is shown. ``take_output`` gets every line that it prints or
-    logs, and whether it is for stderr, instead of the run; None: the run gets them. ``has_keyboard``: whether
-    it reads the run's terminal. ``default_context`` is None before its first use and after its end.
-    ``pool_numbers`` numbers its thread pools; ``callbacks`` and ``spins`` count the callbacks made and the
-    spins started; ``shut_down_at`` is the place of the callback that shut rclpy down, or empty.
-    ``finish_pools`` wait for what the workers of its pools are at.
+    logs, and whether it is for stderr, instead of the run; None: the run gets them. ``hear_output`` gets them
+    besides, shown or not. ``has_keyboard``: whether it reads the run's terminal. ``default_context`` is None
+    before its first use and after its end. ``pool_numbers`` numbers its thread pools; ``callbacks`` and
+    ``spins`` count the callbacks made and the spins started; ``shut_down_at`` is the place of the callback
+    that shut rclpy down, or empty. ``finish_pools`` wait for what the workers of its pools are at.
     """
 
     host: Host
@@ -46,6 +46,7 @@ class Process:
     probe: Probe | None = None
     shows_stdout: bool = True
     take_output: Callable[[str, bool], None] | None = None
+    hear_output: Callable[[str, bool], None] | None = None
     has_keyboard: bool = True
     default_context: ContextLifetime | None = None
     pool_numbers: Iterator[int] = field(default_factory=count)

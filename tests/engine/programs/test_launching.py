@@ -74,7 +74,7 @@ def launch_file(package: Path, body: str) -> Path:
     path.write_text(
         "from launch import LaunchDescription\n"
         "from launch.actions import *\n"
-        "from launch.event_handlers import OnProcessExit\n"
+        "from launch.event_handlers import OnProcessExit, OnProcessIO\n"
         "from launch.substitutions import LaunchConfiguration\n"
         "from launch_ros.actions import Node\n"
         f"def generate_launch_description():\n    return LaunchDescription([{body}])\n"
@@ -143,6 +143,27 @@ def test_a_process_that_dies_is_told_of_and_may_be_followed_or_started_again(pac
     said = printed(result)
     assert any("[ERROR] [counter-1]: process has died [pid 1, exit code 4" in line for line in said)
     assert "[INFO] [launch.user]: gone" in said or "[INFO] [launch]: gone" in said
+
+
+def test_what_nodes_print_and_log_starts_others(package: Path) -> None:
+    """As in ROS 2's tutorial on event handlers, where a node waits for what another one says."""
+    body = """
+        node := Node(package="counting", executable="counter", parameters=[{"last": 2}], name="first"),
+        RegisterEventHandler(OnProcessIO(
+            target_action=node,
+            on_stdout=lambda event: LogInfo(msg="printed: " + event.text.decode().strip()),
+            on_stderr=lambda event: [LogInfo(msg="logged: " + event.text.decode().strip()),
+                                     ExecuteProcess(cmd=["ros2", "node", "list"], output="screen")],
+            handle_once=True,
+        )),
+    """
+    said = printed(run(launch_file(package, body)))
+    (told,) = [line for line in said if "launch.user" in line]
+    assert told == "[INFO] [launch.user]: logged: [INFO] [1700000001.000000000] [first]: 1"
+    assert "/first" in said
+    assert "[INFO] [launch.user]: printed: printed" in printed(
+        run(launch_file(package, body.replace("handle_once=True,", "")))
+    )
 
 
 def test_a_line_of_a_launch_file_is_carried_out(package: Path) -> None:

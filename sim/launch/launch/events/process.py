@@ -8,7 +8,17 @@ from typing import Any
 from sim.launch.errors import unsupported
 from sim.launch.launch.event import Event
 
-__all__ = ["ProcessExited", "ProcessStarted", "RunningProcessEvent", "ShutdownProcess", "SignalProcess"]
+__all__ = [
+    "ProcessExited",
+    "ProcessIO",
+    "ProcessStarted",
+    "ProcessStderr",
+    "ProcessStdin",
+    "ProcessStdout",
+    "RunningProcessEvent",
+    "ShutdownProcess",
+    "SignalProcess",
+]
 
 
 class RunningProcessEvent(Event):
@@ -46,6 +56,44 @@ class ProcessExited(RunningProcessEvent):
     def __init__(self, *, returncode: int, **about: Any) -> None:
         super().__init__(**about)
         self.returncode = returncode
+
+
+class ProcessIO(RunningProcessEvent):
+    """A process wrote ``text``, bytes, to standard output (``fd`` 1) or error (2): one line an event."""
+
+    name = "launch.events.process.ProcessIO"
+
+    def __init__(self, *, text: bytes, fd: int, **about: Any) -> None:
+        super().__init__(**about)
+        self.text = text
+        self.from_stdin, self.from_stdout, self.from_stderr = (fd == each for each in range(3))
+
+
+class ProcessStdin(ProcessIO):
+    """Text for a process's standard input; the base of what nothing sends, here or in launch."""
+
+    name = "launch.events.process.ProcessStdin"
+
+    def __init__(self, *, text: bytes, **about: Any) -> None:
+        super().__init__(text=text, fd=0, **about)
+
+
+class ProcessStdout(ProcessIO):
+    """A process printed a line."""
+
+    name = "launch.events.process.ProcessStdout"
+
+    def __init__(self, *, text: bytes, **about: Any) -> None:
+        super().__init__(text=text, fd=1, **about)
+
+
+class ProcessStderr(ProcessIO):
+    """A process wrote a line to standard error, where loggers write."""
+
+    name = "launch.events.process.ProcessStderr"
+
+    def __init__(self, *, text: bytes, **about: Any) -> None:
+        super().__init__(text=text, fd=2, **about)
 
 
 class ShutdownProcess(Event):
