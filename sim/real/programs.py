@@ -150,6 +150,8 @@ class Program:
         """Takes each line, logged ones too: that of the launch file that started it, and ends it."""
         self.reads = start.terminal is not None
         """Whether it has the keyboard."""
+        self._last_error = ""
+        """The last line on stderr: class and text of an exception that came before rclpy was imported."""
         self._ended_at = 0.0
         self._sent: signal.Signals | None = None
         """The last signal that it was sent."""
@@ -197,13 +199,19 @@ class Program:
         """How it ended."""
         uncaught, status = self.link.uncaught, self.status
         if uncaught is not None:
-            return Outcome(f"{place_of(uncaught)}: the program raised {uncaught.error}", True, uncaught.error)
+            reason = f"{place_of(uncaught)}: the program raised {uncaught.error}"
+            return Outcome(reason + self._advice(uncaught.error), True, uncaught.error)
         if status == -signal.SIGINT or (self._sent is not None and status == -self._sent):
             return Outcome(STOPPED, failed=False)
         if status < 0:
             return Outcome(f"the program crashed by {signal.Signals(-status).name}", failed=True)
         reason = "the program returned" if status == 0 else f"the program ended with exit code {status}"
-        return Outcome(reason, failed=status != 0)
+        return Outcome(reason + self._advice(self._last_error), failed=status != 0)
+
+    def _advice(self, error: str) -> str:
+        from sim.real.missing import on_missing
+
+        return on_missing(error, self.link.hello.distribution if self.link.hello else "")
 
     def show_rest(self) -> None:
         """Show all that it has written so far, be it no whole line."""
@@ -238,6 +246,7 @@ class Program:
         if error and self.link.hello is not None:
             text = _without_log(text)
         for line in _lines(text):
+            self._last_error = line if error else self._last_error
             self._show(line, error, self.number)
 
 

@@ -57,6 +57,18 @@ def test_a_program_has_ended_though_its_child_keeps_its_output_open(launched: La
     only.kill()
 
 
+@pytest.mark.parametrize("before", ["", "import rclpy\n"])
+def test_a_package_of_ros_that_is_missing_is_told_with_what_it_takes(launched: Launched, before: str) -> None:
+    started = launched.start(sys.executable, program(launched.folder, before + "import tf2_ros\n"))
+    launched.to_end()
+    if before and "No module named 'rclpy'" in "".join(launched.printed):
+        pytest.skip("no real rclpy")
+    assert started.outcome().reason.endswith(
+        "; PyPI has no wheel of tf2_ros: run without --on ros2, or with --python /usr/bin/python3 where ROS "
+        "2 is installed, after sudo apt install ros-jazzy-tf2-ros-py"
+    )
+
+
 # the terminal
 
 

@@ -71,6 +71,13 @@ def test_what_a_node_wrote_is_read(tmp_path: Path) -> None:
         reader.open(rosbag2_py.StorageOptions("{tmp_path}/my_bag"), rosbag2_py.ConverterOptions("", ""))
         reader.seek(about.starting_time.nanoseconds + 1)
         print(reader.read_next()[1][8:15], reader.has_next())
+        (definition,) = reader.get_all_message_definitions()
+        print(definition.topic_type, definition.encoding, definition.encoded_message_definition.split()[-2:])
+        print(reader.set_read_order(rosbag2_py.ReadOrder()), reader.set_read_order(rosbag2_py.ReadOrder(
+            rosbag2_py.ReadOrderSortBy.File, reverse=True)), rosbag2_py.get_default_storage_id())
+        again = rosbag2_py.SequentialCompressionReader()
+        again.open_uri("{tmp_path}/my_bag")
+        print(again.get_all_topics_and_types()[0].equals(reader.get_all_topics_and_types()[0]))
         def wrong(deed):
             try:
                 deed()
@@ -85,6 +92,9 @@ def test_what_a_node_wrote_is_read(tmp_path: Path) -> None:
     assert more == [
         "3 1000000001 mcap",
         "b'hello 2' True",
+        "std_msgs/msg/String ros2msg ['string', 'data']",
+        "True False mcap",
+        "True",
         "Bag directory already exists (my_bag), can't overwrite existing bag",
         "No storage could be initialized from the inputs: none: it does not exist.",
         "Bag is not open. Call open() before writing.",

@@ -335,6 +335,32 @@ def test_a_type_that_nobody_registered_is_named(tmp_path: Path) -> None:
     )
 
 
+def test_a_polygon_is_moved_with_all_its_points(tmp_path: Path) -> None:
+    program = (
+        TREE
+        + """
+from geometry_msgs.msg import Point32, PolygonStamped
+import tf2_geometry_msgs
+buffer = Buffer()
+at = Time(nanoseconds=10**9)
+buffer.set_transform_static(between("base", "laser", at, x=1.0, yaw=math.pi / 2), "me")
+field = PolygonStamped()
+field.header.frame_id, field.polygon.points = "laser", [Point32(x=2.0), Point32(y=1.0, z=3.0)]
+moved = buffer.transform(field, "base")
+print(moved.header.frame_id, [(round(p.x, 3), round(p.y, 3), p.z) for p in moved.polygon.points])
+"""
+    )
+    assert printed(tmp_path, program) == ["base [(1.0, 2.0, 0.0), (0.0, 0.0, 3.0)]"]
+
+
+def test_a_name_that_is_not_here_is_told_by_what_does_its_work(tmp_path: Path) -> None:
+    wanted = "is not modelled here; it asks a buffer_server, which is a program in C++; give"
+    for program in ("from tf2_ros import BufferClient\n", "import tf2_ros\ntf2_ros.BufferClient\n"):
+        reason = run(tmp_path, program).ending.reason
+        assert f"tf2_ros.BufferClient {wanted}" in reason
+        assert "sim." not in reason
+
+
 def test_a_cloud_is_moved_with_all_its_points(tmp_path: Path) -> None:
     program = (
         TREE

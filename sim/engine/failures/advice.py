@@ -8,8 +8,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from difflib import get_close_matches
 from traceback import walk_tb
-from types import FrameType
+from types import FrameType, ModuleType
 
+from sim.engine.failures.missing_names import on_missing_name
 from sim.probes.own_code import is_own
 from sim.ros.middleware.process import current_process
 from sim.trace.events import EntityKind
@@ -23,9 +24,12 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
 
             advice = on_missing(name)
         case ImportError(name=str(module), msg=str(text)) if module in sys.modules:
-            advice = _nearest(text.split("'")[1], dir(sys.modules[module]))
+            missing = text.split("'")[1]
+            advice = on_missing_name(module, missing) or _nearest(missing, dir(sys.modules[module]))
         case NameError(name=str(name)) if frame is not None:
             advice = _misplaced_in(frame, name) or _nearest(name, _names_of(frame))
+        case AttributeError(name=str(name), obj=ModuleType() as module):
+            advice = on_missing_name(module.__name__, name) or _nearest(name, dir(module))
         case AttributeError(name=str(name), obj=obj):
             advice = _on_unready_node(name, obj) or _nearest(name, dir(obj))
         case _ if type(error).__module__ == "_curses":

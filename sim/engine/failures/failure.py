@@ -6,6 +6,7 @@ from pathlib import Path
 from types import FrameType
 
 from sim.engine.failures.advice import advice_on, rejected_callback
+from sim.engine.failures.missing_names import names_for_programs
 from sim.error_text import error_text
 
 _MODEL = Path(__file__).parents[2]
@@ -62,8 +63,8 @@ def _text(error: BaseException) -> str:
     """An exception's text, the names of modules as the learner knows them."""
     text = error_text(error)
     if isinstance(error, ImportError):
-        text = text.partition(" (")[0].replace("'sim.ros.rclpy", "'rclpy")
-    return text
+        text = text.partition(" (")[0]
+    return names_for_programs(text) if isinstance(error, ImportError | AttributeError) else text
 
 
 def _innermost(error: BaseException, path: str, folder: str) -> tuple[FrameType, int] | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 from sim.launch.errors import LaunchFailure
@@ -35,25 +36,21 @@ def get_package_prefix(package_name: str) -> str:
 
     Raises:
         PackageNotFoundError: there is no such package.
+        ValueError: no package can have that name.
     """
+    if re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]+", package_name) is None:
+        raise ValueError(f"'{package_name}' is not a valid package name")
     return str(_package(package_name).prefix)
 
 
 def get_package_share_directory(package_name: str) -> str:
-    """The share folder of a package.
-
-    Raises:
-        PackageNotFoundError: there is no such package.
-    """
-    return str(_package(package_name).share)
+    """The share folder of a package. Raises as `get_package_prefix`."""
+    return str(get_package_share_path(package_name))
 
 
 def get_package_share_path(package_name: str) -> Path:
-    """The share folder of a package, as a path.
-
-    Raises:
-        PackageNotFoundError: there is no such package.
-    """
+    """The share folder of a package, as a path. Raises as `get_package_prefix`."""
+    get_package_prefix(package_name)
     return _package(package_name).share
 
 

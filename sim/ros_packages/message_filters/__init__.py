@@ -1,8 +1,8 @@
-"""``message_filters``: messages of several topics, brought together by their stamps."""
+"""``message_filters``: messages of several topics, brought together by their stamps. As of 4.11.15."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from itertools import product
 from threading import Lock
 from typing import Any
@@ -12,25 +12,16 @@ from rclpy.duration import Duration
 from rclpy.logging import get_logger
 from rclpy.time import Time
 
-__all__ = ["ApproximateTimeSynchronizer", "Cache", "SimpleFilter", "Subscriber", "TimeSynchronizer"]
+from sim.ros_packages.message_filters.simple_filter import SimpleFilter
 
-
-class SimpleFilter:
-    """Hands what comes out of it to the callbacks that were registered."""
-
-    def __init__(self) -> None:
-        self.callbacks: dict[int, tuple[Callable[..., Any], tuple[Any, ...]]] = {}
-
-    def registerCallback(self, cb: Callable[..., Any], *args: Any) -> int:
-        """Have ``cb`` called with each output and ``args``; the number of the connection."""
-        connection = len(self.callbacks)
-        self.callbacks[connection] = (cb, args)
-        return connection
-
-    def signalMessage(self, *msg: Any) -> None:
-        """Hand on messages."""
-        for callback, arguments in self.callbacks.values():
-            callback(*msg, *arguments)
+__all__ = [
+    "ApproximateTimeSynchronizer",
+    "Cache",
+    "Chain",
+    "SimpleFilter",
+    "Subscriber",
+    "TimeSynchronizer",
+]
 
 
 class Subscriber(SimpleFilter):
@@ -119,11 +110,55 @@ class Cache(SimpleFilter):
         return list(zip(self.cache_msgs, self.cache_times, strict=True))
 
 
+class Chain(SimpleFilter):
+    """Filters one after another, as one: what goes in has to pass each, the last one's output comes out."""
+
+    def __init__(self, message_filter: Any = None) -> None:
+        super().__init__()
+        self.incoming_connection: int | None = None
+        self._filters: list[tuple[Any, int]] = []
+        if message_filter is not None:
+            self.connectInput(message_filter)
+
+    def connectInput(self, message_filter: Any) -> None:
+        """Listen to a filter.
+
+        Raises:
+            RuntimeError: it listens to one.
+        """
+        if self.incoming_connection is not None:
+            raise RuntimeError("Already connected")
+        self.incoming_connection = message_filter.registerCallback(self.add)
+
+    def add(self, message: Any) -> None:
+        """Have a message pass the filters."""
+        enter = self._filters[0][0].add if self._filters else self.signalMessage
+        enter(message)
+
+    def addFilter(self, message_filter: Any) -> None:
+        """Put a filter behind the others."""
+        if self._filters:
+            last, connection = self._filters[-1]
+            last.unregisterCallback(connection)
+            last.registerCallback(message_filter.add)
+        self._filters.append((message_filter, message_filter.registerCallback(self.signalMessage)))
+
+    def getFilter(self, index: int) -> Any:
+        """The filter at a place.
+
+        Raises:
+            KeyError: there is none.
+        """
+        if not 0 <= index < len(self._filters):
+            raise KeyError(index)
+        return self._filters[index][0]
+
+
 class TimeSynchronizer(SimpleFilter):
     """Hands on a message of each of several filters together, once all of one and the same stamp have come.
 
-    Each filter's last ``queue_size`` stamps are remembered. The callbacks run in the callback of the message
-    that completed the set, and one set at a time.
+    Each filter's last ``queue_size`` stamps are remembered, until a newer set is complete. The callbacks run
+    in the callback of the message that completed the set, and one set at a time.
     """
 
     def __init__(self, fs: Iterable[Any], queue_size: int) -> None:
@@ -142,11 +177,15 @@ class TimeSynchronizer(SimpleFilter):
         ]
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """Remember a message, and hand on the sets that it completes."""
+        """Remember a message, and hand on the set that it completes; what is older then is forgotten."""
+        stamp = Time.from_msg(msg.header.stamp).nanoseconds
         with self.lock:
-            self._remember(msg, Time.from_msg(msg.header.stamp).nanoseconds, my_queue)
-            for stamp in sorted(set.intersection(*map(set, self.queues))):
+            self._remember(msg, stamp, my_queue)
+            if all(stamp in queue for queue in self.queues):
                 self._hand_on([stamp] * len(self.queues))
+                for queue in self.queues:
+                    for older in [each for each in queue if each < stamp]:
+                        del queue[older]
 
     def _remember(self, msg: Any, stamp: int, queue: dict[int, Any]) -> None:
         queue[stamp] = msg

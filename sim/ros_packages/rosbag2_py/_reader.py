@@ -12,6 +12,8 @@ from rclpy.time import Time
 from sim.ros_packages.rosbag2_py._storage import (
     BagMetadata,
     ConverterOptions,
+    MessageDefinition,
+    ReadOrder,
     StorageFilter,
     StorageOptions,
     TopicInformation,
@@ -61,6 +63,10 @@ class SequentialReader:
             raise RuntimeError(f"No storage could be initialized from the inputs: {error}") from None
         self._rewind()
 
+    def open_uri(self, uri: str) -> None:
+        """Open a bag by where it lies. Raises as `open`."""
+        self.open(StorageOptions(uri))
+
     def close(self) -> None:
         """Close the bag."""
         if self._bag is not None:
@@ -101,6 +107,19 @@ class SequentialReader:
         """The topics of the bag."""
         return [each.topic_metadata for each in self.get_metadata().topics_with_message_count]
 
+    def get_all_message_definitions(self) -> list[MessageDefinition]:
+        """How the types of the bag's topics are written down."""
+        return [
+            MessageDefinition(
+                each.msgtype, f"ros2{each.msgdef.format.name.lower()}", each.msgdef.data, each.digest
+            )
+            for each in self._opened().connections
+        ]
+
+    def set_read_order(self, read_order: ReadOrder) -> bool:
+        """Whether messages are read in that order: only in that of the times at which they came."""
+        return read_order == ReadOrder()
+
     def get_metadata(self) -> BagMetadata:
         """What the bag says of itself."""
         bag = self._opened()
@@ -139,3 +158,7 @@ class SequentialReader:
         if self._bag is None:
             raise RuntimeError("Bag is not open. Call open() before reading.")
         return self._bag
+
+
+class SequentialCompressionReader(SequentialReader):
+    """Reads compressed bags, as `SequentialReader` does, too."""

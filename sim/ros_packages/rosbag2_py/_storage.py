@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from enum import Enum
 from typing import Any
 
 
@@ -39,6 +40,32 @@ class StorageFilter:
     topics: Sequence[str] = ()
 
 
+class ReadOrderSortBy(Enum):
+    """What messages are sorted by as they are read."""
+
+    ReceivedTimestamp = 0
+    PublishedTimestamp = 1
+    File = 2
+
+
+@dataclass
+class ReadOrder:
+    """The order in which messages are read."""
+
+    sort_by: ReadOrderSortBy = ReadOrderSortBy.ReceivedTimestamp
+    reverse: bool = False
+
+
+@dataclass
+class MessageDefinition:
+    """How a type is written down, and in which notation: ``ros2msg`` or ``ros2idl``."""
+
+    topic_type: str
+    encoding: str
+    encoded_message_definition: str
+    type_hash: str
+
+
 @dataclass
 class TopicMetadata:
     """A topic of a bag."""
@@ -49,6 +76,10 @@ class TopicMetadata:
     serialization_format: str
     offered_qos_profiles: Sequence[Any] = ()
     type_description_hash: str = ""
+
+    def equals(self, other: TopicMetadata) -> bool:
+        """Whether both say the same."""
+        return self == other
 
 
 @dataclass
@@ -71,3 +102,8 @@ class BagMetadata:
     compression_format: str = ""
     compression_mode: str = ""
     ros_distro: str = ""
+
+
+def get_default_storage_id() -> str:
+    """The storage that bags are written to if none is named."""
+    return "mcap"

@@ -5,7 +5,15 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from geometry_msgs.msg import PointStamped, Pose, PoseStamped, PoseWithCovarianceStamped, Vector3Stamped
+from geometry_msgs.msg import (
+    Point32,
+    PointStamped,
+    PolygonStamped,
+    Pose,
+    PoseStamped,
+    PoseWithCovarianceStamped,
+    Vector3Stamped,
+)
 from transforms3d.quaternions import quat2mat
 
 from sim.ros_packages.tf2_py.motion import Motion
@@ -13,6 +21,7 @@ from sim.ros_packages.tf2_ros.buffer_interface import ConvertRegistration, Trans
 
 __all__ = [
     "do_transform_point",
+    "do_transform_polygon_stamped",
     "do_transform_pose",
     "do_transform_pose_stamped",
     "do_transform_pose_with_covariance_stamped",
@@ -45,6 +54,14 @@ def do_transform_point(point: Any, transform: Any) -> Any:
     """A ``PointStamped``, in the transform's frame and at its time."""
     made = PointStamped(header=transform.header)
     made.point.x, made.point.y, made.point.z = map(float, _motion(transform)(_numbers(point.point)))
+    return made
+
+
+def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
+    """A ``PolygonStamped``, in the transform's frame and at its time."""
+    made, motion = PolygonStamped(header=transform.header), _motion(transform)
+    moved = (map(float, motion(_numbers(point))) for point in polygon.polygon.points)
+    made.polygon.points = [Point32(x=x, y=y, z=z) for x, y, z in moved]
     return made
 
 
@@ -89,6 +106,7 @@ for _type, _do_transform in (
     (PointStamped, do_transform_point),
     (Vector3Stamped, do_transform_vector3),
     (PoseStamped, do_transform_pose_stamped),
+    (PolygonStamped, do_transform_polygon_stamped),
     (PoseWithCovarianceStamped, do_transform_pose_with_covariance_stamped),
 ):
     TransformRegistration().add(_type, _do_transform)

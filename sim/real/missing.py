@@ -1,0 +1,35 @@
+"""What to do on real ROS 2 about a package that is missing there, and that cbtui's model has."""
+
+import re
+
+from sim.interfaces import packages
+
+_MISSING = re.compile(r"ModuleNotFoundError: No module named '(\w+)")
+_PYTHON = """
+    ament_index_python cv_bridge launch launch_ros message_filters rclpy rosbag2_py rosidl_runtime_py
+    sensor_msgs_py tf2_geometry_msgs tf2_py tf2_ros tf2_sensor_msgs tf_transformations
+""".split()  # noqa: SIM905 -- as below
+"""Packages of Python; those of interfaces are known elsewhere."""
+_WHEELS = """
+    action_msgs ament_index_python builtin_interfaces diagnostic_msgs geometry_msgs lifecycle_msgs nav_msgs
+    rcl_interfaces rclpy sensor_msgs std_msgs std_srvs stereo_msgs test_msgs trajectory_msgs
+    type_description_interfaces visualization_msgs
+""".split()  # noqa: SIM905 -- one to a line they would hide the rest
+"""Those that PyPI has; the others come with an installed ROS 2 only."""
+_DEBIAN = {"tf2_ros": "tf2-ros-py"}
+"""Packages of Debian that are not named as the module is."""
+
+
+def on_missing(said: str, distribution: str) -> str:
+    """What to do about an exception, its class and text, in half a sentence; else, and for others, empty."""
+    found = _MISSING.search(said)
+    package = found[1] if found else ""
+    if package not in {*packages(), *_PYTHON}:
+        return ""
+    name = f"ros-{distribution or 'jazzy'}-{_DEBIAN.get(package, package.replace('_', '-'))}"
+    if package in _WHEELS:
+        return f"; pip install {name}, into the Python that runs it"
+    return (
+        f"; PyPI has no wheel of {package}: run without --on ros2, or with --python /usr/bin/python3 where ROS "
+        f"2 is installed, after sudo apt install {name}"
+    )

@@ -1,0 +1,133 @@
+"""``message_filters.delta_filter``: lets a message pass if it differs from the last one that passed."""
+
+from __future__ import annotations
+
+from abc import ABC
+from collections.abc import Callable, Iterable
+from typing import Any
+
+from sim.ros_packages.message_filters.simple_filter import SimpleFilter
+
+Getter = Callable[[Any], Any]
+"""Gives the value of a field of a message."""
+
+
+class ComparisonHandler(ABC):  # noqa: B024 -- so it is there
+    """Says which messages pass."""
+
+    def message_fits(self, message: Any) -> bool:
+        """Whether a message passes."""
+        raise NotImplementedError
+
+    def do_fields_fit(self, field_a: Any, field_b: Any) -> bool:
+        """Whether a field's two values let a message pass."""
+        raise NotImplementedError
+
+
+class CachedComparisonHandler(ComparisonHandler):
+    """Compares fields with those of the last message that passed; the first one passes.
+
+    A subclass has ``_field_getters`` and ``do_fields_fit``; one field that fits is enough.
+    """
+
+    _field_getters: Iterable[Getter]
+
+    def __init__(self) -> None:
+        self._message_cache: Any = None
+
+    def message_fits(self, message: Any) -> bool:
+        """Whether a message passes, which is remembered then."""
+        last = self._message_cache
+        fits = last is None or any(
+            self.do_fields_fit(get_field(last), get_field(message)) for get_field in self._field_getters
+        )
+        if fits:
+            self._message_cache = message
+        return fits
+
+    def do_fields_fit(self, field_a: Any, field_b: Any) -> bool:
+        """What a subclass has to say."""
+        raise NotImplementedError(
+            f"Field comparison not implemented for class: {type(self).__name__}. "
+            "Consider implementing do_fields_fit"
+        )
+
+
+class DeltaCompare(CachedComparisonHandler):
+    """Fields fit that have changed; each getter has to give a bool, int, float or str.
+
+    Raises:
+        TypeError: as it compares, a value is something else.
+    """
+
+    def __init__(self, field_getters: Iterable[Getter]) -> None:
+        super().__init__()
+        self._field_getters = list(field_getters)
+
+    def do_fields_fit(self, field_a: Any, field_b: Any) -> bool:
+        """Whether the two differ."""
+        if not all(isinstance(each, bool | int | float | str) for each in (field_a, field_b)):
+            raise TypeError(f"Unable to compare fields of types {type(field_a)} and {type(field_b)}")
+        return bool(field_a != field_b)
+
+
+class ComparisonFilter(SimpleFilter):
+    """Hands on the messages that a handler lets pass."""
+
+    def __init__(self, comparison_handler: ComparisonHandler, message_filter: Any = None) -> None:
+        super().__init__()
+        self._comparison_handler = comparison_handler
+        self.incoming_connection: int | None = None
+        self.connectInput(message_filter)
+
+    def add(self, message: Any) -> None:
+        """Hand on a message if it passes."""
+        if self.message_fits(message):
+            self.signalMessage(message)
+
+    def message_fits(self, message: Any) -> bool:
+        """Whether a message passes."""
+        return self._comparison_handler.message_fits(message)
+
+    def connectInput(self, message_filter: Any) -> None:
+        """Listen to a filter, if it is one.
+
+        Raises:
+            RuntimeError: it listens to one.
+        """
+        if self.incoming_connection is not None:
+            raise RuntimeError("This instance of ComparisonFilter already has an incoming connection")
+        if message_filter is not None:
+            self.incoming_connection = message_filter.registerCallback(self.add)
+
+
+class DeltaFilter(ComparisonFilter):
+    """Hands on a message if a field has changed since the last one that was handed on."""
+
+    def __init__(self, field_getters: Iterable[Getter], message_filter: Any = None) -> None:
+        super().__init__(DeltaCompare(field_getters), message_filter)
+
+
+class PathDeltaFilter(DeltaFilter):
+    """As `DeltaFilter`, for fields named by their paths, such as ``pose.position.x``."""
+
+    def __init__(self, field_path_list: Iterable[str], message_filter: Any = None) -> None:
+        super().__init__([self._getter(path) for path in field_path_list], message_filter)
+
+    def _getter(self, path: str) -> Getter:
+        return lambda message: self.get_field_by_path(message, path)
+
+    def get_field_by_path(self, message: Any, field_path: str) -> Any:
+        """The value of a field.
+
+        Raises:
+            RuntimeError: the message has no such field.
+        """
+        found = message
+        for name in field_path.split("."):
+            owner, found = found, getattr(found, name, None)
+            if found is None:
+                raise RuntimeError(
+                    f"Unable to access field {name!r} of {type(owner).__name__} (full path: {field_path!r})"
+                )
+        return found
