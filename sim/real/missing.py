@@ -30,6 +30,6 @@ def on_missing(said: str, distribution: str) -> str:
     if package in _WHEELS:
         return f"; pip install {name}, into the Python that runs it"
     return (
-        f"; PyPI has no wheel of {package}: run without --on ros2, or with --python /usr/bin/python3 where ROS "
-        f"2 is installed, after sudo apt install {name}"
+        f"; PyPI has no wheel of {package}: run without --on ros2, or with --python /usr/bin/python3 where "
+        f"ROS 2 is installed, after sudo apt install {name}"
     )

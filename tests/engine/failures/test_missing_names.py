@@ -27,4 +27,4 @@ def test_what_is_said_to_be_missing_is(tmp_path: Path) -> None:
 
 
 def test_other_names_are_left_to_spelling() -> None:
-    assert on_missing_name("sim.ros_packages.tf2_ros", "Bufer") == ""
+    assert on_missing_name("sim.ros_packages.tf2_ros", "Transformer") == ""
