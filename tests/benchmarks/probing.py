@@ -1,6 +1,7 @@
-"""What the probe costs a node on real rclpy: one with it and one without run in turn, for a moment each.
+"""What the probe costs a node on real rclpy: fresh processes with it and without it, that run in turn.
 
-A console follows the probed one, as the probe does more then.
+A console follows the probed one, as the probe does more then. The variable ``CBTUI_BENCHMARK_PYTHON`` names
+the Python of another rclpy.
 """
 
 import os
@@ -12,12 +13,13 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
+from functools import cache
 from pathlib import Path
 from selectors import DefaultSelector
+from typing import NamedTuple
 
-from sim.probes.on_path.cbtui_probe import FOLDER
 from sim.real.probe_link import ProbeLink
-from sim.real.programs import ON_PATH
+from sim.real.programs import watched_environment
 
 _NODE = """
 import sys, time
@@ -35,55 +37,77 @@ node.create_timer(period, tick)
 executor = SingleThreadedExecutor()
 executor.add_node(node)
 for _ in sys.stdin:
-    calls, began = 0, time.monotonic()
-    while time.monotonic() - began < seconds:
+    calls, began, busy = 0, time.monotonic(), time.thread_time()
+    while calls == 0 or time.monotonic() - began < seconds:
         executor.spin_once(timeout_sec=0.1)
-    print(calls / (time.monotonic() - began), flush=True)
+    print((time.thread_time() - busy) / calls, calls / (time.monotonic() - began), flush=True)
 """
+_PYTHON = os.environ.get("CBTUI_BENCHMARK_PYTHON", sys.executable)
 _TURN = 0.25
 """Seconds that a node runs in turn: short, as the speed of the machine changes meanwhile."""
-_WARM_UP = 4
+_TURNS = 8
+_WARM_UP = 2
 """Turns that do not count."""
-_DOMAIN = "77"
+_ISOLATED = {"ROS_DOMAIN_ID": "77", "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
 
 
-def callback_cost(seconds: int) -> float:
-    """The seconds that the probe adds to a callback of a node that runs as fast as it can."""
-    return statistics.median(1 / probed - 1 / plain for plain, probed in _rates(0.0, seconds))
+class _Turn(NamedTuple):
+    """What a node did in its turn."""
+
+    busy: float
+    """CPU seconds of a callback, of the thread that spins: a busy machine changes them little."""
+    rate: float
+    """Callbacks a second."""
 
 
-def lost_callbacks(seconds: int) -> float:
+def callback_cost(pairs: int) -> float:
+    """The seconds of CPU time that the probe adds to a callback of a node that runs as fast as it can."""
+    return statistics.median(probed.busy - plain.busy for plain, probed in _measured(0.0, pairs))
+
+
+def slowing(pairs: int) -> float:
+    """The share of CPU time that the probe adds to a callback of a timer of 1 ms."""
+    return statistics.median(probed.busy / plain.busy - 1 for plain, probed in _measured(0.001, pairs))
+
+
+def lost_callbacks(pairs: int) -> float:
     """The share of the callbacks of a timer of 1 ms that a node does not get to because of the probe."""
-    return statistics.median(1 - probed / plain for plain, probed in _rates(0.001, seconds))
+    return statistics.median(1 - probed.rate / plain.rate for plain, probed in _measured(0.001, pairs))
 
 
-def _rates(period: float, seconds: int) -> list[tuple[float, float]]:
-    """Callbacks a second without and with the probe, of each turn in so many seconds of both."""
+@cache
+def _measured(period: float, pairs: int) -> list[tuple[_Turn, _Turn]]:
+    """What so many pairs of processes did, the first without the probe, each as the median of its turns."""
+    return [_pair(period) for _ in range(pairs)]
+
+
+def _pair(period: float) -> tuple[_Turn, _Turn]:
     with _node(period, probed=False) as plain, _node(period, probed=True) as probed:
-        turns = [(_rate(plain), _rate(probed)) for _ in range(_WARM_UP + round(seconds / _TURN))]
-    return turns[_WARM_UP:]
+        turns = [(_turn(plain), _turn(probed)) for _ in range(_WARM_UP + _TURNS)][_WARM_UP:]
+    both = [_Turn(*map(statistics.median, zip(*each, strict=True))) for each in zip(*turns, strict=True)]
+    return both[0], both[1]
 
 
-def _rate(node: "subprocess.Popen[str]") -> float:
-    """Callbacks a second in the node's turn."""
+def _turn(node: "subprocess.Popen[str]") -> _Turn:
     assert node.stdin is not None
     assert node.stdout is not None
     node.stdin.write("\n")
     node.stdin.flush()
-    return float(node.stdout.readline())
+    return _Turn(*map(float, node.stdout.readline().split()))
 
 
 @contextmanager
 def _node(period: float, *, probed: bool) -> Iterator["subprocess.Popen[str]"]:
     """A node that waits for its turns."""
-    isolated = {"ROS_DOMAIN_ID": _DOMAIN, "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
     with ExitStack() as held:
-        folder = held.enter_context(tempfile.TemporaryDirectory())
-        watched = {"PYTHONPATH": str(ON_PATH), FOLDER: folder} if probed else {}
+        folder = Path(held.enter_context(tempfile.TemporaryDirectory()))
+        environment = watched_environment(_PYTHON, folder) | _ISOLATED
+        if not probed:
+            del environment["PYTHONPATH"]
         node = held.enter_context(
             subprocess.Popen(
-                [sys.executable, "-c", _NODE, str(period), str(_TURN)],
-                env={**os.environ, **isolated, **watched},
+                [_PYTHON, "-c", _NODE, str(period), str(_TURN)],
+                env=environment,
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 text=True,
@@ -91,8 +115,7 @@ def _node(period: float, *, probed: bool) -> Iterator["subprocess.Popen[str]"]:
         )
         held.callback(node.kill)
         if probed:
-            socket = Path(folder) / f"{node.pid}.sock"
-            threading.Thread(target=_follow, args=(socket,), daemon=True).start()
+            threading.Thread(target=_follow, args=(folder / f"{node.pid}.sock",), daemon=True).start()
         yield node
 
 

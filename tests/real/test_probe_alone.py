@@ -10,10 +10,12 @@ from collections import deque
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
+from unittest.mock import Mock
 
 import pytest
 
-from sim.probes.on_path.cbtui_probe import FOLLOW, PORT, TOKEN
+from sim.probes.on_path.cbtui_probe import FOLLOW, PORT, TOKEN, callbacks
 from sim.probes.on_path.cbtui_probe.callbacks import Calls
 from sim.probes.on_path.cbtui_probe.consoles import Console as ConsoleLink
 from sim.probes.on_path.cbtui_probe.consoles import lines
@@ -254,7 +256,24 @@ def test_a_callback_runs_though_the_probe_cannot_tell_of_its_start(recorder: Rec
     calls: list[int] = []
     Calls(recorder, SimpleNamespace(number=7, wait=None, kind="timer")).traced(calls.append, start)(5)  # type: ignore[arg-type]
     assert calls == [5]
-    assert [event[0] for event in recorder.take()] == ["notice", "thread", "callback_end"]
+    assert [event[0] for event in recorder.take()] == ["thread", "notice", "callback_end"]
+
+
+def test_rclpy_is_asked_how_late_a_timer_is_only_where_its_rhythm_does_not_tell(
+    recorder: Recorder, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ms = 1_000_000
+    ask = Mock(return_value=9 * ms)
+    timer = SimpleNamespace(time_until_next_call=ask)
+    entity: Any = SimpleNamespace(
+        number=7, wait=None, kind="timer", made=lambda: timer, due=100 * ms, period=10 * ms
+    )
+    tick = Calls(recorder, entity)
+    for moment in (100.2, 110.1, 140.0):
+        monkeypatch.setattr(callbacks, "now", lambda moment=moment: round(moment * ms))
+        tick.traced(lambda: None, tick.begin_timer)()
+    late = [event[5] / ms for event in recorder.take() if event[0] == "callback_start"]
+    assert (late, ask.call_count) == ([0.2, 0.1, 20.0], 1)
 
 
 def test_a_full_buffer_gives_up_the_oldest_and_counts_them(recorder: Recorder) -> None:
@@ -269,3 +288,33 @@ def test_the_sockets_of_dead_processes_are_removed(folder: Path) -> None:
         dead.bind(str(folder / "4711.sock"))
     assert processes_in(folder) == []
     assert list(folder.iterdir()) == []
+
+
+RAISING = """
+import traceback
+from cbtui_probe.callbacks import Calls
+from cbtui_probe.recorder import Recorder
+from types import SimpleNamespace
+
+def fail():
+    raise ValueError("no more")
+
+traced = Calls(Recorder(), SimpleNamespace(number=7, wait=None, kind="guard")).traced(fail)
+try:
+    traced()
+except ValueError:
+    traceback.print_exc()
+"""
+
+
+@pytest.mark.parametrize("version", VERSIONS[1:])
+def test_what_a_callback_raises_is_shown_without_the_probe_by_every_python(version: str) -> None:
+    done = subprocess.run(
+        [python_of(version), "-c", RAISING],
+        env={**os.environ, "PYTHONPATH": str(ON_PATH)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert "no more" in done.stderr
+    assert "cbtui" not in done.stderr

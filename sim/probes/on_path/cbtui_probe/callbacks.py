@@ -9,6 +9,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 from .recorder import now
+from .unseen import leave_out_probe
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Generator
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from .recorder import Here, Recorder
 
 _SHIFT = 1_000_000
-"""Nanoseconds by which a timer's rhythm may seem shifted: asking for it takes time, too."""
+"""Nanoseconds by which a timer's rhythm may seem shifted: asking for it takes time, too, and clocks drift."""
 _WITH_INFO = inspect.Signature(
     [inspect.Parameter(name, inspect.Parameter.POSITIONAL_ONLY) for name in ("data", "info")]
 )
@@ -71,13 +72,14 @@ class Calls:
 
     def _wrapped(self, callback: Callable[..., Any], begin: Callable[..., None], takes: int | None) -> Any:
         """A callback that is told of, and hands on so many of its arguments, None: all."""
-        local = self._recorder.local
+        local, enter, leave = self._recorder.local, self._enter, self._leave
         if inspect.iscoroutinefunction(callback):
 
             async def run_async(*args: Any, **kwargs: Any) -> Any:
-                steps = _Steps(self, callback(*args[:takes], **kwargs), self._enter(local.here))
+                here = local.here
+                steps = _Steps(self, callback(*args[:takes], **kwargs), enter(here))
                 try:
-                    begin(*args)
+                    begin(here, *args)
                 except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
                     self._tell_of_own_fault(error)
                 try:
@@ -86,15 +88,15 @@ class Calls:
                     self._fail(error)
                     raise
                 finally:
-                    self._leave(local.here, steps.outer)
+                    leave(local.here, steps.outer)
 
             return functools.wraps(callback)(run_async)
 
         def run(*args: Any, **kwargs: Any) -> Any:
             here = local.here
-            outer = self._enter(here)
+            outer = enter(here)
             try:
-                begin(*args)
+                begin(here, *args)
             except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
                 self._tell_of_own_fault(error)
             try:
@@ -103,7 +105,7 @@ class Calls:
                 self._fail(error)
                 raise
             finally:
-                self._leave(here, outer)
+                leave(here, outer)
 
         return functools.wraps(callback)(run)
 
@@ -112,36 +114,42 @@ class Calls:
         text = f"cbtui's probe could not tell of a callback's start: {error!r}"
         self._recorder.put("notice", now(), "WARN", text)
 
-    def begin(self, *args: Any) -> None:
+    def begin(self, here: Here, *args: Any) -> None:
         """Tell that the callback starts; a client's with the number of the call."""
-        recorder, call = self._recorder, args[0] if self._entity.kind == "client" else 0
-        recorder.put("callback_start", now(), self._entity.number, recorder.thread(), call, 0, 0)
+        call = args[0] if self._entity.kind == "client" else 0
+        self._recorder.put("callback_start", now(), self._entity.number, here.thread, call, 0, 0)
 
-    def begin_service(self, *_args: Any) -> None:
+    def begin_service(self, here: Here, *_args: Any) -> None:
         """Tell that the callback starts with the request that its thread has taken."""
-        here = self._recorder.here
         sent, here.sent = here.sent, 0
-        self.begin_with(sent) if sent else self.begin()
+        self.begin_with(here, sent) if sent else self.begin(here)
 
-    def begin_guard(self, *_args: Any) -> None:
+    def begin_guard(self, here: Here, *_args: Any) -> None:
         """Tell that a guard condition's callback starts; what triggers it from now on is another time."""
         self._entity.due = 0
-        self.begin()
+        self.begin(here)
 
-    def begin_timer(self, *_args: Any) -> None:
+    def begin_timer(self, here: Here, *_args: Any) -> None:
         """Tell that a timer's callback starts, and how late."""
-        recorder, entity, start = self._recorder, self._entity, now()
-        timer = entity.made()
-        late = 0 if timer is None else self._lateness(start, timer.time_until_next_call())
-        recorder.put("callback_start", start, entity.number, recorder.thread(), 0, late, 0)
+        entity, start = self._entity, now()
+        late = start - entity.due
+        if 0 <= late < _SHIFT and late < entity.period:  # to ask rclpy costs more than all the rest
+            entity.due += entity.period
+        else:
+            late = self._lateness(start)
+        self._recorder.put("callback_start", start, entity.number, here.thread, 0, late, 0)
 
-    def _lateness(self, start: int, left: int) -> int:
-        """How long ago a timer was due that is called at ``start`` and has so much ``left`` to its next call.
+    def _lateness(self, start: int) -> int:
+        """How long ago a timer was due that is called at ``start``, by the time left to its next call.
 
         Periods that it missed shift its next call by as many, so that only the time tells at which it was to
         be called; not if it was reset since, which shows by its coming in another rhythm.
         """
         entity = self._entity
+        timer = entity.made()
+        if timer is None:
+            return 0
+        left: int = timer.time_until_next_call()
         late, due = max(0, entity.period - left), entity.due
         entity.due = start + left
         missed = start - due - late
@@ -149,27 +157,24 @@ class Calls:
             return start - due
         return late
 
-    def _begin_message(self, _message: Any, info: Any = None) -> None:
+    def _begin_message(self, here: Here, _message: Any, info: Any = None) -> None:
         """Tell that the callback starts with a message; an executor made of C++ hands over no information."""
-        self.begin() if info is None else self.begin_with(info["source_timestamp"])
+        self.begin(here) if info is None else self.begin_with(here, info["source_timestamp"])
 
-    def begin_with(self, sent: int) -> None:
+    def begin_with(self, here: Here, sent: int) -> None:
         """Tell that the callback starts with a message sent at ``sent`` (nanoseconds since 1970)."""
-        recorder = self._recorder
         age = max(0, time.time_ns() - sent)
-        recorder.put("taken", now(), self._entity.number, recorder.thread(), sent, age)
+        self._recorder.put("taken", now(), self._entity.number, here.thread, sent, age)
 
     def suspend(self, outer: int) -> None:
         """Tell that the callback leaves the calling thread, on which ``outer`` runs again."""
-        recorder = self._recorder
-        self._come_off(recorder.here, outer)
-        recorder.put("callback_suspend", now(), self._entity.number, recorder.thread())
+        self._leave(self._recorder.here, outer, "callback_suspend")
 
     def resume(self) -> int:
         """Tell that it goes on on the calling thread; returns what ran there until now."""
-        recorder = self._recorder
-        outer = self._enter(recorder.here)
-        recorder.put("callback_resume", now(), self._entity.number, recorder.thread())
+        here = self._recorder.here
+        outer = self._enter(here)
+        self._recorder.put("callback_resume", now(), self._entity.number, here.thread)
         return outer
 
     def _enter(self, here: Here) -> int:
@@ -177,25 +182,24 @@ class Calls:
         entity = self._entity
         if entity.wait is not None:
             entity.waits_no_more(self._recorder)
+        thread = here.thread or self._recorder.thread()
         outer, here.entity = here.entity, entity.number
         if outer == 0 and here.spinner is not None:
-            here.spinner.busy[here.thread or self._recorder.thread()] = entity.number
+            here.spinner.busy[thread] = entity.number
         return outer
 
-    def _leave(self, here: Here, outer: int) -> None:
-        self._come_off(here, outer)
-        recorder = self._recorder
-        recorder.put("callback_end", now(), self._entity.number, here.thread or recorder.thread())
-
-    def _come_off(self, here: Here, outer: int) -> None:
+    def _leave(self, here: Here, outer: int, tag: str = "callback_end") -> None:
         here.entity = outer
         if outer == 0 and here.spinner is not None:
             here.spinner.busy.pop(here.thread, None)
+        self._recorder.put(tag, now(), self._entity.number, here.thread)
 
     def _fail(self, error: BaseException) -> None:
+        """Tell of an exception that is raised again."""
         recorder = self._recorder
         place, exception = raised_at(error), type(error).__name__
         recorder.put("callback_error", now(), self._entity.number, recorder.thread(), *place, exception)
+        leave_out_probe(error)
 
 
 def raised_at(error: BaseException) -> tuple[str, str, int]:

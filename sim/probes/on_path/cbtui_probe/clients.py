@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from .callbacks import Calls
 from .entities import state_of
 from .recorder import now
+from .unseen import UNSEEN
 
 if TYPE_CHECKING:
     from .recorder import Recorder
@@ -34,17 +35,19 @@ def watch_clients(recorder: Recorder, client_class: Any) -> None:
     def call_async(client: Any, request: Any) -> Any:
         entity = state_of(client)
         if entity is None:
-            return send(client, request)
+            with UNSEEN:
+                return send(client, request)
         here, service = recorder.here, client.service_name
         call, began, before = recorder.new_id(), now(), time.time_ns()
-        future = send(client, request)
+        with UNSEEN:
+            future = send(client, request)
         after = time.time_ns()
         recorder.put("called", began, call, service, here.entity, _text_of(request), before, after)
         if here.blocks:
             here.blocks = call
             recorder.put("blocked", now(), call, recorder.thread(), here.entity, service)
         calls = Calls(recorder, entity)
-        take = calls.traced(future.set_result, lambda _response: calls.begin(call))
+        take = calls.traced(future.set_result, lambda here, _response: calls.begin(here, call))
 
         def set_result(response: Any) -> None:
             recorder.put("service_reply", now(), call, service, _text_of(response))
@@ -56,11 +59,13 @@ def watch_clients(recorder: Recorder, client_class: Any) -> None:
     @wraps(block)
     def call(client: Any, *args: Any, **kwargs: Any) -> Any:
         if state_of(client) is None:
-            return block(client, *args, **kwargs)
+            with UNSEEN:
+                return block(client, *args, **kwargs)
         here = recorder.here
         outer, here.blocks = here.blocks, -1
         try:
-            return block(client, *args, **kwargs)
+            with UNSEEN:
+                return block(client, *args, **kwargs)
         finally:
             if here.blocks > 0:
                 recorder.put("unblocked", now(), here.blocks, recorder.thread())
@@ -88,7 +93,8 @@ def watch_services(recorder: Recorder, service_class: Any, rclpy_implementation:
     @wraps(reply)
     def send_response(service: Any, response: Any, header: Any) -> None:
         began = now()
-        reply(service, response, header)
+        with UNSEEN:
+            reply(service, response, header)
         entity, sent = state_of(service), getattr(header, "source_timestamp", 0)
         if entity is not None and sent:
             recorder.put("replied", began, entity.number, sent, _text_of(response))

@@ -16,6 +16,7 @@ from rclpy.qos import QoSPolicyKind
 
 from .callbacks import Calls, is_own, written_at
 from .recorder import now
+from .unseen import UNSEEN, leave_out_probe
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -103,7 +104,8 @@ class Entities:
 
         @wraps(make_node)
         def init(node: Any, *args: Any, **kwargs: Any) -> None:
-            make_node(node, *args, **kwargs)
+            with UNSEEN:
+                make_node(node, *args, **kwargs)
             entities.node_made(node)
 
         node_class.__init__ = init
@@ -133,22 +135,32 @@ class Entities:
                     recorder.put("notice", now(), "WARN", text, entity, False, kind, problem, _ADVICE)
             here.parameters = {**outer, **own}
             try:
-                return set_all(node, parameters, *args, **kwargs)
+                with UNSEEN:
+                    return set_all(node, parameters, *args, **kwargs)
             finally:
                 here.parameters = outer
 
         node_class._set_parameters_atomically_common = set_known
 
-    def watch_periods(self, timer_class: Any) -> None:
-        """Remember periods that the program changes."""
-        period = timer_class.timer_period_ns
+    def watch_rhythms(self, timer_class: Any) -> None:
+        """Remember periods that the program changes, and forget when a timer was due that it resets."""
+        period, reset = timer_class.timer_period_ns, timer_class.reset
 
         def change(timer: Any, nanoseconds: int) -> None:
-            period.fset(timer, nanoseconds)
+            with UNSEEN:
+                period.fset(timer, nanoseconds)
             if (entity := state_of(timer)) is not None:
                 entity.period = nanoseconds
 
+        @wraps(reset)
+        def reset_known(timer: Any) -> None:
+            if (entity := state_of(timer)) is not None:
+                entity.due = 0
+            with UNSEEN:
+                reset(timer)
+
         timer_class.timer_period_ns = property(period.fget, change, doc=period.__doc__)
+        timer_class.reset = reset_known
 
     def node_made(self, node: Any) -> int:
         """Know a node; returns its id."""
@@ -170,14 +182,18 @@ class Entities:
             try:
                 bound = signature.bind(node, *args, **kwargs)
             except TypeError:
-                return make(node, *args, **kwargs)  # which says so
+                bound = None
+            if bound is None:
+                with UNSEEN:
+                    return make(node, *args, **kwargs)  # which says what is wrong
             entity = Entity("guard" if kind == "guard_condition" else kind)
             callback = bound.arguments.get("callback")
             if self._tuning.has_changes:
                 self._tuning.change(node, kind, _called(node, kind, bound.arguments), bound.arguments)
             if callable(callback):
                 bound.arguments["callback"] = self._traced(entity, callback)
-            made = make(*bound.args, **bound.kwargs)
+            with UNSEEN:
+                made = make(*bound.args, **bound.kwargs)
             self._know(node, made, entity, callback)
             if kind == "subscription":
                 self._watch_matching(made, entity.number, _place(sys._getframe(1)))
@@ -260,7 +276,8 @@ class Entities:
             if entity is not None and recorder.appeared.pop(entity.number, None) is not None:
                 entity.waits_no_more(recorder)
                 recorder.put("entity_gone", now(), entity.number)
-            return destroy(node, thing)
+            with UNSEEN:
+                return destroy(node, thing)
 
         setattr(node_class, f"destroy_{kind}", destroy_known)
 
@@ -269,7 +286,8 @@ class Entities:
 
         @wraps(make)
         def create_publisher(node: Any, *args: Any, **kwargs: Any) -> Any:
-            made = make(node, *args, **kwargs)
+            with UNSEEN:
+                made = make(node, *args, **kwargs)
             if is_own(sys._getframe(1)):
                 setattr(made, STATE, (self.node_made(node), made.topic_name, _place(sys._getframe(1))))
             return made
@@ -283,12 +301,15 @@ class Entities:
         @wraps(publish)
         def publish_known(publisher: Any, msg: Any) -> None:
             known = state_of(publisher)
-            if known is None:
+            began, before = now(), time.time_ns()
+            try:
                 publish(publisher, msg)
+            except BaseException as error:
+                leave_out_probe(error)
+                raise
+            if known is None:
                 return
             node, topic, _ = known
-            began, before = now(), time.time_ns()
-            publish(publisher, msg)
             entity = recorder.here.entity
             recorder.put("sent", began, recorder.new_id(), topic, node, entity, before, time.time_ns())
 

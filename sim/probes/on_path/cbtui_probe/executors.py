@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from .callbacks import is_own
 from .entities import STATE, state_of
 from .recorder import now
+from .unseen import UNSEEN, leave_out_probe
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -87,6 +88,9 @@ class Executors:
             spinner.waits = True
             try:
                 return wait(executor, *args, **kwargs)
+            except BaseException as error:
+                leave_out_probe(error)
+                raise
             finally:
                 spinner.waits = False
                 spinner.spun_at = now()
@@ -101,7 +105,8 @@ class Executors:
                 recorder.put(
                     "spin_clash", now(), recorder.here.entity, state_of(node) or 0, *_call_into_rclpy()
                 )
-            return add(executor, node)
+            with UNSEEN:
+                return add(executor, node)
 
         base.__init__ = init
         base.add_node = add_node
@@ -138,7 +143,8 @@ class Executors:
             outer, here.spinner = here.spinner, spinner
             spinner.spins += 1
             try:
-                return spin(*args, **kwargs)
+                with UNSEEN:
+                    return spin(*args, **kwargs)
             finally:
                 spinner.spins -= 1
                 spinner.spun_at = now()

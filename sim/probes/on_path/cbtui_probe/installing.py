@@ -13,6 +13,7 @@ from .positions import Positions
 from .recorder import Recorder, now
 from .sockets import Server
 from .tuning import Tuning
+from .unseen import leave_out_probe
 from .waits import Waits
 
 _SEVERITIES = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
@@ -46,7 +47,7 @@ def install(folder: str) -> None:
     server.start(folder)
     executors.watch(rclpy, rclpy_implementation)
     entities.watch(rclpy.node.Node)
-    entities.watch_periods(rclpy.timer.Timer)
+    entities.watch_rhythms(rclpy.timer.Timer)
     entities.watch_publishing(rclpy.publisher.Publisher)
     watch_clients(recorder, rclpy.client.Client)
     watch_services(recorder, rclpy.service.Service, rclpy_implementation)
@@ -68,9 +69,10 @@ def _watch_log(recorder: Recorder, rclpy_implementation: Any) -> None:
 def _watch_end(recorder: Recorder) -> None:
     report = sys.excepthook
 
-    def report_known(kind: Any, error: Any, trace: Any) -> None:
+    def report_known(kind: Any, error: Any, _trace: Any) -> None:
         if not issubclass(kind, KeyboardInterrupt):
             recorder.put("uncaught", now(), *raised_at(error))
-        report(kind, error, trace)
+        leave_out_probe(error)
+        report(kind, error, error.__traceback__)
 
     sys.excepthook = report_known

@@ -9,6 +9,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from typing import TYPE_CHECKING, Any
 
 from . import FOLDER
+from .unseen import UNSEEN
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,7 +53,8 @@ class _ProbedLoader(Loader):
 
     def exec_module(self, module: ModuleType) -> None:
         """Run the module, and put the probe in place."""
-        self._loader.exec_module(module)
+        with UNSEEN:
+            self._loader.exec_module(module)
         try:
             from .installing import install
 
