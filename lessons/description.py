@@ -34,6 +34,8 @@ class Setup(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The argument that carries the number of threads; None when the node fixes its executor itself."""
     distro: str = ""
     """The release of rclpy that it is about, as `--distro` takes it; empty for the usual one."""
+    not_on_ros2: str = ""
+    """Why a run on real ROS 2 may not show the answers, as the end of a sentence; empty if it does."""
     clock: Literal["virtual", "real"] = "virtual"
     """Which time the node runs on. On virtual time computing takes none; what is about that needs the real
     clock, with checks and answers that come out alike on a machine that is busy otherwise."""

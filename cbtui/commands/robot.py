@@ -59,7 +59,7 @@ def robot(options: argparse.Namespace) -> int:
     say(f"a robot is on ROS domain {domain}; ctrl+c ends it\n")
     say(f"topics and services: {topics}, /cmd_vel, /reset_world, /motor_power\n")
     if tf is None:
-        say("there is no /tf: tf2_msgs is not installed\n")
+        say("there is no /tf: that takes tf2_msgs, which no wheel has, but a sourced ROS 2 does\n")
     status = _Status()
     drive(status.take, options.rate, tf, changes.physics_of(options))
     status.end()

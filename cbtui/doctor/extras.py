@@ -62,7 +62,8 @@ def ros(environment: Mapping[str, str]) -> Iterator[Examination]:
         )
     elif spec is not None:
         place = Path(spec.origin).parent if spec.origin else "this Python's path"
-        yield well("ROS 2", f"a real rclpy lies in {place}; --on ros2 runs programs on it")
+        less = "" if find_spec("tf2_msgs") else "; it has no tf2_msgs, so cbtui robot has no /tf"
+        yield well("ROS 2", f"a real rclpy lies in {place}; --on ros2 runs programs on it{less}")
     elif distribution:
         yield well(
             "ROS 2",

@@ -53,7 +53,8 @@ class OutcomeRun:
         try:
             return self._outcome()
         except BadLesson as error:
-            return PredictionOutcome(trouble=str(error))
+            excuse = "" if self._real is None else self._lesson.setup.not_on_ros2
+            return PredictionOutcome(trouble=excuse or str(error))
         except OSError as error:
             return PredictionOutcome(trouble=f"the engine could not be started: {error.strerror or error}")
         finally:

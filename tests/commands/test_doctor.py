@@ -329,6 +329,7 @@ def test_doctor_says_which_real_ros_there_is(tmp_path: Path, monkeypatch: pytest
     [found] = ros({"ROS_DISTRO": "jazzy"})
     assert found.sign is Sign.WELL
     assert str(tmp_path / "rclpy") in found.what
+    assert "cbtui robot has no /tf" in found.what
 
 
 def test_wheels_of_two_distributions_in_one_python_are_named(

@@ -184,6 +184,32 @@ class Tried(Node):
     def done(self, future):
         self.get_logger().info("counted")
 """
+WAITS_IN_THE_EVENT_QUEUE = """
+from rclpy.experimental import EventsExecutor
+
+class Looping:
+    def __init__(self):
+        self.executor = EventsExecutor()
+        self.add_node = self.executor.add_node
+
+    def spin(self):
+        while rclpy.ok():
+            self.executor.spin_once(timeout_sec=0.1)
+
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.publisher = self.create_publisher(String, "news", 10)
+        self.create_subscription(String, "news", self.hear, 10)
+        self.create_timer(0.5, self.tell)
+
+    def tell(self):
+        self.publisher.publish(String(data="x"))
+        time.sleep(0.4)
+
+    def hear(self, message):
+        pass
+"""
 ALWAYS_DUE = """
 class Tried(Node):
     def __init__(self):

@@ -181,3 +181,10 @@ def test_a_timer_without_a_period_is_watched_as_any_other(tmp_path: Path) -> Non
     assert ran.timeline.ended is not None
     assert not ran.timeline.ended.failed
     assert sum(isinstance(event, CallbackStarted) for event in ran.events) > 5
+
+
+def test_what_waits_behind_a_callback_of_an_events_executor_is_seen(tmp_path: Path) -> None:
+    timeline = programs.run(tmp_path, programs.WAITS_IN_THE_EVENT_QUEUE, "Looping()", seconds=2.0).timeline
+    [first, *_] = timeline.waits_of(entity_named("hear", timeline), whole(timeline))
+    assert first.reason is Reason.EVENT_QUEUE
+    assert first.holder == entity_named("tell", timeline)
