@@ -1,8 +1,9 @@
 """What differs between releases of rclpy, each as a named behaviour with its source.
 
 A profile is a distribution of ROS 2 at a patch of rclpy. ``#1469`` and the like are pull requests and issues
-of ros2/rclpy; the notes of its releases tell which patch has them. Jazzy 7.1.6 and Kilted 9.1.2 were
-run, too: ``tests/ros/profiles`` has a program for each behaviour in which they differ. Humble and Lyrical
+of ros2/rclpy; the notes of its releases tell which patch has them. Jazzy 7.1.5 and Kilted 9.1.2 were
+run, too: ``tests/ros/profiles`` has a program for each behaviour in which they differ. (Jazzy's wheels call
+themselves 7.1.6; their rclpy says 7.1.5, and has nothing of what the notes of 7.1.6 list.) Humble and Lyrical
 follow source and release notes alone.
 
 Known, but not modelled: before #1469 a callback that waits for a worker is handed over again whenever the
@@ -14,7 +15,7 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass
 
-DISTROS = {"humble": "3.3.22", "jazzy": "7.1.9", "kilted": "9.1.2", "lyrical": ""}
+DISTROS = {"humble": "3.3.22", "jazzy": "7.1.12", "kilted": "9.1.2", "lyrical": ""}
 """The distributions, and the patch that is meant where none is named; those of Lyrical are not known."""
 
 
@@ -142,11 +143,12 @@ class Profile:
 
     @property
     def skips_cancelled_timers(self) -> bool:
-        """A timer that is cancelled while its call waits for a worker is not called; else ``spin`` raises.
+        """A timer that is cancelled while its call waits for a worker is not called.
 
-        Source: run on both; Jazzy's executors know no ``TimerCancelledError``.
+        Else ``spin`` raises, the timer is never called again, and its group stays held.
+        Source: #1488 and its backports, of which Humble's is placed by its date; run before and after it.
         """
-        return self._since(kilted="", lyrical="")
+        return self._since(humble="3.3.18", jazzy="7.1.6", kilted="", lyrical="")
 
 
 def _numbers(patch: str) -> tuple[int, ...]:

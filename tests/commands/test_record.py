@@ -10,6 +10,7 @@ from rosbags.highlevel import AnyReader
 from cbtui import cli
 from cbtui.runs.recorded.recording_file import CannotRecordError, setup_of, start_recording
 from sim.engine.setup import RunSetup, TimedCall
+from sim.profiles import Profile
 from sim.recording import RecordingMetadata, read
 from tests.recording.files import write
 from tests.support.daily import first_row_daily
@@ -46,7 +47,7 @@ def test_info_tells_what_is_in_a_recording(recorded: Path, capsys: pytest.Captur
     told = capsys.readouterr()
     labels = {line.split()[0]: line for line in told.out.splitlines()}
     assert labels["run"] == "run        exclusive-2-threads, virtual clock"
-    assert labels["like"] == "like       rclpy of jazzy@7.1.9"
+    assert labels["like"] == f"like       rclpy of {Profile()}"
     assert labels["program"].endswith("node.py, with its source")
     assert labels["lasts"] == "lasts      5.000 s; its time was up"
     assert told.err == ""

@@ -6,7 +6,7 @@ from collections import Counter
 from pathlib import Path
 
 from cbtui.commands.options.changes import release_of
-from tests.conformance.comparing import Outcome, Result, cases, compared
+from tests.conformance.comparing import DIFFERENT, Outcome, Result, cases, compared
 from tests.conformance.programs import program
 from tests.conformance.recorded import record
 from tests.conformance.shrinking import shrunk
@@ -24,6 +24,9 @@ def main() -> None:
     )
     parser.add_argument("--shrink", action="store_true", help="find the smallest system that still differs")
     parser.add_argument("--repeats", type=int, default=4, help="real runs before a difference is believed")
+    parser.add_argument(
+        "--orders", type=int, default=40, help="other orders of the model's threads to look in"
+    )
     parser.add_argument("--record", type=int, default=0, help="keep so many for the daily suite")
     parser.add_argument("--keep", type=Path, help="a folder for the programs that differ")
     options = parser.parse_args()
@@ -36,22 +39,25 @@ def main() -> None:
             f"{distro}: {len(given)} systems, {sum(len(case.model.words) for case in given)} lines",
             flush=True,
         )
-        results = compared(given, python, options.at_once, options.repeats)
+        results = compared(given, python, distro, options.at_once, options.repeats, options.orders)
         for outcome, number in Counter(result.outcome for result in results).most_common():
             print(f"{number:5} {outcome.value}", flush=True)
         if options.record:
             same = [each for each in results if each.outcome is Outcome.SAME]
             record(distro, same[: options.record])
         for each in results:
-            if each.outcome is not Outcome.SAME:
+            if each.outcome not in (Outcome.SAME, Outcome.REACHED):
                 wrong += 1
-                shrinks = options.shrink and each.outcome in (Outcome.ORDER, Outcome.TIMES)
-                result = shrunk(each, python, distro, options.at_once, options.repeats) if shrinks else each
+                result = each
+                if options.shrink and each.outcome in DIFFERENT:
+                    result = shrunk(each, python, distro, options.at_once, options.repeats, options.orders)
                 _tell(result)
                 if options.keep:
                     options.keep.mkdir(parents=True, exist_ok=True)
                     file = options.keep / f"{distro}-{result.case.seed}.py"
                     file.write_text(program(result.case.system))
+            elif each.outcome is Outcome.REACHED:
+                print(f"  {each.case.seed}: {each.outcome.value}")
     sys.exit(bool(wrong))
 
 

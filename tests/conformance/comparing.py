@@ -1,13 +1,14 @@
 """Whether real ROS 2 goes as the model: systems that are decided, run on both as often as it takes."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from enum import Enum
 from typing import NamedTuple
 
+from tests.conformance.drawing import drawn
 from tests.conformance.programs import program
 from tests.conformance.running import Said, run_all
-from tests.conformance.systems import System, drawn
+from tests.conformance.systems import System
 
 GAP = 0.05
 """Seconds that any two moments of a system are apart."""
@@ -25,10 +26,15 @@ class Outcome(Enum):
     """What comes of comparing a system."""
 
     SAME = "the same"
+    REACHED = "the same, in another order of threads"
+    """The model reaches it, though not with the order that it takes unless it is asked for others."""
     ORDER = "other lines, or in another order"
     TIMES = "at other times"
     BUSY = "not known, for the machine was too busy"
     SILENT = "said nothing"
+
+
+DIFFERENT = (Outcome.ORDER, Outcome.TIMES)
 
 
 class Case(NamedTuple):
@@ -79,9 +85,9 @@ def _until(said: Said, end: float) -> Said:
     return Said(said.words[:number], said.times[:number], said.moments)
 
 
-def on_model(systems: Iterable[System], distro: str) -> list[Said | None]:
-    """What the model says of systems."""
-    return list(run_all(map(program, systems), None, 12, distro))
+def on_model(systems: Iterable[System], distro: str, order: int | None = None) -> list[Said | None]:
+    """What the model says of systems, with its usual order of threads, or with that of a seed."""
+    return list(run_all(map(program, systems), None, 12, distro, order))
 
 
 def _decided_until(said: Said, end: float, gap: float) -> float:
@@ -92,10 +98,13 @@ def _decided_until(said: Said, end: float, gap: float) -> float:
     return end
 
 
-def compared(given: Iterable[Case], python: str, at_once: int, repeats: int) -> list[Result]:
+def compared(
+    given: Iterable[Case], python: str, distro: str, at_once: int, repeats: int, orders: int
+) -> list[Result]:
     """Run each until it goes as on the model, or ``repeats`` runs that the machine had time for did not.
 
-    Where the machine is too busy, three times as many runs are made at most.
+    Where the machine is too busy, three times as many runs are made at most. What differs is looked for
+    among ``orders`` other orders of the model's threads.
     """
     left = list(given)
     real: dict[Case, list[Said | None]] = {case: [] for case in left}
@@ -106,10 +115,30 @@ def compared(given: Iterable[Case], python: str, at_once: int, repeats: int) -> 
         left = [case for case in left if not _is_settled(case, real[case], repeats)]
         if not left:
             break
+    outcomes = {case: outcome(case, runs) for case, runs in real.items()}
+    outcomes |= dict.fromkeys(_reached(real, outcomes, distro, orders), Outcome.REACHED)
     return [
-        Result(case, outcome(case, runs), tuple(said for said in runs if said is not None))
+        Result(case, outcomes[case], tuple(said for said in runs if said is not None))
         for case, runs in real.items()
     ]
+
+
+def _reached(
+    real: Mapping[Case, list[Said | None]], outcomes: Mapping[Case, Outcome], distro: str, orders: int
+) -> list[Case]:
+    """The cases that differ, unless the model's threads run in one of so many other orders."""
+    left = [case for case, came in outcomes.items() if came in DIFFERENT]
+    reached = []
+    for order in range(orders):
+        said = on_model([case.system for case in left], distro, order)
+        found = [
+            case
+            for case, model in zip(left, said, strict=True)
+            if model is not None and outcome(case._replace(model=model), real[case]) is Outcome.SAME
+        ]
+        reached += found
+        left = [case for case in left if case not in found]
+    return reached
 
 
 def _is_settled(case: Case, runs: list[Said | None], repeats: int) -> bool:

@@ -1,19 +1,21 @@
 """The plain rclpy programs that systems are."""
 
-from tests.conformance.systems import Callback, System
+from tests.conformance.systems import EVENTS, FUTURES, WORDS, Callback, System
 
 _HEAD = """
 import os, threading, time, warnings
 import rclpy
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
+from rclpy.task import Future
 from std_msgs.msg import Int32
 from std_srvs.srv import Trigger
 
 warnings.simplefilter("ignore")
 rclpy.init()
-said, calls, sent = [], {}, {}
+said, calls, sent, there, timers, clients, goals, unanswered = [], {}, {}, {}, [], {}, {}, {}
 
 def say(what):
     said.append((time.monotonic() - began, what))
@@ -26,19 +28,92 @@ def publish(topic):
     sent[topic] = sent.get(topic, 0) + 1
     publishers[topic].publish(Int32(data=sent[topic]))
 
-def request(client, place):
-    number = called(place)
-    say(f"{place} #{number} asks")
-    future = client.call_async(Trigger.Request())
-    future.add_done_callback(lambda done: say(f"{place} #{number} got {done.result().message}"))
+def ask_for(name, number, how):
+    say(f"{name} #{number} {how}")
+    unanswered[name] = unanswered.get(name, 0) + 1
 
-def request_in_task(node, client, place):
-    number = called(place)
-    async def ask():
-        say(f"{place} #{number} awaits")
-        response = await client.call_async(Trigger.Request())
-        say(f"{place} #{number} goes on with {response.message}")
-    node.executor.create_task(ask)
+def answered(name, number, how, response):
+    unanswered[name] -= 1
+    say(f"{name} #{number} {how} {response.message}")
+
+def request(name):
+    number = called(name)
+    ask_for(name, number, "asks")
+    future = clients[name].call_async(Trigger.Request())
+    future.add_done_callback(lambda done: answered(name, number, "got", done.result()))
+
+async def ask(name, number):
+    ask_for(name, number, "awaits")
+    answered(name, number, "goes on with", await clients[name].call_async(Trigger.Request()))
+
+def call(name, patience):
+    number = called(name)
+    ask_for(name, number, "calls")
+    try:
+        response = clients[name].call(Trigger.Request(), timeout_sec=patience)
+    except TimeoutError:
+        response = None  # as on Jazzy
+    if response is None:
+        say(f"{name} #{number} gives up")
+    else:
+        answered(name, number, "comes back with", response)
+
+async def wait(future, name, number):
+    say(f"{name} #{number} waits")
+    await futures[future]
+    say(f"{name} #{number} goes on")
+
+def give(place):
+    future, futures[place] = futures[place], Future()
+    future.set_result(None)
+
+def make(place):
+    if place not in there:
+        there[place] = entity = makers[place]()
+        if hasattr(entity, "reset"):
+            timers.append(entity)
+            entity.reset()
+        settle()
+
+def destroy(place):
+    entity = there.pop(place, None)
+    if entity is not None:
+        if entity in timers:
+            timers.remove(entity)
+        destroyers[place](entity)
+
+def tell(place, what):
+    if place in there:
+        getattr(there[place], what)()
+
+def renew(name):
+    if unanswered.get(name):
+        return  # Fast DDS keeps who answers a client that is gone for 0.1 s
+    node, service, group = asked[name]
+    former = clients.pop(name, None)
+    if former is not None:
+        node.destroy_client(former)
+    clients[name] = node.create_client(Trigger, f"s{service}", callback_group=group)
+    settle()
+
+def send_goal(name):
+    number = called(name)
+    say(f"{name} #{number} sends")
+    def accepted(done):
+        goals[name] = done.result()
+        say(f"{name} #{number} is accepted")
+        goals[name].get_result_async().add_done_callback(ended)
+    def ended(done):
+        say(f"{name} #{number} ends as {done.result().status}")
+    def heard(message):
+        say(f"{name} #{number} hears {message.feedback.sequence[0]}")
+    actions[name].send_goal_async(Fibonacci.Goal(), feedback_callback=heard).add_done_callback(accepted)
+
+def recall(name):
+    if name in goals:
+        say(f"{name} recalls")
+        answer = goals[name].cancel_goal_async()
+        answer.add_done_callback(lambda done: say(f"{name} {len(done.result().goals_canceling)} recalled"))
 
 def make_task(node, place):
     number = called(place)
@@ -48,13 +123,28 @@ def spin(executor, name):
     told = []
     while rclpy.ok():
         try:
-            executor.spin()
+            if isinstance(executor, (SingleThreadedExecutor, MultiThreadedExecutor)):
+                executor.spin()
+            else:  # whose spin() never wakes on the wheels
+                executor.spin_until_future_complete(Future(), 100)
         except Exception as error:
-            if error not in told:  # 7.1.6 and 9.1.2 raise one as often as they handed its callback over
-                say(f"{name} raised {error}")
+            if error not in told:  # 7.1.5 and 9.1.2 raise one as often as they handed its callback over
+                say(f"{name} raised {error if isinstance(error, ValueError) else type(error).__name__}")
                 told.append(error)
         else:
             return
+
+def settle():
+    # Whatever was made has to be known to the others.
+    def is_settled():
+        for topic, publisher in publishers.items():
+            if publisher.get_subscription_count() < sum(place in there for place in heard[topic]):
+                return False
+        if not all(action.server_is_ready() for action in actions.values()):
+            return False
+        return all(clients[name].service_is_ready() or asked[name][1] not in there for name in clients)
+    while not is_settled():
+        time.sleep(0.001)
 
 class Placed(Node):
     # Executors keep nodes in a set; small numbers as hashes give it an order.
@@ -65,13 +155,20 @@ class Placed(Node):
     def __hash__(self):
         return self.place
 """
+_ACTIONS = """
+from rclpy.action import ActionClient, ActionServer, CancelResponse
+from test_msgs.action import Fibonacci
+"""
 _TAIL = """
-while not all(p.get_subscription_count() >= heard[t] for t, p in publishers.items()):
-    time.sleep(0.01)
-for client in clients:
-    client.wait_for_service()
+for place, maker in makers.items():
+    if place not in missing:
+        there[place] = maker()
+for name in asked:
+    renew(name)
+settle()
 time.sleep(0.1)
 began = time.monotonic()
+timers += [entity for entity in there.values() if hasattr(entity, "reset")]
 for timer in timers:
     timer.reset()
 for name, executor in executors.items():
@@ -84,33 +181,75 @@ late = max((late for at, late in globals().get("late", ()) if at > began), defau
 print(*lines, "moments", *moments, f"late {{late:.6f}}", sep="\\n", flush=True)
 os._exit(0)
 """
+_EXECUTORS = {0: "SingleThreadedExecutor()", EVENTS: "EventsExecutor()"}
+_GROUPS = {
+    "default": "None",
+    "exclusive": "MutuallyExclusiveCallbackGroup()",
+    "reentrant": "ReentrantCallbackGroup()",
+}
+_STEPS = {
+    "sleep": "time.sleep({what:.6f})",
+    "publish": 'publish("t{what:.0f}")',
+    "ask": 'request("client_{place}_{what:.0f}")',
+    "await": 'await ask("client_{place}_{what:.0f}", called("client_{place}_{what:.0f}"))',
+    "call": 'call("client_{place}_{what:.0f}", {patience:.6f})',
+    "renew": 'renew("client_{place}_{what:.0f}")',
+    "task": 'make_task(n{node}, "task_{place}")',
+    "wait": 'await wait({what:.0f}, "wait_{place}", called("wait_{place}"))',
+    "give": "give({what:.0f})",
+    "trigger": 'tell({what:.0f}, "trigger")',
+    "cancel": 'tell({what:.0f}, "cancel")',
+    "reset": 'tell({what:.0f}, "reset")',
+    "make": "make({what:.0f})",
+    "destroy": "destroy({what:.0f})",
+    "goal": 'send_goal("goal_{place}_{what:.0f}")',
+    "recall": 'recall("goal_{place}_{what:.0f}")',
+    "feedback": "goal.publish_feedback(Fibonacci.Feedback(sequence=[number]))",
+    "raise": 'raise ValueError("on purpose")',
+}
+_MAKERS = {
+    "timer": "create_timer({about:.6f}, {name}, {group}, autostart=False)",
+    "subscription": 'create_subscription(Int32, "t{about:.0f}", {name}, {depth}, {group})',
+    "service": 'create_service(Trigger, "s{about:.0f}", {name}, {group})',
+    "guard": "create_guard_condition({name}, {group})",
+}
+_ACTION_SERVER = (
+    'ActionServer(n{node}, Fibonacci, "a{place}", {name}, cancel_callback=lambda _: CancelResponse.ACCEPT, '
+    "{group})"
+)
+_PARAMETERS = {"subscription": "message", "service": "_, response", "action": "goal"}
+_LAST = {
+    "service": ["response.message = str(number)", "return response"],
+    "action": [
+        "goal.canceled() if goal.is_cancel_requested else goal.succeed()",
+        "return Fibonacci.Result()",
+    ],
+}
 
 
 def program(system: System) -> str:
     """The program that a system is."""
     lines = [_HEAD]
+    if any(each.kind == "action" for each in system.callbacks):
+        lines.append(_ACTIONS)
+    lines.append(f"futures = [Future() for _ in range({FUTURES})]")
     for place, threads in enumerate(system.executors):
-        kind = f"MultiThreadedExecutor({threads})" if threads else "SingleThreadedExecutor()"
-        lines.append(f"e{place} = {kind}")
+        lines.append(f"e{place} = {_EXECUTORS.get(threads, f'MultiThreadedExecutor({threads})')}")
     named = ", ".join(f'"e{place}": e{place}' for place in range(len(system.executors)))
     lines.append(f"executors = {{{named}}}")
     for place, executor in enumerate(system.nodes):
         lines += [f"n{place} = Placed({place})", f"e{executor}.add_node(n{place})"]
-    for place, group in enumerate(system.groups):
-        made = {"default": "None", "exclusive": "MutuallyExclusiveCallbackGroup()"}
-        lines.append(f"g{place} = {made.get(group, 'ReentrantCallbackGroup()')}")
+    lines += [f"g{place} = {_GROUPS[group]}" for place, group in enumerate(system.groups)]
     for each in system.callbacks:
         lines += _callback(each)
-    lines += _entities(system)
-    return "\n".join(lines) + _TAIL.format(end=system.end)
+    return "\n".join([*lines, *_entities(system)]) + _TAIL.format(end=system.end)
 
 
 def _callback(each: Callback) -> list[str]:
     name = f"{each.kind}_{each.place}"
-    about = {"subscription": "message", "service": "_, response"}.get(each.kind, "")
     got = " takes {message.data}" if each.kind == "subscription" else ""
     lines = [
-        f"def {name}({about}):",
+        f"{'async ' if each.is_coroutine else ''}def {name}({_PARAMETERS.get(each.kind, '')}):",
         f'    number = called("{name}")',
         f'    say(f"{name} #{{number}} begins{got}")',
     ]
@@ -118,54 +257,46 @@ def _callback(each: Callback) -> list[str]:
         written = [f"        {_written(each, word, what)}" for word, what in steps]
         lines += [f"    if number == {number}:", *(written or ["        pass"])]
     lines.append(f'    say(f"{name} #{{number}} ends")')
-    if each.kind == "service":
-        lines += ["    response.message = str(number)", "    return response"]
-    return lines
+    return [*lines, *(f"    {line}" for line in _LAST.get(each.kind, ()))]
 
 
 def _written(callback: Callback, word: str, what: float) -> str:
-    place, node = callback.place, f"n{callback.node}"
-    return {
-        "sleep": f"time.sleep({what:.6f})",
-        "publish": f'publish("t{what:.0f}")',
-        "ask": f'request(c{place}_{what:.0f}, "client_{place}_{what:.0f}")',
-        "await": f'request_in_task({node}, c{place}_{what:.0f}, "client_{place}_{what:.0f}")',
-        "task": f'make_task({node}, "task_{place}")',
-        "trigger": f"x{what:.0f}.trigger()",
-        "cancel": f"x{what:.0f}.cancel()",
-        "reset": f"x{what:.0f}.reset()",
-        "raise": 'raise ValueError("on purpose")',
-    }[word]
+    step = _STEPS[word].format(**vars(callback), what=what)
+    if step.startswith("await ") and not callback.is_coroutine:
+        return f"n{callback.node}.executor.create_task({step.removeprefix('await ')})"
+    return step
 
 
 def _entities(system: System) -> list[str]:
-    heard: dict[str, int] = {}
-    lines, timers, clients = [], [], []
+    heard: dict[str, list[int]] = {}
+    makers, destroyers, clients, actions = [], [], [], []
     for each in system.callbacks:
-        place, group = each.place, f"callback_group=g{each.group}"
-        made = {
-            "timer": f"create_timer({each.about:.6f}, timer_{place}, {group}, autostart=False)",
-            "subscription": (
-                f'create_subscription(Int32, "t{each.about:.0f}", subscription_{place}, {each.depth}, '
-                f"{group})"
-            ),
-            "service": (f'create_service(Trigger, "s{each.about:.0f}", service_{place}, {group})'),
-            "guard": f"create_guard_condition(guard_{place}, {group})",
-        }
-        lines.append(f"x{place} = n{each.node}.{made[each.kind]}")
-        if each.kind == "timer":
-            timers.append(f"x{place}")
+        group = f"callback_group=g{each.group}"
+        written = {**vars(each), "name": f"{each.kind}_{each.place}", "group": group}
+        if each.kind == "action":
+            made = _ACTION_SERVER.format(**written)
+        else:
+            made = f"n{each.node}.{_MAKERS[each.kind].format(**written)}"
+        makers.append(f"{each.place}: lambda: {made}")
+        destroyers.append(f"{each.place}: getattr(n{each.node}, 'destroy_{each.kind}', None)")
         if each.kind == "subscription":
-            heard[f"t{each.about:.0f}"] = heard.get(f"t{each.about:.0f}", 0) + 1
-        asked = {int(what) for steps in each.calls for word, what in steps if word in ("ask", "await")}
-        for service in sorted(asked):
-            clients.append(f"c{place}_{service}")
-            lines.append(f'{clients[-1]} = n{each.node}.create_client(Trigger, "s{service}", {group})')
+            heard.setdefault(f"t{each.about:.0f}", []).append(each.place)
+        about = {(word, int(what)) for steps in each.calls for word, what in steps}
+        clients += [
+            f'"client_{each.place}_{service}": (n{each.node}, {service}, g{each.group})'
+            for service in sorted({what for word, what in about if "service" in WORDS[word].about[:1]})
+        ]
+        actions += [
+            f'"goal_{each.place}_{server}": ActionClient(n{each.node}, Fibonacci, "a{server}", {group})'
+            for server in sorted({what for word, what in about if word in ("goal", "recall")})
+        ]
     publishers = ", ".join(f'"{topic}": n0.create_publisher(Int32, "{topic}", 10)' for topic in heard)
     return [
-        *lines,
+        f"missing = {[each.place for each in system.callbacks if each.is_late]}",
         f"heard = {heard}",
         f"publishers = {{{publishers}}}",
-        f"timers = [{', '.join(timers)}]",
-        f"clients = [{', '.join(clients)}]",
+        f"actions = {{{', '.join(actions)}}}",
+        f"makers = {{{', '.join(makers)}}}",
+        f"destroyers = {{{', '.join(destroyers)}}}",
+        f"asked = {{{', '.join(clients)}}}",
     ]

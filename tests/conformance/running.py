@@ -24,11 +24,12 @@ class Said(NamedTuple):
 
 
 def run_all(
-    programs: Iterable[str], python: str | None, at_once: int, model_of: str = ""
+    programs: Iterable[str], python: str | None, at_once: int, model_of: str = "", order: int | None = None
 ) -> Iterator[Said | None]:
     """Run programs on the ROS 2 of an interpreter, or on the model (None); None for one that said nothing.
 
-    ``model_of`` is the distro whose named behaviours the model has.
+    ``model_of`` is the distro whose named behaviours the model has, ``order`` the seed of the order of its
+    threads (None: first come, first served).
     """
     sources = list(programs)
     domain, claim = claimed_domain()
@@ -39,15 +40,17 @@ def run_all(
     }
     executable = python or sys.executable
     environment = {**unbootstrapped(executable), **alone}
+    arguments = ["model", model_of, *([] if order is None else [str(order)])]
     if python is None:
         environment["PYTHONPATH"] = str(Path(__file__).parents[2])
     else:
         environment.pop("PYTHONPATH")
     with claim, tempfile.TemporaryDirectory() as folder:
         process = subprocess.Popen(
-            [executable, copies.__file__, *(["model", model_of] if python is None else [])],
+            [executable, copies.__file__, *(arguments if python is None else [])],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,  # for what is raised on purpose
             text=True,
             env=environment,
         )

@@ -1,11 +1,48 @@
-"""Systems of nodes, drawn by a seed, and what is smaller than one of them."""
+"""Systems of nodes, and what is smaller than one of them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from random import Random
+from typing import NamedTuple
 
 Step = tuple[str, float]
 """A word, and what it is about: seconds, a topic, the place of another entity."""
+EVENTS = -1
+"""Stands for an EventsExecutor among the threads of executors."""
+FUTURES = 2
+"""How many futures the callbacks of a system share."""
+
+
+class Word(NamedTuple):
+    """What a step can be: how often it is drawn, and the kinds of callbacks that it can be about."""
+
+    weight: int
+    about: tuple[str, ...] = ()
+    theme: str = ""
+    """What a system has to be about for the step to be drawn; "" for any."""
+
+
+MADE = ("timer", "subscription", "service")
+WORDS = {
+    "sleep": Word(6),
+    "publish": Word(5, ("subscription",)),
+    "ask": Word(2, ("service",)),
+    "await": Word(2, ("service",)),
+    "task": Word(2),
+    "trigger": Word(2, ("guard",)),
+    "cancel": Word(1, ("timer",)),
+    "reset": Word(1, ("timer",)),
+    "raise": Word(0),
+    "wait": Word(2, theme="coroutines"),
+    "give": Word(2, theme="coroutines"),
+    "call": Word(3, ("service",), "calls"),
+    "make": Word(2, MADE, "lives"),
+    "destroy": Word(1, MADE, "lives"),
+    "renew": Word(1, ("service",), "lives"),
+    "goal": Word(3, ("action",), "actions"),
+    "recall": Word(1, ("action",), "actions"),
+    "feedback": Word(0, ("action",), "actions"),
+}
+THEMES = tuple(dict.fromkeys(word.theme for word in WORDS.values() if word.theme))
 
 
 @dataclass(frozen=True)
@@ -20,6 +57,11 @@ class Callback:
     """A timer's period in seconds; a subscription's topic; the service of a server."""
     depth: int
     calls: tuple[tuple[Step, ...], ...]
+    is_coroutine: bool = False
+    is_late: bool = False
+    """Whether it is not there until a step makes it."""
+    patience: float = 0.3
+    """Seconds that it waits for each reply that it cannot go on without."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +83,7 @@ class System:
                 replace(
                     each,
                     about=each.about * factor if each.kind == "timer" else each.about,
+                    patience=each.patience * factor,
                     calls=tuple(
                         tuple((word, what * factor if word == "sleep" else what) for word, what in steps)
                         for steps in each.calls
@@ -62,12 +105,12 @@ class System:
             if each.calls and not each.calls[-1]:
                 yield self._with(each, calls=each.calls[:-1])
         for each in self.callbacks:
-            if each.group:
-                yield self._with(each, group=0)
-            if each.node:
-                yield self._with(each, node=0)
-            if each.kind == "subscription" and each.depth != 10:
-                yield self._with(each, depth=10)
+            plain = {"group": 0, "node": 0, "is_coroutine": False, "is_late": False}
+            if each.kind == "subscription":
+                plain["depth"] = 10
+            for name, usual in plain.items():
+                if getattr(each, name) != usual:
+                    yield self._with(each, **{name: usual})
         for place, threads in enumerate(self.executors):
             if threads > 1:
                 yield replace(
@@ -88,99 +131,29 @@ class System:
         )
 
 
+def topics_of(word: str, callbacks: Iterable[Callback]) -> list[float]:
+    """What a step with a word can be about, other than seconds: a topic, a place, the number of a future."""
+    if word in ("wait", "give"):
+        return list(range(FUTURES))
+    by_topic = word == "publish"
+    return [each.about if by_topic else each.place for each in callbacks if each.kind in WORDS[word].about]
+
+
 def _others(system: System, callback: Callback) -> tuple[Callback, ...]:
     return tuple(each for each in system.callbacks if each is not callback)
 
 
 def _without_dangling(system: System) -> System:
     """The same without steps that are about what is not there."""
-    there = {("publish", each.about) for each in system.callbacks if each.kind == "subscription"}
-    there |= {
-        (word, each.about) for each in system.callbacks if each.kind == "service" for word in ("ask", "await")
-    }
-    there |= {("trigger", each.place) for each in system.callbacks if each.kind == "guard"}
-    there |= {
-        (word, each.place) for each in system.callbacks if each.kind == "timer" for word in _ABOUT_TIMERS
-    }
+
+    def holds(step: Step) -> bool:
+        word, what = step
+        return not WORDS[word].about or what in topics_of(word, system.callbacks)
+
     return replace(
         system,
         callbacks=tuple(
-            replace(
-                each,
-                calls=tuple(
-                    tuple(step for step in steps if step[0] in ("sleep", "raise", "task") or step in there)
-                    for steps in each.calls
-                ),
-            )
+            replace(each, calls=tuple(tuple(filter(holds, steps)) for steps in each.calls))
             for each in system.callbacks
         ),
     )
-
-
-_ABOUT_TIMERS = ("cancel", "reset")
-
-
-def drawn(seed: str) -> System:
-    """The system of a seed.
-
-    Its times are of microseconds, so that no two that differ fall into one moment by chance.
-    """
-    random = Random(seed)
-    executors = tuple(random.choice((0, 0, 1, 2, 3, 4)) for _ in range(random.choice((1, 1, 1, 2))))
-    nodes = tuple(random.randrange(len(executors)) for _ in range(random.choice((1, 1, 2, 3))))
-    groups = ("default", *(random.choice(("exclusive", "exclusive", "reentrant")) for _ in range(3)))
-    others = (
-        ("timer", "subscription", "service")
-        if any(executors)
-        else ("timer", "subscription", "service", "guard")
-    )
-    kinds = ["timer", *random.choices(others, k=random.randint(2, 5))]
-    drafts = []
-    for place, kind in enumerate(kinds):
-        about = {"timer": random.uniform(0.2, 1.2), "subscription": float(random.randrange(2))}
-        node = random.randrange(len(nodes))
-        group = random.randrange(len(groups)) * (nodes[node] == nodes[0])  # no group of two executors
-        drafts.append((place, kind, node, group, about.get(kind, place)))
-    callbacks = tuple(
-        Callback(
-            *draft,
-            depth=random.choice((1, 2, 10)),
-            calls=tuple(_steps(random, drafts) for _ in range(random.randint(1, 3))),
-        )
-        for draft in drafts
-    )
-    return System(executors, nodes, groups, callbacks, 4.0)
-
-
-def _steps(random: Random, drafts: list[tuple[int, str, int, int, float]]) -> tuple[Step, ...]:
-    about = {
-        kind: [
-            place if kind in ("timer", "guard") else what
-            for place, each, _, _, what in drafts
-            if each == kind
-        ]
-        for kind in ("timer", "guard", "service", "subscription")
-    }
-    of_kind = {
-        "publish": "subscription",
-        "ask": "service",
-        "await": "service",
-        "trigger": "guard",
-        "cancel": "timer",
-        "reset": "timer",
-    }
-    steps: list[Step] = []
-    for word in random.choices(
-        ("sleep", "publish", "ask", "await", "task", "trigger", "cancel", "reset"),
-        (6, 5, 2, 2, 2, 2, 1, 1),
-        k=3,
-    ):
-        if word == "sleep":
-            steps.append((word, random.uniform(0.08, 0.7)))
-        elif word == "task":
-            steps.append((word, 0.0))
-        elif choices := about[of_kind[word]]:
-            steps.append((word, random.choice(choices)))
-    if random.random() < 0.05:
-        steps.append(("raise", 0))
-    return tuple(steps)

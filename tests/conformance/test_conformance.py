@@ -5,10 +5,10 @@ import sys
 import pytest
 
 from tests.conformance.comparing import Outcome, cases, on_model
+from tests.conformance.drawing import drawn
 from tests.conformance.programs import program
 from tests.conformance.recorded import against_recorded
 from tests.conformance.running import run_all
-from tests.conformance.systems import drawn
 from tests.real.programs import needs_ros
 
 
@@ -21,8 +21,8 @@ def test_the_model_gives_what_real_ros_2_gave() -> None:
 
 @pytest.mark.slow
 def test_a_system_that_is_decided_says_the_same_on_the_model_each_time() -> None:
-    given = cases(2, seed=3, distro="jazzy@7.1.6")
-    again = on_model([each.system for each in given], "jazzy@7.1.6")
+    given = cases(2, seed=3, distro="jazzy@7.1.5")
+    again = on_model([each.system for each in given], "jazzy@7.1.5")
     assert [case.model.words for case in given] == [said and said.words for said in again]
 
 

@@ -54,13 +54,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def add_distro(parser: argparse.ArgumentParser) -> None:
     """Add ``--distro``."""
+    from sim.profiles import Profile
+
     parser.add_argument(
         "--distro",
         metavar="NAME[@PATCH]",
         type=values.distro,
         help="the release whose rclpy the model is like: humble, jazzy, kilted, lyrical, also with a patch, "
-        "as in jazzy@7.1.6; jazzy and kilted were run, humble and lyrical follow documentation and source, "
-        "not runs (what the lesson or the file says, else jazzy@7.1.9)",
+        "as in jazzy@7.1.5; jazzy and kilted were run, humble and lyrical follow documentation and source, "
+        f"not runs (what the lesson or the file says, else {Profile()})",
     )
 
 
@@ -180,8 +182,8 @@ _RELEASE = """
 import os
 from importlib.metadata import distributions
 names = {each.name.replace("_", "-"): each.version for each in distributions()}
-wheels = [f"{name.split('-')[1]}@{names[name]}" for name in names if name.split("-")[::2] == ["ros", "rclpy"]]
-print(*wheels[:1] or [f"{os.environ.get('ROS_DISTRO')}@{names.get('rclpy')}"])
+wheels = [name.split("-")[1] for name in names if name.split("-")[::2] == ["ros", "rclpy"]]
+print(f"{(wheels or [os.environ.get('ROS_DISTRO')])[0]}@{names.get('rclpy')}")
 """
 
 

@@ -6,6 +6,7 @@ oldest is not meant by it, nor is a message whose lifespan is over.
 
 from __future__ import annotations
 
+import inspect
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
@@ -176,9 +177,11 @@ class EventHandler(Entity):
         self.nothing_left()
         return info
 
-    def invoke(self, taken: Taken) -> Any:
+    async def invoke(self, taken: Taken) -> None:
         """Run the callback on the state."""
-        return self.callback(taken.data)
+        outcome = self.callback(taken.data)
+        if inspect.iscoroutine(outcome):
+            await outcome
 
 
 class DefaultEventHandler(EventHandler):

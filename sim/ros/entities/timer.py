@@ -176,7 +176,10 @@ class Timer(Entity):
         A timer that was reset while it waited for its turn is called all the same, one period too early.
         """
         if self._canceled or self.destroyed:
-            return None if self.destroyed or self._is_skipped() else Taken(_CANCELLED, 0, 0, 0)
+            if self.destroyed or self._is_skipped():
+                return None
+            self.stuck = self.handed_out = True
+            return Taken(_CANCELLED, 0, 0, 0)
         late = max(now - self.due, 0)
         if self._ros_schedule is not None:
             return Taken(self._take_of_ros_time(self._ros_schedule), 0, late, 0)

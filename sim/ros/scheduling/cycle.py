@@ -130,7 +130,7 @@ class Cycle:
             work = self._serve(now)
             if work is not None:
                 return work
-            if not (self._find(now) and self._released()):
+            if not self._find(now) or not (self._due_tasks or self._released()):
                 return None
         work = self._serve(now)
         if work is None:

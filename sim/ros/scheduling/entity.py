@@ -81,7 +81,7 @@ class Entity:
     All attributes are guarded by the host's lock. ``handed_out`` is set from the moment an executor yields
     the entity until its handler runs; meanwhile no executor yields it again. ``entered_in`` is the number of
     its executor's gathering in which its callback last began, which leaves it out. ``pending`` tells that
-    there is something to take.
+    there is something to take. ``stuck``: taking failed, so that it stays handed out and its group held.
     """
 
     kind: ClassVar[EntityKind]
@@ -102,6 +102,7 @@ class Entity:
         self.callback_group = callback_group
         self.order = node._agenda.next_order()
         self.handed_out = False
+        self.stuck = False
         self.entered_in = 0
         self.pending = False
         self.destroyed = False

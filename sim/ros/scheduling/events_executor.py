@@ -257,10 +257,6 @@ class EventsExecutor(Executor):
         if entity not in self._registered:
             return
         self._stop_if_one_is_enough()
-        if entity.kind is EntityKind.WAITABLE:
-            with self._lock:
-                self._queue.put(partial(self._call, entity))
-            return
         for _ in range(times):
             self._call(entity)
         self._go_on_with_parked()

@@ -317,6 +317,18 @@ class Executor:
         """There is something to run now, while the thread that spins waits."""
         self._signal.set()
 
+    def _rouse(self) -> None:
+        """Have the thread that spins go on if it waits, which no program can tell from its going on late."""
+        if self._waiting:
+            self._signal.set()
+
+    def _ask_awaiting(self) -> None:
+        """A callback has begun or ended, which wakes the executor: tasks that await something ask again."""
+        if self._cycle.foreign_awaits:
+            self._cycle.recall_foreign_awaits()
+            if self._waiting:
+                self._work_came()
+
     def _look_again(self) -> None:
         """Something may be ready that was not; whoever calls this does not look for it."""
         self._wake()

@@ -80,6 +80,7 @@ class Runner:
             return None
         if entity.pending and entity.callback_group.can_execute(entity):
             self.executor._wake()
+        self.executor._ask_awaiting()
         return taken
 
     def take(self, entity: Entity, now: int) -> Taken | None:
@@ -200,7 +201,7 @@ class Runner:
         with self.lock:
             self._running.remove(entity)
             self._probe.callback_ended(entity, outer)
-            if self.asks_groups:
+            if self.asks_groups and not entity.stuck:
                 self._free_group_of(entity)
             self._leave()
 
@@ -210,8 +211,10 @@ class Runner:
             cycle.leaves(entity)
         entity.callback_group.ending_execution(entity)
         executor = self._executor()
-        if executor is not None and (executor._waiting or cycle.foreign_awaits):
-            executor._look_again()
+        if executor is not None:
+            executor._ask_awaiting()
+            if executor._waiting:
+                executor._look_again()
 
     def suspend(self, entity: Entity, outer: int) -> None:
         """A coroutine callback awaits something and leaves this thread."""

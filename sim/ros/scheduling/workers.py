@@ -198,7 +198,7 @@ class WorkerPool:
             self._starting = None
             self._started.set()
         if self._look_owed and self._starting is None and not self._claimed():
-            self._executor.wake()
+            self._executor._rouse()
 
     def _others_are_late(self, now: int) -> bool:
         """Whether time has passed since a worker was called that has not come yet."""
@@ -210,7 +210,7 @@ class WorkerPool:
         while begun is None and self._queue and self._coming == 0:
             begun = self._runner.begin(self._queue.popleft(), now)
         if begun is not None and self._executor._cycle.would_find(now):
-            self._executor.wake()
+            self._executor._rouse()
         return begun
 
     def _begin_found(self, now: int) -> Begun | None:
@@ -224,12 +224,12 @@ class WorkerPool:
         if self._errors:  # they come out of what hands it over, before it begins
             self._queue.append(own)
             self._surface_errors()
-            self._executor.wake()
+            self._executor._rouse()
             return None
         while not self._starting and (work := cycle.rest(now)) is not None:
             self.submit(work, now)
         if cycle.gather(now):
-            self._executor.wake()
+            self._executor._rouse()
         return self._runner.begin(own, now)
 
     def _may_look(self) -> bool:
@@ -238,7 +238,7 @@ class WorkerPool:
             return False
         executor = self._executor
         if self.enough() or self.error_surfaces or executor._is_shutdown or not executor._context.ok():
-            executor.wake()
+            executor._rouse()
             return False
         return True
 

@@ -61,11 +61,11 @@ def test_every_behaviour_names_its_source_and_has_a_program() -> None:
 
 
 def test_a_release_is_named_with_or_without_its_patch() -> None:
-    assert str(Profile.named("jazzy")) == "jazzy@7.1.9" == str(Profile())
+    assert str(Profile.named("jazzy")) == str(Profile())
     assert str(Profile.named("jazzy@7.1.6")) == "jazzy@7.1.6"
     assert {str(Profile.named(each)) for each in DISTROS} == {
         "humble@3.3.22",
-        "jazzy@7.1.9",
+        "jazzy@7.1.12",
         "kilted@9.1.2",
         "lyrical",
     }
@@ -88,4 +88,4 @@ def test_a_release_that_a_file_cannot_have_is_told(tmp_path: Path) -> None:
     run = run_program(tmp_path, "# cbtui: distro = foxy\n")
     (said,) = [each.text for each in run.events if isinstance(each, Notice)]
     assert "no distribution 'foxy' is known" in said
-    assert said.endswith("the run is like jazzy@7.1.9")
+    assert said.endswith(f"the run is like {Profile()}")

@@ -267,7 +267,7 @@ def test_a_task_gives_its_result_to_who_spins_for_it_and_to_who_awaits_it() -> N
 
 
 @pytest.mark.parametrize(
-    ("distro", "second"), [("jazzy@7.1.6", 1.5), ("jazzy", 1.0)], ids=["at the next wake-up", "at once"]
+    ("distro", "second"), [("jazzy@7.1.5", 1.5), ("jazzy", 1.0)], ids=["at the next wake-up", "at once"]
 )
 def test_a_coroutine_that_awaits_nothing_in_particular_goes_on_at_once_and_then(
     distro: str, second: float
@@ -288,6 +288,36 @@ def test_a_coroutine_that_awaits_nothing_in_particular_goes_on_at_once_and_then(
 
     assert simulate(program, until=2.0, distro=distro).ends("waits") == [second]
     assert went_on == [1.0, second]
+
+
+def test_tasks_that_ask_at_each_wake_up_do_not_wake_the_pool_themselves() -> None:
+    ended: list[float] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        futures: list[Future[None]] = [Future(), Future()]
+
+        async def wait(place: int) -> None:
+            await futures[place]
+            ended.append(simulation.now)
+
+        def begin() -> None:
+            timer.cancel()
+            executor.create_task(wait, 0)
+            executor.create_task(wait, 1)
+
+        def finish() -> None:
+            for each in futures:
+                each.set_result(None)
+
+        timer = node.create_timer(0.5, begin, MutuallyExclusiveCallbackGroup())
+        node.create_timer(1.0, finish, MutuallyExclusiveCallbackGroup())
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        executor.spin()
+
+    simulate(program, until=1.5, distro="jazzy@7.1.5")
+    assert ended == [1.0, 1.0]
 
 
 def test_the_result_of_a_pending_future_is_none() -> None:

@@ -240,7 +240,7 @@ def test_what_runs_may_shut_its_own_executor_down(make: Callable[[], Executor], 
     ("make", "distro", "back_at"),
     [
         (SingleThreadedExecutor, "kilted", 1.2),
-        (two_threads, "jazzy", 1.2),
+        (two_threads, "jazzy@7.1.11", 1.2),
         (two_threads, "kilted", 2.0),
     ],
     ids=["single", "pool", "pool that ends its workers"],
