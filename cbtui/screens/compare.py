@@ -192,8 +192,9 @@ class CompareScreen(SizedScreen[None]):
         if not self._verdict:
             return
         at = self._first_difference
-        where = "no call differs" if at is None else f"they differ from {timestamp(at)} on"
-        self.query_one("#verdict", Static).update(f"{where[0].upper()}{where[1:]}; {self._verdict}")
+        where = "No call differs" if at is None else f"They differ from {timestamp(at)} on"
+        told = f"{where}; {self._verdict[0].lower()}{self._verdict[1:]}"
+        self.query_one("#verdict", Static).update(told)
         if at is not None and not self._has_moved:
             self.navigation.seek(at)
 
