@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from sim.export.svg_elements import GROUP_COLOURS, OTHER_COLOUR
+
 
 @dataclass(frozen=True, eq=False)
 class Palette:
@@ -46,8 +48,8 @@ DARK = Palette(
     seen_scan="#E69F00",
 )
 LIGHT = Palette(
-    groups=("#040457", "#570404", "#278686", "#C63DF4", "#F2460C"),
-    other="#5A5A5A",
+    groups=GROUP_COLOURS,
+    other=OTHER_COLOUR,
     text="#1C1C1C",
     faint="#5E646A",
     warn="#B3200B",

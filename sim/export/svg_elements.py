@@ -10,6 +10,7 @@ from sim.trace.events import Reason
 
 GROUP_COLOURS = ("#040457", "#570404", "#278686", "#C63DF4", "#F2460C")
 OTHER_COLOUR = "#5A5A5A"
+"""Of paper, and of the console on a light background."""
 TEXT = "#1C1C1C"
 FAINT = "#6B7075"
 RULE = "#D5D8DA"
