@@ -14,7 +14,7 @@ from lessons.lesson import BadLesson, read_lesson
 from lessons.progress import Progress
 from sim import plain_yaml
 from sim.engine.setup import ProgramSetup, RunSetup, TimedCall, TimedInput, TimedLine
-from sim.interfaces import DefinitionError, message
+from sim.interfaces import DefinitionError, known, message
 from sim.interfaces.folder import DefinitionFolder
 from sim.interfaces.jazzy import JazzyMessages
 from sim.interfaces.registry import Registry
@@ -25,7 +25,7 @@ from sim.shell.messages import Outgoing, given_values
 from sim.shell.session import CommandFailed
 from tests.soak.fuzz_target import Target, listed, text_of
 
-DEFINITIONS = Path(plain_yaml.__file__).parent / "ros" / "interfaces" / "definitions"
+DEFINITIONS = Path(known.__file__).parent / "definitions"
 _FILES = ("guide.md", "explain.md", "checks.py", "node.py", "starter.py", "solution.py")
 
 
@@ -196,6 +196,7 @@ def _read_parameters(data: bytes, _: Path) -> None:
 def interfaces() -> Target:
     """``.msg``, ``.srv`` and ``.action`` files, and the classes made of them."""
     paths = sorted(path for path in DEFINITIONS.rglob("*") if path.suffix in {".msg", ".srv", ".action"})
+    assert paths
     own = (
         b"uint8 A=1\nstring<=5 name 'x'\nint32[<=3] few [1, 2]\nfloat64[2] two\n"
         b"std_msgs/Header header\n---\nbool ok\n",
