@@ -15,8 +15,8 @@ class Blinker(Node):
         super().__init__("blinker")
         self.blink_group = MutuallyExclusiveCallbackGroup()
         self.work_group = MutuallyExclusiveCallbackGroup()
-        self.blink_timer = self.create_timer(0.5, self.blink, callback_group=self.blink_group)
-        self.work_timer = self.create_timer(3.0, self.work, callback_group=self.work_group)
+        self.blink_timer = self.create_timer(0.5, self.blink, self.blink_group)
+        self.work_timer = self.create_timer(3.0, self.work, self.work_group)
 
     def blink(self):
         self.get_logger().info("BLINK")

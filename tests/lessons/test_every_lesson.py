@@ -10,11 +10,11 @@ import pytest
 from cbtui.learning.lesson_lint import faults_of
 from cbtui.learning.lesson_scaffold import TEMPLATE
 from lessons.catalogue import lessons
-from lessons.lesson import Lesson
+from lessons.lesson import Lesson, read_lesson
 from tests.support.daily import first_daily
 
 every_lesson = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
-EXERCISES = [lesson for lesson in lessons() if lesson.exercise is not None]
+EXERCISES = [lesson for lesson in (read_lesson(TEMPLATE), *lessons()) if lesson.exercise is not None]
 
 
 @pytest.mark.parametrize(
@@ -29,6 +29,16 @@ def test_a_lesson_asks_gives_a_task_and_explains(lesson: Lesson) -> None:
     assert 1 <= len(lesson.predictions) <= 2
     assert lesson.task
     assert 8 <= len(lesson.explanation.splitlines()) <= 30
+
+
+@every_lesson
+def test_the_lesson_before_announces_it(lesson: Lesson) -> None:
+    assert lesson.number == 1 or lesson.teaser
+
+
+@every_lesson
+def test_a_lesson_has_a_robot_that_moves_or_a_scene(lesson: Lesson) -> None:
+    assert lesson.scene or lesson.unit.startswith("5")
 
 
 @every_lesson

@@ -74,10 +74,6 @@ def test_a_scene_follows_what_is_in_its_node(lesson: Lesson) -> None:
         assert f"def {actor.follows}(" in source or f'"{actor.follows}"' in source
 
 
-def test_lessons_have_a_robot_that_moves_or_a_scene() -> None:
-    assert all(lesson.scene or lesson.unit.startswith("5") for lesson in lessons())
-
-
 async def test_c_goes_from_the_scene_to_the_map_and_on_to_the_scene_again() -> None:
     app = RecordedConsole("stale-data", shared_group_run().events, 12.9)
     async with app.run_test(size=WIDE) as pilot:
