@@ -9,8 +9,8 @@ from typing import Any
 class NotInitializedException(Exception):
     """Something needs ``rclpy.init()`` first."""
 
-    def __init__(self, *args: object) -> None:
-        super().__init__("rclpy.init() has not been called", *args)
+    def __init__(self, message: str | None = None) -> None:
+        super().__init__(f"rclpy.init() has not been called.{f' msg:{message}' if message else ''}")
 
 
 class ROSInterruptException(Exception):
@@ -82,62 +82,61 @@ class UnknownROSArgsError(RuntimeError):
 class ParameterException(Exception):
     """Base of what can go wrong with parameters; names the parameters it is about."""
 
-    def __init__(self, error_msg: str, parameters: Sequence[str] | str, *args: object) -> None:
-        super().__init__(error_msg, parameters, *args)
+    def __init__(self, error_msg: str, parameters: Sequence[str] | str) -> None:
+        super().__init__(f"{error_msg}: {parameters}")
 
 
 class ParameterNotDeclaredException(ParameterException):
     """A parameter was used before it was declared."""
 
-    def __init__(self, parameters: Sequence[str] | str, *args: object) -> None:
-        super().__init__("Invalid access to undeclared parameter(s)", parameters, *args)
+    def __init__(self, parameters: Sequence[str] | str) -> None:
+        super().__init__("Invalid access to undeclared parameter(s)", parameters)
 
 
 class ParameterAlreadyDeclaredException(ParameterException):
     """A parameter was declared twice."""
 
-    def __init__(self, parameters: Sequence[str] | str, *args: object) -> None:
-        super().__init__("Parameter(s) already declared", parameters, *args)
+    def __init__(self, parameters: Sequence[str] | str) -> None:
+        super().__init__("Parameter(s) already declared", parameters)
 
 
 class InvalidParameterException(ParameterException):
     """A parameter has no usable name."""
 
-    def __init__(self, parameter: str, *args: object) -> None:
-        super().__init__("Invalid parameter name", parameter, *args)
+    def __init__(self, parameter: str) -> None:
+        super().__init__("Invalid parameter name", parameter)
 
 
 class InvalidParameterTypeException(ParameterException):
     """The value set for a parameter, or overriding it, is of another type than it was declared with."""
 
     def __init__(self, desired_parameter: Any, expected_type: str) -> None:
-        Exception.__init__(
-            self,
+        super().__init__(
             f"Trying to set parameter '{desired_parameter.name}' to '{desired_parameter.value}' of type "
             f"'{desired_parameter.type_.name}', expecting type '{expected_type}'",
+            desired_parameter.name,
         )
 
 
 class InvalidParameterValueException(ParameterException):
     """A parameter's descriptor or a callback refused its value."""
 
-    def __init__(self, parameter: str, value: object, reason: str, *args: object) -> None:
-        text = f"Invalid parameter value ({value}) for parameter. Reason: {reason}"
-        super().__init__(text, parameter, *args)
+    def __init__(self, parameter: str, value: object, reason: str) -> None:
+        super().__init__(f"Invalid parameter value ({value}) for parameter. Reason: {reason}", parameter)
 
 
 class ParameterUninitializedException(ParameterException):
     """A parameter was declared with a type only, and read before it had a value."""
 
     def __init__(self, parameter_name: str) -> None:
-        Exception.__init__(self, f"The parameter '{parameter_name}' is not initialized")
+        super().__init__(f"The parameter '{parameter_name}' is not initialized", parameter_name)
 
 
 class ParameterImmutableException(ParameterException):
     """A read-only parameter was to be changed or removed."""
 
     def __init__(self, parameter_name: str) -> None:
-        Exception.__init__(self, f"Attempted to modify read-only parameter '{parameter_name}'")
+        super().__init__("Attempted to modify read-only parameter", parameter_name)
 
 
 for _each in tuple(vars().values()):

@@ -138,7 +138,7 @@ class Clock:
         return self._host.clock.now() + (until - self.now()).nanoseconds
 
     def __repr__(self) -> str:
-        return f"{type(self).__name__}(clock_type={self._clock_type.name})"
+        return f"Clock(clock_type={self._clock_type.name})"
 
 
 class DrivenTimer(Protocol):

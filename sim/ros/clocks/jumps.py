@@ -63,12 +63,16 @@ class TimeJump:
     clock_change: ClockChange
     delta: Duration
 
+    def __post_init__(self) -> None:
+        if not isinstance(self.clock_change, ClockChange):
+            raise TypeError("clock_change must be an instance of rclpy.clock.ClockChange")
+
 
 class JumpHandle:
     """Has callbacks called before and after the jumps of a clock, until it is unregistered.
 
     Raises:
-        ValueError: there is no callback.
+        ValueError: there is no callback, or it cannot be called.
     """
 
     def __init__(
@@ -80,6 +84,10 @@ class JumpHandle:
         post_callback: Callable[[TimeJump], None] | None,
     ) -> None:
         if pre_callback is None and post_callback is None:
+            raise ValueError("One of pre_callback or post_callback must be callable")
+        if pre_callback is not None and not callable(pre_callback):
+            raise ValueError("pre_callback must be callable if given")
+        if post_callback is not None and not callable(post_callback):
             raise ValueError("One of pre_callback or post_callback must be callable")
         self._clock = clock
         self.threshold = threshold

@@ -34,6 +34,6 @@ def wants_message_info(callback: Callable[..., Any]) -> bool:
                 continue
             return count == 2
     raise RuntimeError(
-        "Subscription.__init__(): callback should be either be callable with one argument "
+        "Subscription.__init__(): callback should be either be callable with one argument"
         "(to get only the message) or two (to get message and message info)"
     )

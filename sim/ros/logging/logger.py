@@ -85,7 +85,7 @@ class RcutilsLogger:
 
     def is_enabled_for(self, severity: LoggingSeverity | int) -> bool:
         """Whether lines of that severity are kept."""
-        return severity >= self.get_effective_level()
+        return LoggingSeverity(severity) >= self.get_effective_level()
 
     def log(self, message: object, severity: LoggingSeverity | int, **options: Any) -> bool:
         """Write a line; whether it was written.
@@ -209,7 +209,7 @@ def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
     try:
         return LoggingSeverity[log_severity.upper()]
     except KeyError:
-        raise RuntimeError(f'Failed to get log severity from name: "{log_severity}"') from None
+        raise RuntimeError("Failed to get severity name") from None
 
 
 def get_logging_directory() -> Path:

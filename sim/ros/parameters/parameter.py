@@ -66,7 +66,9 @@ class Parameter(Generic[AllowableParameterValueT]):
                 for kind, element in _ARRAYS.items():
                     if all(isinstance(each, element) for each in parameter_value):
                         return kind
-                raise TypeError("The given value is not a list of one of the allowed types")
+                raise TypeError(
+                    f"The given value is not a list of one of the allowed types '{parameter_value}'."
+                )
             raise TypeError(f"The given value is not one of the allowed types '{parameter_value}'.")
 
         def check(self, parameter_value: object) -> bool:

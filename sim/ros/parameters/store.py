@@ -304,7 +304,13 @@ class ParameterStore:
         self._pre_set_parameters_callbacks.insert(0, callback)
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Have ``callback`` allow or refuse what is about to be set, by a SetParametersResult."""
+        """Have ``callback`` allow or refuse what is about to be set, by a SetParametersResult.
+
+        Raises:
+            TypeError: it cannot be called.
+        """
+        if not callable(callback):
+            raise TypeError("Callback must be callable, got {}", type(callback))
         self._on_set_parameters_callbacks.insert(0, callback)
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:

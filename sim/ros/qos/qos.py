@@ -239,6 +239,6 @@ def as_profile(qos: QoSProfile | int) -> QoSProfile:
         return qos
     if isinstance(qos, int) and not isinstance(qos, bool):
         if qos < 0:
-            raise ValueError(f"Depth must be greater than or equal to zero; got {qos!r}")
+            raise ValueError("history depth must be greater than or equal to zero")
         return QoSProfile(depth=qos)
     raise TypeError(f"Expected QoSProfile or int, but received {type(qos)!r}")

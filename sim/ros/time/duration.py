@@ -11,7 +11,7 @@ _LIMIT = 2**63
 class Duration:
     """A length of time in whole nanoseconds; may be negative. Immutable, ordered, hashable.
 
-    Comparing it with anything but a duration is a TypeError.
+    It equals nothing but durations.
     """
 
     __slots__ = ("_nanoseconds",)
@@ -42,8 +42,7 @@ class Duration:
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Duration):
             return self._nanoseconds == other._nanoseconds
-        # As in rclpy: with NotImplemented, Duration(nanoseconds=5) == 5 would be False and go unnoticed.
-        raise TypeError(f"Can't compare duration with object of type: {type(other)}")
+        return NotImplemented
 
     def __lt__(self, other: Duration) -> bool:
         if isinstance(other, Duration):

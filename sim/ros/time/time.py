@@ -14,7 +14,7 @@ _LIMIT = 2**63
 class Time:
     """A point in time on one kind of clock, in whole nanoseconds. Immutable, ordered, hashable.
 
-    Comparing it with anything but a time of the same kind of clock is a TypeError.
+    Comparing it with a time of another kind of clock is a TypeError; it equals nothing but times.
     """
 
     __slots__ = ("_clock_type", "_nanoseconds")
@@ -61,7 +61,10 @@ class Time:
 
     def __add__(self, other: Duration) -> Time:
         if isinstance(other, Duration):
-            return Time(nanoseconds=self._nanoseconds + other.nanoseconds, clock_type=self._clock_type)
+            total = self._nanoseconds + other.nanoseconds
+            if total >= _LIMIT:
+                raise OverflowError("Addition leads to overflow in C storage.")
+            return Time(nanoseconds=total, clock_type=self._clock_type)
         return NotImplemented
 
     __radd__ = __add__
@@ -74,6 +77,8 @@ class Time:
         if isinstance(other, Time):
             return Duration(nanoseconds=self._nanoseconds - self._same_clock(other, "subtract times"))
         if isinstance(other, Duration):
+            if other.nanoseconds > self._nanoseconds:
+                raise ValueError("Subtraction leads to negative time.")
             return Time(nanoseconds=self._nanoseconds - other.nanoseconds, clock_type=self._clock_type)
         return NotImplemented
 
@@ -85,8 +90,7 @@ class Time:
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Time):
             return self._nanoseconds == self._same_clock(other, "compare times")
-        # As in rclpy: with NotImplemented, Time(nanoseconds=5) == 5 would be False and go unnoticed.
-        raise TypeError(f"Can't compare time with object of type: {type(other)}")
+        return NotImplemented
 
     def __lt__(self, other: Time) -> bool:
         if isinstance(other, Time):

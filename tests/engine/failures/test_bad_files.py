@@ -170,7 +170,7 @@ FILES = {
     ),
     "a node before init": Bad(
         HEAD + "Node('n')",
-        f"node.py:7: {RAISED} NotInitializedException: ('rclpy.init() has not been called'",
+        f"node.py:7: {RAISED} NotInitializedException: rclpy.init() has not been called.",
     ),
     "a bad name of a topic": Bad(
         NODE + "node.create_publisher(Int32, 'my topic', 10)",
@@ -208,7 +208,7 @@ FILES = {
     ),
     "a parameter that is not declared": Bad(
         NODE + "node.get_parameter('speed')",
-        f"node.py:9: {RAISED} ParameterNotDeclaredException: ('Invalid access to undeclared parameter(s)'",
+        f"node.py:9: {RAISED} ParameterNotDeclaredException: Invalid access to undeclared parameter(s): ",
     ),
     # Its arguments
     "an unknown ROS argument": Bad(

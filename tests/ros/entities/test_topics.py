@@ -233,7 +233,7 @@ def test_something_else_than_a_profile_or_a_depth_is_refused() -> None:
         for wrong in ("10", None, 1.5, True):
             with pytest.raises(TypeError, match="Expected QoSProfile or int, but received"):
                 node.create_publisher(Int32, "t", wrong)  # type: ignore[arg-type]
-        with pytest.raises(ValueError, match="Depth must be greater than or equal to zero; got -1"):
+        with pytest.raises(ValueError, match="history depth must be greater than or equal to zero"):
             node.create_subscription(Int32, "t", lambda _: None, -1)
 
     simulate(program)

@@ -119,7 +119,7 @@ def test_a_child_has_its_parents_level_until_it_has_one() -> None:
 
 def test_severities_are_found_by_name() -> None:
     assert logging.get_logging_severity_from_string("Warn") is LoggingSeverity.WARN
-    with pytest.raises(RuntimeError, match='Failed to get log severity from name: "loud"'):
+    with pytest.raises(RuntimeError, match="Failed to get severity name"):
         logging.get_logging_severity_from_string("loud")
 
 

@@ -79,7 +79,7 @@ def test_a_parameter_is_declared_once_with_a_name() -> None:
         node.declare_parameter("a", 1)
         with pytest.raises(ParameterAlreadyDeclaredException) as twice:
             node.declare_parameter("a", 2)
-        assert str(twice.value) == "('Parameter(s) already declared', ['a'])"
+        assert str(twice.value) == "Parameter(s) already declared: ['a']"
         with pytest.raises(InvalidParameterException):
             node.declare_parameter("", 1)
 
@@ -127,7 +127,9 @@ def test_a_parameter_declared_by_its_name_alone_is_dynamically_typed_and_depreca
 def test_a_parameter_with_a_type_but_no_value_cannot_be_read() -> None:
     def check(node: Node) -> None:
         node.declare_parameter("a", Type.INTEGER)
-        with pytest.raises(ParameterUninitializedException, match=r"^The parameter 'a' is not initialized$"):
+        with pytest.raises(
+            ParameterUninitializedException, match=r"^The parameter 'a' is not initialized: a$"
+        ):
             node.get_parameter("a")
         assert node.get_parameter_or("a", Parameter("a", value=7)).value == 7
         assert node.get_parameter_or("nowhere").type_ is Type.NOT_SET
@@ -157,7 +159,7 @@ def test_what_is_not_declared_cannot_be_read_set_described_or_removed() -> None:
         assert node.get_parameter("known").value == 1
         with pytest.raises(ParameterNotDeclaredException) as missing:
             node.get_parameter("x")
-        assert str(missing.value) == "('Invalid access to undeclared parameter(s)', 'x')"
+        assert str(missing.value) == "Invalid access to undeclared parameter(s): x"
 
     with_node(check)
 
@@ -193,7 +195,7 @@ def test_read_only_parameters_are_neither_set_nor_removed() -> None:
         node.declare_parameter("b", 1)
         assert not node.set_parameters([Parameter("a", value=2)])[0].successful
         with pytest.raises(
-            ParameterImmutableException, match=r"^Attempted to modify read-only parameter 'a'$"
+            ParameterImmutableException, match=r"^Attempted to modify read-only parameter: a$"
         ):
             node.undeclare_parameter("a")
         with pytest.raises(ParameterImmutableException):
@@ -276,7 +278,7 @@ def test_the_newest_callback_is_asked_first_and_the_first_refusal_counts() -> No
         assert asked == ["newer", "older", "newer"]
         with pytest.raises(InvalidParameterValueException) as error:
             node.declare_parameter("b", 9)
-        assert str(error.value) == "('Invalid parameter value (9) for parameter. Reason: too big', 'b')"
+        assert str(error.value) == "Invalid parameter value (9) for parameter. Reason: too big: b"
         node.remove_on_set_parameters_callback(newer)
         assert node.set_parameters([Parameter("a", value=9)])[0].successful
         with pytest.raises(ValueError, match="not in list"):
@@ -347,7 +349,7 @@ def test_overrides_count_before_defaults_unless_they_are_ignored() -> None:
         with pytest.raises(InvalidParameterTypeException) as error:
             node.declare_parameter("c", 1.0)
         assert str(error.value) == (
-            "Trying to set parameter 'c' to '5' of type 'INTEGER', expecting type 'DOUBLE'"
+            "Trying to set parameter 'c' to '5' of type 'INTEGER', expecting type 'DOUBLE': c"
         )
         assert node.declare_parameters("d", [("e", "")])[0].value == "nested"
         assert not node.has_parameter("never_declared")

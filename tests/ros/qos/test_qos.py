@@ -74,7 +74,7 @@ def test_a_profile_as_text_names_every_policy() -> None:
 
 
 def test_a_depth_that_is_negative_or_no_number_is_refused() -> None:
-    with pytest.raises(ValueError, match="Depth must be greater than or equal to zero; got -1"):
+    with pytest.raises(ValueError, match="history depth must be greater than or equal to zero"):
         as_profile(-1)
     with pytest.raises(TypeError, match="Expected QoSProfile or int, but received <class 'str'>"):
         as_profile("10")  # type: ignore[arg-type]
