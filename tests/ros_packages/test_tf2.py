@@ -8,6 +8,7 @@ import pytest
 from sim.ros_packages.tf2_py.exceptions import ExtrapolationException
 from sim.ros_packages.tf2_py.histories import FixedHistory, MovingHistory, Sample
 from sim.ros_packages.tf2_py.motion import IDENTITY, Motion
+from sim.trace.events import Printed
 from tests.ros_packages.node_programs import printed, run
 
 TREE = """
@@ -417,3 +418,60 @@ def test_a_motion_and_its_inverse_cancel_out() -> None:
     assert np.allclose(back.translation, 0.0)
     there = Motion(-turn, motion.translation)
     assert np.allclose(np.abs(motion.towards(there, 0.5).rotation), np.abs(turn))
+
+
+SET_BACK = """
+import threading
+import time
+from rclpy.executors import ExternalShutdownException
+from rclpy.parameter import Parameter
+from rosgraph_msgs.msg import Clock
+world = Node("world")
+clock = world.create_publisher(Clock, "/clock", 10)
+node = Node("asker", parameter_overrides=[Parameter("use_sim_time", value=True)])
+buffer = Buffer(node=node)
+def spin():
+    try:
+        rclpy.spin(node)
+    except ExternalShutdownException:
+        pass
+threading.Thread(target=spin).start()
+def set_clock(seconds):
+    clock.publish(Clock(clock=Time(seconds=seconds).to_msg()))
+    time.sleep(0.1)
+set_clock(100.0)
+buffer.set_transform(between("odom", "base", Time(seconds=100.0)), "me")
+buffer.set_transform_static(between("base", "laser", Time(seconds=100.0)), "me")
+set_clock(101.0)
+print(buffer.can_transform("odom", "base", Time()), buffer.can_transform("base", "laser", Time()))
+def later():
+    time.sleep(0.5)
+    set_clock(10.0)
+    knows = [buffer.can_transform(*pair, Time()) for pair in (("odom", "base"), ("base", "laser"))]
+    print("set back", *knows)
+    time.sleep(0.4)
+    if AGAIN:
+        buffer.set_transform(between("odom", "base", Time(seconds=10.5)), "me")
+threading.Thread(target=later).start()
+begun = time.monotonic()
+try:
+    found = buffer.lookup_transform("odom", "base", Time(seconds=10.5), timeout=Duration(seconds=2.0))
+    print("found", found.header.stamp.sec, end=" ")
+except TransformException as error:
+    print(type(error).__name__, end=" ")
+print(f"{time.monotonic() - begun:.1f}")
+rclpy.shutdown()
+"""
+
+
+@pytest.mark.parametrize(
+    ("again", "ends"), [("True", "found 10 1.0"), ("False", "ExtrapolationException 2.0")]
+)
+def test_a_clock_that_is_set_back_empties_the_buffer_and_a_lookup_waits_on(
+    tmp_path: Path, again: str, ends: str
+) -> None:
+    """Its timeout is counted on the system's clock, and what is static stays: so has tf2_ros_py of Jazzy."""
+    ended = run(tmp_path, TREE + SET_BACK.replace("AGAIN", again))
+    said = [event.text for event in ended.events if isinstance(event, Printed)]
+    assert said == ["1 1", "set back 0 1", ends]
+    assert [text for _, text in ended.logs()].count("Detected jump back in time. Clearing tf buffer.") == 1

@@ -320,6 +320,44 @@ def test_a_rate_sleeps_by_clock() -> None:
     assert woken == [0.5, 2.5, 4.5]
 
 
+@pytest.mark.parametrize(
+    ("back_to", "woken"),
+    [
+        # Beyond the timer's last call, and not: as on rclpy 7.1.6.
+        (3.0, [10.5, 3.5, 4.0]),
+        (10.625, [10.5, 11.125, 11.625]),
+    ],
+)
+def test_a_rate_sleeps_on_when_the_clock_is_set_back(back_to: float, woken: list[float]) -> None:
+    heard: list[float] = []
+
+    def program(simulation: Simulation) -> None:
+        node = sim_time_node()
+        clock = node.get_clock()
+        assert isinstance(clock, ROSClock)
+        clock.set_ros_time_override(ros_time(10.0))
+        rate = node.create_rate(2.0)
+
+        def sleep() -> None:
+            for _ in range(3):
+                rate.sleep()
+                heard.append(clock.now().nanoseconds / SECOND)
+
+        def go_on() -> None:
+            before = [10.25, 10.5, 10.75]
+            after = [back_to + 0.25 * each for each in range(7)]
+            for each in (*before, *after):
+                simulation.sleep(0.5)
+                clock.set_ros_time_override(ros_time(each))
+
+        simulation.start(sleep)
+        simulation.start(go_on)
+        rclpy.spin(node)
+
+    simulate(program, until=8.0)
+    assert heard == woken
+
+
 def test_a_callback_of_the_default_group_that_waits_for_ros_time_waits_for_ever() -> None:
     def build(_: Simulation, node: Node) -> None:
         node.create_timer(1.0, lambda: node.get_clock().sleep_for(Duration(seconds=1)))
