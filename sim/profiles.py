@@ -32,7 +32,7 @@ class Profile:
 
     @classmethod
     def named(cls, name: str) -> Profile:
-        """The profile of a name such as ``kilted`` or ``jazzy@7.1.6``.
+        """The profile of a name such as ``kilted`` or ``jazzy@7.1.5``.
 
         Raises:
             UnknownProfileError: there is none.

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from enum import Enum
+from itertools import product, repeat
 from typing import NamedTuple
 
 from tests.conformance.drawing import drawn
@@ -20,6 +21,7 @@ LATE = 0.02
 On a busy machine all three, and all times of the systems, are longer by a factor, the ``pace``.
 """
 FEWEST_LINES = 8
+_ORDERS_AT_ONCE = 10
 
 
 class Outcome(Enum):
@@ -85,9 +87,11 @@ def _until(said: Said, end: float) -> Said:
     return Said(said.words[:number], said.times[:number], said.moments)
 
 
-def on_model(systems: Iterable[System], distro: str, order: int | None = None) -> list[Said | None]:
-    """What the model says of systems, with its usual order of threads, or with that of a seed."""
-    return list(run_all(map(program, systems), None, 12, distro, order))
+def on_model(
+    systems: Iterable[System], distro: str, orders: Iterable[int | None] = repeat(None)
+) -> list[Said | None]:
+    """What the model says of systems, with its usual order of threads, or with that of a seed for each."""
+    return list(run_all(map(program, systems), None, 12, distro, orders))
 
 
 def _decided_until(said: Said, end: float, gap: float) -> float:
@@ -128,16 +132,14 @@ def _reached(
 ) -> list[Case]:
     """The cases that differ, unless the model's threads run in one of so many other orders."""
     left = [case for case, came in outcomes.items() if came in DIFFERENT]
-    reached = []
-    for order in range(orders):
-        said = on_model([case.system for case in left], distro, order)
-        found = [
-            case
-            for case, model in zip(left, said, strict=True)
-            if model is not None and outcome(case._replace(model=model), real[case]) is Outcome.SAME
-        ]
-        reached += found
-        left = [case for case in left if case not in found]
+    reached: list[Case] = []
+    for seeds in zip(*[iter(range(orders))] * _ORDERS_AT_ONCE, strict=False):
+        tried = list(product(left, seeds))
+        said = on_model([case.system for case, _ in tried], distro, [seed for _, seed in tried])
+        for (case, _), model in zip(tried, said, strict=True):
+            if model is not None and outcome(case._replace(model=model), real[case]) is Outcome.SAME:
+                reached.append(case)
+        left = [case for case in left if case not in reached]
     return reached
 
 

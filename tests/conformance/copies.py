@@ -1,10 +1,10 @@
 """Runs programs in copies of a process that has imported rclpy; a script, in any Python that has one.
 
-Standard input has a line of JSON for each program: its file, and one for its output. The latter is
-printed when the program has ended. With the arguments ``model DISTRO`` rclpy is the model on virtual time; a
-third one is the seed of the order of its threads. A program finds ``moments`` among its globals, at which
-anything fell due on the model (nanoseconds), or ``late``: when, and by how much, the machine was late to wake
-a thread of it (seconds).
+Standard input has a line of JSON for each program: its file, one for its output, and the seed of the order of
+its threads, or null. The output is printed when the program has ended. With the arguments ``model DISTRO``
+rclpy is the model on virtual time. A program finds ``moments`` among its globals, at which anything fell due
+on the model (nanoseconds), or ``late``: when, and by how much, the machine was late to wake a thread of it
+(seconds).
 """
 
 import json
@@ -21,7 +21,7 @@ LONGEST = 60
 """Real seconds after which a program is ended."""
 
 
-def on_model(source: str, distro: str, order: str = "") -> None:
+def on_model(source: str, distro: str, order: int | None = None) -> None:
     """Run a program on the model, on virtual time, as a distribution of ROS 2 behaves."""
     from sim.clock import VirtualClock
     from sim.clock.schedule import Seeded
@@ -30,7 +30,7 @@ def on_model(source: str, distro: str, order: str = "") -> None:
     from sim.profiles import Profile
     from sim.ros.middleware.host import Host, install
 
-    clock = VirtualClock(schedule=Seeded(int(order)) if order else None)
+    clock = VirtualClock(schedule=None if order is None else Seeded(order))
     probe = SilentProbe(clock)
     probe.visible = True  # so that time stops over where a timer falls due that nobody waits for
     host = Host(clock, probe, profile=Profile.named(distro))
@@ -67,24 +67,24 @@ def _oversleep(late: list[tuple[float, float]]) -> None:
         late.append((due, time.monotonic() - due))
 
 
-def run(source: str, output: str, model_of: list[str]) -> None:
+def run(source: str, output: str, order: int | None, model_of: str | None) -> None:
     """Run a program in this process, which ends with it."""
     signal.signal(signal.SIGALRM, signal.SIG_DFL)  # whoever started this may ignore it
     signal.alarm(LONGEST)
     os.dup2(os.open(output, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), 1)
     try:
-        if model_of:
-            on_model(source, *model_of)
-        else:
+        if model_of is None:
             on_ros(source)
+        else:
+            on_model(source, model_of, order)
     finally:
         os._exit(1)
 
 
 def main() -> None:
     """Run what standard input tells, all at once."""
-    model_of = sys.argv[2:]
-    if model_of:
+    model_of = sys.argv[2] if sys.argv[1:2] == ["model"] else None
+    if model_of is not None:
         from sim.ros import importing
 
         importing.install()
@@ -100,10 +100,10 @@ def main() -> None:
                 line += os.read(0, 1)
             ended = not line
             if line:
-                program, output = json.loads(line)
+                program, output, order = (*json.loads(line), None)[:3]
                 child = os.fork()
                 if child == 0:
-                    run(Path(program).read_text(), output, model_of)
+                    run(Path(program).read_text(), output, order, model_of)
                 running[child] = output
         child = os.waitpid(-1, 0 if ended else os.WNOHANG)[0] if running else 0
         if child:

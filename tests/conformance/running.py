@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator
+from itertools import repeat
 from pathlib import Path
 from typing import NamedTuple
 
@@ -24,12 +25,16 @@ class Said(NamedTuple):
 
 
 def run_all(
-    programs: Iterable[str], python: str | None, at_once: int, model_of: str = "", order: int | None = None
+    programs: Iterable[str],
+    python: str | None,
+    at_once: int,
+    model_of: str = "",
+    orders: Iterable[int | None] = repeat(None),
 ) -> Iterator[Said | None]:
     """Run programs on the ROS 2 of an interpreter, or on the model (None); None for one that said nothing.
 
-    ``model_of`` is the distro whose named behaviours the model has, ``order`` the seed of the order of its
-    threads (None: first come, first served).
+    ``model_of`` is the distro whose named behaviours the model has, ``orders`` has a seed for each program
+    that the model runs with its threads in another order than first come, first served.
     """
     sources = list(programs)
     domain, claim = claimed_domain()
@@ -40,14 +45,13 @@ def run_all(
     }
     executable = python or sys.executable
     environment = {**unbootstrapped(executable), **alone}
-    arguments = ["model", model_of, *([] if order is None else [str(order)])]
     if python is None:
         environment["PYTHONPATH"] = str(Path(__file__).parents[2])
     else:
         environment.pop("PYTHONPATH")
     with claim, tempfile.TemporaryDirectory() as folder:
         process = subprocess.Popen(
-            [executable, copies.__file__, *(arguments if python is None else [])],
+            [executable, copies.__file__, *(["model", model_of] if python is None else [])],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,  # for what is raised on purpose
@@ -57,12 +61,12 @@ def run_all(
         with process as running:
             assert running.stdin is not None
             assert running.stdout is not None
-            for place, source in enumerate(sources):
+            for place, (source, order) in enumerate(zip(sources, orders, strict=False)):
                 file = Path(folder, f"{place}.py")
                 file.write_text(source)
                 if place >= at_once:
                     running.stdout.readline()
-                running.stdin.write(json.dumps([str(file), str(file.with_suffix(".out"))]) + "\n")
+                running.stdin.write(json.dumps([str(file), str(file.with_suffix(".out")), order]) + "\n")
                 running.stdin.flush()
             running.stdin.close()
             running.stdout.read()

@@ -233,9 +233,6 @@ class ActionServer(ActionWaitable):
     ) -> None:
         uuid = goal_handle.goal_id.uuid
         self._logger.debug(f"Executing goal with ID {uuid}")
-        # On virtual time a thread runs until it waits. Over a wire a client elsewhere hears that its goal
-        # is accepted before the work brings the first feedback.
-        self._host.clock.sleep(0)
         try:
             result = await self._execution.run(executor, execute_callback, goal_handle)
         except Exception as error:  # noqa: BLE001 -- the client gets an empty result

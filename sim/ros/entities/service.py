@@ -106,10 +106,12 @@ class Service(ClientOrService, Entity):
 
         Raises:
             TypeError: the response is not of the service's type, or the header came with no request.
+            InvalidHandle: the service was destroyed, by its own callback perhaps.
         """
         request = header if isinstance(header, Request) else answered(header)
         if not isinstance(response, self.srv_type.Response):
             raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}")
+        self.require_alive()
         copy = copy_message(response)
         with self.node.context.host.lock:
             self._probe.service_replied(request.call, self.name, copy)

@@ -203,7 +203,7 @@ class Cycle:
         if following is _TASKS and self._take_tasks():
             return True
         found = self._ready(now)
-        if following is _WAITING:
+        if following is _WAITING and not self._ended_in_vain():
             awaited = self._awaited(found)
             if awaited:
                 self._name(awaited)
@@ -213,6 +213,14 @@ class Cycle:
                 return True
         # Tasks that came meanwhile end the waiting as it begins.
         return self._gather(found) or self._take_tasks()
+
+    def _ended_in_vain(self) -> bool:
+        """Whether the waiting was over before anything came of what was waited for; else that was in time.
+
+        What wakes the executor, the beginning of a callback say, and what the callback sends next are a race.
+        """
+        is_race = self._woken_in is not None or len(self._tasks) > 0
+        return is_race and self._clock.choose(2) == 1
 
     def _ready(self, now: int) -> deque[Entity]:
         found = snapshot(self.view, now)

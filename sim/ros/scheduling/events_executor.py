@@ -1,6 +1,6 @@
 """rclpy's EventsExecutor: one queue, which everything that arrives goes into, and nobody asks a group.
 
-Its rules are those of rclpy's C++ code (Jazzy 7.1.9), and these were measured too, on Jazzy 7.1.6: the order
+Its rules are those of rclpy's C++ code (Jazzy 7.1.9), and these were measured too, on Jazzy 7.1.5: the order
 of what arrives, timers called twice, exceptions, timeouts, tasks, guard conditions, what is destroyed while
 it is queued, ``call`` and ``shutdown`` in a callback. Read from the code alone: jumps of ROS time, waitables.
 The wheels' own ``spin()`` never wakes, for its endless deadline overflows; what was measured had a timeout.

@@ -258,3 +258,30 @@ def test_a_goal_may_be_begun_after_its_node_left_its_executor_and_runs_when_that
         assert not begun[0].is_active
 
     simulate(program)
+
+
+def test_a_goal_is_at_work_before_a_client_of_the_same_executor_hears_that_it_is_accepted() -> None:
+    # Measured on Jazzy 7.1.5 and Kilted 9.1.2: 40 of 40 goals, on pools of 2 and 3.
+    said: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def execute(goal: ServerGoalHandle) -> Any:
+            said.append("at work")
+            goal.succeed()
+            return Fibonacci.Result()
+
+        def send() -> None:
+            accepted = client.send_goal_async(Fibonacci.Goal())
+            accepted.add_done_callback(lambda _: said.append("accepted"))
+
+        ActionServer(node, Fibonacci, "f", execute, callback_group=MutuallyExclusiveCallbackGroup())
+        client = ActionClient(node, Fibonacci, "f", callback_group=MutuallyExclusiveCallbackGroup())
+        node.create_timer(0.2, send, MutuallyExclusiveCallbackGroup())
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        executor.spin()
+
+    simulate(program, until=0.7)
+    assert said == ["at work", "accepted"] * 3

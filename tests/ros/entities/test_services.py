@@ -7,6 +7,7 @@ import pytest
 
 import sim.ros.rclpy as rclpy
 from sim.interfaces import service
+from sim.ros.exceptions import InvalidHandle
 from sim.ros.node.node import Node
 from sim.trace.events import MessageDropped, ServiceCalled, ServiceReplied
 from tests.support.simulation import Simulation, simulate
@@ -166,3 +167,20 @@ def test_a_destroyed_service_is_no_longer_offered() -> None:
 
 def _appending(to: list[int], number: int) -> Callable[[object], None]:
     return lambda _: to.append(number)
+
+
+def test_a_service_that_its_own_callback_destroyed_cannot_answer() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def serve(_: Any, response: Any) -> Any:
+            node.destroy_service(served)
+            return response
+
+        served = node.create_service(SetBool, "s", serve)
+        future = node.create_client(SetBool, "s").call_async(SetBool.Request())
+        with pytest.raises(InvalidHandle):
+            rclpy.spin(node)
+        assert not future.done()
+
+    simulate(program)

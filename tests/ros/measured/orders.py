@@ -1,4 +1,4 @@
-"""Plain programs, and what each was measured to say on real rclpy: Jazzy 7.1.6 and Kilted 9.1.2."""
+"""Plain programs, and what each was measured to say on real rclpy: Jazzy 7.1.5 and Kilted 9.1.2."""
 
 from dataclasses import dataclass
 
