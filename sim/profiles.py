@@ -146,7 +146,7 @@ class Profile:
         """A timer that is cancelled while its call waits for a worker is not called.
 
         Else ``spin`` raises, the timer is never called again, and its group stays held.
-        Source: #1488 and its backports, of which Humble's is placed by its date; run before and after it.
+        Source: #1488, #1487 for Jazzy and #1486 for Humble, whose patch is placed by its date; run on both.
         """
         return self._since(humble="3.3.18", jazzy="7.1.6", kilted="", lyrical="")
 

@@ -21,7 +21,7 @@ each_schedule = settings(
     deadline=None, max_examples=examples(40), suppress_health_check=[HealthCheck.too_slow]
 )
 SEEDS = st.integers(1, 2**32 - 1)
-ENOUGH = range(1, 800)
+ENOUGH = range(1, 1000)
 """Schedules within which a fault is found that no run in the usual order shows."""
 
 
