@@ -100,7 +100,7 @@ def main() -> None:
                 line += os.read(0, 1)
             ended = not line
             if line:
-                program, output, order = (*json.loads(line), None)[:3]
+                program, output, order = json.loads(line)
                 child = os.fork()
                 if child == 0:
                     run(Path(program).read_text(), output, order, model_of)
