@@ -19,9 +19,6 @@ from sim.engine.time_control import RealControl, VirtualControl
 from sim.ros.middleware.contents import Contents
 from sim.trace.events import AnyEvent, InputGiven, Notice, Severity
 
-# Kept from before the crash dump puts its own in its place.
-_leave = os._exit
-
 
 class CommandLoop:
     """Reads commands on a thread of its own; what changes the run is carried out in the run's time."""
@@ -48,6 +45,7 @@ class CommandLoop:
         self._requests = requests
         self._lines = lines
         self._terminal = terminal
+        self._exit_process = os._exit  # before the crash dump puts its own in its place
 
     def start(self) -> None:
         """Begin to read."""
@@ -75,7 +73,7 @@ class CommandLoop:
             try:
                 command = commands.decode(self._pipe.recv_bytes())
             except (EOFError, OSError):
-                _leave(0)  # the console is gone
+                self._exit_process(0)  # the console is gone
             except msgspec.DecodeError as error:
                 self._record(Notice(self._clock.now(), Severity.ERROR, f"unreadable command: {error}"))
                 continue

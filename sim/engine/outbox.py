@@ -12,12 +12,11 @@ from multiprocessing.connection import Connection
 
 from sim.trace.events import AnyEvent, EventsLost, Logged, Notice, Printed, Severity, encode
 
-# Kept from before virtual time, or the crash dump, puts its own in their place.
+# Kept from before virtual time puts its own in their place.
 _RealThread = threading.Thread
 _real_sleep = time.sleep
 _real_lock = threading.Lock
 _monotonic = time.monotonic
-_leave = os._exit
 
 _PERIOD = 0.01
 """Seconds between two batches."""
@@ -64,6 +63,7 @@ class Outbox:
         heartbeat: Callable[[], list[AnyEvent]] = list,
     ) -> None:
         self._pipe = pipe
+        self._exit_process = os._exit  # before the crash dump puts its own in its place
         self._pack = pack
         self._may_wait = may_wait
         self._before_batch = before_batch
@@ -134,7 +134,7 @@ class Outbox:
             self._pipe.send_bytes(self._pack(batch))
         except OSError as error:
             if error.errno == errno.EBADF:
-                _leave(TRACE_CLOSED)
+                self._exit_process(TRACE_CLOSED)
             self._closed = True
 
     def close(self, last: AnyEvent) -> None:

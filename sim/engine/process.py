@@ -63,10 +63,6 @@ from sim.trace.events import Notice, Printed, RunStarted, Severity
 if TYPE_CHECKING:
     from sim.shell import OnExit, Running
 
-# Kept from before the crash dump puts its own in its place.
-_leave = os._exit
-
-
 _PERIODS_A_LOOK = 5
 """Periods of the outbox, of 10 ms each, to one look at the threads' frames on the real clock."""
 
@@ -79,6 +75,7 @@ class Engine:
         self._pipe = pipe
         self._crash_dump = crash_dump
         self._pid = os.getpid()
+        self._exit_process = os._exit  # before the crash dump puts its own in its place
         clock = (
             VirtualClock(setup.speed, schedule_of(setup.seed), setup.explored_from)
             if setup.clock == "virtual"
@@ -216,7 +213,7 @@ class Engine:
         folders = {Path(program.path).resolve().parent for program in self._setup.programs}
         finalise(self._modules, lambda file: any(is_learners(file, folder) for folder in folders))
         if os.getpid() != self._pid:
-            _leave(outcome.status)  # a program forked, and this is the other one
+            self._exit_process(outcome.status)  # a program forked, and this is the other one
         self._shutdown.finish(outcome)
 
     def _tell_of_error(self, sentence: str) -> None:

@@ -27,9 +27,8 @@ from sim.trace.events import Notice, RunEnded, RunEnding, Severity
 _SIGNAL_AFTER = 0.5
 """Real seconds after which a program on virtual time that comes to no wait is interrupted by a signal."""
 
-# Kept from before a clock, a program or the crash dump put their own in their place.
+# Kept from before a clock or a program puts its own in their place.
 _real_sleep = time.sleep
-_leave = os._exit
 _allocate_lock = threading.Lock
 
 
@@ -71,6 +70,7 @@ class RunShutdown:
         self._endless = endless
         self._cause: Cause | None = None
         self._leaves = _allocate_lock()
+        self._exit_process = os._exit  # before the crash dump puts its own in its place
         self._grace_begins = threading.Semaphore(0)
 
     def start(self) -> None:
@@ -162,7 +162,7 @@ class RunShutdown:
         last = RunEnded(self._clock.now(), *told)
         self._outbox.close(last)
         self._starter.close()
-        _leave(0)
+        self._exit_process(0)
 
     def _interrupt(self) -> None:
         try:
