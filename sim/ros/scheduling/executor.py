@@ -90,7 +90,6 @@ class Executor:
             node.executor = self
             node._agenda.executor = self
             self._waitables_changed()
-            self.wake()
             return True
 
     def remove_node(self, node: OwnerNode) -> None:
@@ -101,7 +100,6 @@ class Executor:
                 if node._agenda.executor is self:
                     node._agenda.executor = None
                 self._waitables_changed()
-                self.wake()
 
     def get_nodes(self) -> list[OwnerNode]:
         """The nodes it serves."""
@@ -255,8 +253,8 @@ class Executor:
                 if self._asks_waitables and not asked and self._cycle.about_to_look:
                     continue
                 dues = (node._agenda.next_due() for node in self._cycle.view)
-                until = _earliest((deadline, self._waitables_due, *dues)) if self._cycle.waits else None
-                self._waits_until = until
+                known = [due for due in (deadline, self._waitables_due, *dues) if due is not None]
+                until = self._waits_until = min(known, default=None) if self._cycle.waits else None
                 self._waiting = True
             if not self._signal.wait(until):
                 with self._lock:
@@ -279,8 +277,7 @@ class Executor:
         """Ask a program's waitables, for a cycle that is about to begin; True."""
         with self._lock:
             # What becomes ready while they are asked has to end the waiting that may follow.
-            self._waiting = True
-            self._waits_until = None
+            self._waiting, self._waits_until = True, None
         self._waitables_due = ask_waitables(self, tuple(self._cycle.view))
         return True
 
@@ -308,10 +305,8 @@ class Executor:
             self._signal.set()
 
     def _wake(self) -> None:
-        if self._cycle.foreign_awaits:
-            self._cycle.recall_foreign_awaits()
-        if self._waiting:
-            self._signal.set()
+        self._cycle.recall_foreign_awaits()
+        self._rouse()
 
     def _work_came(self) -> None:
         """There is something to run now, while the thread that spins waits."""
@@ -325,9 +320,12 @@ class Executor:
     def _ask_awaiting(self) -> None:
         """A callback has begun or ended, which wakes the executor: tasks that await something ask again."""
         if self._cycle.foreign_awaits:
-            self._cycle.recall_foreign_awaits()
-            if self._waiting:
-                self._work_came()
+            self._recall_awaiting()
+
+    def _recall_awaiting(self) -> None:
+        self._cycle.recall_foreign_awaits()
+        if self._waiting:
+            self._work_came()
 
     def _look_again(self) -> None:
         """Something may be ready that was not; whoever calls this does not look for it."""
@@ -336,9 +334,7 @@ class Executor:
     def _resume(self, task: Task[Any]) -> None:
         with self._lock:
             self._cycle.add_task(task)
-            self._cycle.recall_foreign_awaits()
-            if self._waiting:
-                self._work_came()
+            self._recall_awaiting()
 
     def _resume_at_wake_up(self, task: Task[Any]) -> None:
         with self._lock:
@@ -402,7 +398,3 @@ class Executor:
 
     def __exit__(self, *_error: object) -> None:
         self.shutdown()
-
-
-def _earliest(times: Iterable[int | None]) -> int | None:
-    return min((time for time in times if time is not None), default=None)
