@@ -108,7 +108,10 @@ spin(executor_of(node))
         "resumes_at_once",
         """
 other = rclpy.create_node("o")
-other.create_service(SetBool, "s", lambda _, response: response)
+def answer(_, response):
+    time.sleep(0.2)  # until the asking executor waits
+    return response
+other.create_service(SetBool, "s", answer)
 client = other.create_client(SetBool, "s", callback_group=Reentrant())
 async def ask():
     timer.cancel()
@@ -202,15 +205,17 @@ spin(executor)
         """
 executor = executor_of(node)
 ticks = []
-node.create_timer(0.2, lambda: ticks.append(0))
+timer = node.create_timer(0.2, lambda: ticks.append(0))
 future = Future(executor=executor)
 after(0.7, lambda: future.set_result(None))
 executor.spin_until_future_complete(future)
-began, empty = time.monotonic(), 0
-while time.monotonic() < began + 0.03:
-    executor.spin_once(timeout_sec=0.03)
+timer.cancel()
+returned, empty = time.monotonic(), -1
+while time.monotonic() < returned + 0.5:
+    returned = time.monotonic()
+    executor.spin_once(timeout_sec=1.0)
     empty += 1
-say(f"{len(ticks)} calls, {empty - 1} returns for nothing")
+say(f"{len(ticks)} calls, {empty} returns for nothing")
 finish()
 """,
         {
