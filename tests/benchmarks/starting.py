@@ -21,7 +21,7 @@ def lesson(_: int) -> float:
     with opened() as console:
         console.until(_MENU)
         console.watch(1.0)
-        console.press("3")
+        console.press("3\r")
         console.until(QUESTION)
         console.press(SKIPS)
         return console.until(RUNS)
