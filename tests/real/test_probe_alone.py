@@ -6,6 +6,8 @@ import shutil
 import socket
 import subprocess
 import sys
+import threading
+import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -21,6 +23,7 @@ from sim.probes.on_path.cbtui_probe.consoles import Console as ConsoleLink
 from sim.probes.on_path.cbtui_probe.consoles import lines
 from sim.probes.on_path.cbtui_probe.recorder import Recorder, now
 from sim.probes.on_path.cbtui_probe.sockets import Server
+from sim.probes.on_path.cbtui_probe.turns import Turns
 from sim.real.probe_link import process_at, processes_in, sockets_in
 from sim.real.programs import ON_PATH
 from sim.real.wire import Hello, Left, decode_lines
@@ -86,7 +89,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def server(recorder: Recorder, folder: Path) -> Iterator[Server]:
-    server = Server(recorder, lambda: None)
+    server = Server(recorder, lambda: None, Turns())
     server.start(str(folder))
     yield server
     server.close()
@@ -181,8 +184,36 @@ def test_what_has_appeared_is_told_to_everybody_who_comes(recorder: Recorder, co
     assert [getattr(come().follow().next(), "thread", None) for _ in range(2)] == [thread, thread]
 
 
+def test_an_executor_stops_until_the_thread_that_is_late_has_worked(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sim.probes.on_path.cbtui_probe.turns._LONGEST", 10.0)
+    turns, order = Turns(), list[str]()
+    turns.end(-1)  # it was to work a second ago
+    late_at = turns.late_at
+    assert now() > late_at
+
+    def work() -> None:
+        while turns.late_at == late_at:  # until the executor stops
+            time.sleep(0)
+        order.append("worked")
+        turns.end(1)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    turns.let()
+    order.append("goes on")
+    thread.join()
+    assert order == ["worked", "goes on"]
+
+
+def test_an_executor_goes_on_without_a_thread_that_never_works() -> None:
+    turns = Turns()
+    turns.end(-1)
+    turns.let()
+    assert now() < turns.late_at, "nor is it asked to stop again"
+
+
 def test_a_process_that_ends_says_farewell(recorder: Recorder, folder: Path, come: Come) -> None:
-    server = Server(recorder, lambda: None)
+    server = Server(recorder, lambda: None, Turns())
     server.start(str(folder))
     say(recorder, "to who follows")
     console = come().follow()
@@ -243,7 +274,7 @@ def test_a_socket_is_there_only_once_it_answers(
         listen(listener, backlog)
 
     monkeypatch.setattr(socket.socket, "listen", looked_at)
-    server = Server(recorder, lambda: None)
+    server = Server(recorder, lambda: None, Turns())
     server.start(str(folder))
     server.close()
     assert found == [[]]

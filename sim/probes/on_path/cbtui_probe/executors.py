@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from .recorder import Recorder
     from .tuning import Tuning
+    from .turns import Turns
 
 _IDLE = 200_000_000
 """Nanoseconds without a sign of being spun after which nobody spins an executor."""
@@ -47,9 +48,10 @@ class Spinner:
 class Executors:
     """Puts itself into the ways in which executors are made and wait."""
 
-    def __init__(self, recorder: Recorder, tuning: Tuning) -> None:
+    def __init__(self, recorder: Recorder, tuning: Tuning, turns: Turns) -> None:
         self._recorder = recorder
         self._tuning = tuning
+        self._turns = turns
         self._spinners: Any = weakref.WeakKeyDictionary()
 
     def spinner_of(self, executor: Any) -> Spinner | None:
@@ -66,7 +68,7 @@ class Executors:
         executors = rclpy.executors
         base, pool_class = executors.Executor, executors.MultiThreadedExecutor
         make, make_pool, wait = base.__init__, pool_class.__init__, base.wait_for_ready_callbacks
-        add, local = base.add_node, self._recorder.local
+        add, local, turns = base.add_node, self._recorder.local, self._turns
 
         @wraps(make)
         def init(executor: Any, *args: Any, **kwargs: Any) -> None:
@@ -85,8 +87,10 @@ class Executors:
         def wait_for_ready_callbacks(executor: Any, *args: Any, **kwargs: Any) -> Any:
             spinner, here = getattr(executor, STATE), local.here
             outer, here.spinner = here.spinner, spinner
-            spinner.waits = True
             try:
+                if spinner.spun_at > turns.late_at:
+                    turns.let()
+                spinner.waits = True
                 return wait(executor, *args, **kwargs)
             except BaseException as error:
                 leave_out_probe(error)

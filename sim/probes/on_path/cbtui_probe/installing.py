@@ -13,6 +13,7 @@ from .positions import Positions
 from .recorder import Recorder, now
 from .sockets import Server
 from .tuning import Tuning
+from .turns import Turns
 from .unseen import leave_out_probe
 from .waits import Waits
 
@@ -34,8 +35,8 @@ def install(folder: str) -> None:
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
     recorder = Recorder()
-    tuning = Tuning(recorder)
-    executors, entities = Executors(recorder, tuning), Entities(recorder, tuning)
+    tuning, turns = Tuning(recorder), Turns()
+    executors, entities = Executors(recorder, tuning, turns), Entities(recorder, tuning)
     waits = Waits(recorder, entities, executors, rclpy_implementation)
     positions = Positions(recorder, executors)
 
@@ -43,7 +44,7 @@ def install(folder: str) -> None:
         positions.look()
         waits.look()
 
-    server = Server(recorder, look)
+    server = Server(recorder, look, turns)
     server.start(folder)
     executors.watch(rclpy, rclpy_implementation)
     entities.watch(rclpy.node.Node)

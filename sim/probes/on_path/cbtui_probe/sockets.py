@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from .recorder import Recorder
+    from .turns import Turns
 
 _PERIOD = 0.01
 """Seconds between two looks, at least."""
@@ -103,9 +104,10 @@ class Server:
     The thread is a daemon, and nothing it does can hold up or end the program.
     """
 
-    def __init__(self, recorder: Recorder, look: Callable[[], None]) -> None:
+    def __init__(self, recorder: Recorder, look: Callable[[], None], turns: Turns) -> None:
         self._recorder = recorder
         self._look = look
+        self._turns = turns
         self._token = os.environ.get(TOKEN, "")
         self._listeners: list[socket.socket] = []
         self._visitors: list[_Visitor] = []
@@ -151,6 +153,7 @@ class Server:
         looks, looked, period = True, 0.0, _PERIOD
         while not self._ends.is_set():
             began = time.monotonic()
+            self._turns.end(period)
             with suppress(OSError):
                 for listener in select.select(self._listeners, [], [], period)[0]:
                     self._let_in(listener)
