@@ -11,12 +11,15 @@ from cbtui.runs.live.live_run import ShownRun
 from cbtui.screens.parts.runs import RunController
 from cbtui.terminal.processor import cpu_wait, time_off_cpu
 
-FRAMES_A_SECOND = 30
+FRAMES_A_SECOND = 24
 
-_LANES_A_PANE = 6
+_SOONEST = 0.01
+"""Seconds from one frame with all panes to the next, if keys ask for it."""
+
+_LANES_A_PANE = 5
 """Lane frames per frame of the other panes: their words and figures are read slower than lanes move."""
 
-_LANES_A_TEXT = 12
+_LANES_A_TEXT = 10
 """Lane frames per frame of log and code, whose scrolling lines are read slower still."""
 
 _REST_FACTOR = 2.0
@@ -70,8 +73,8 @@ class FrameSchedule:
         return FrameContent.ALL_BUT_TEXTS if self._frames % _LANES_A_PANE == 0 else FrameContent.LANES
 
     def is_due_before_next(self) -> bool:
-        """Tell whether to draw at once: only if nothing was drawn within the last frame."""
-        return self._stale and self._clock() - self._drawn_at >= 1 / FRAMES_A_SECOND
+        """Tell whether to draw at once: not if all was drawn just now."""
+        return self._stale and self._clock() - self._drawn_at >= _SOONEST
 
     def drawn(self, extent: FrameContent) -> None:
         """Note what is being drawn: everything, or all but the texts."""

@@ -27,12 +27,12 @@ def test_the_first_frame_draws_everything_and_then_nothing_is_drawn_while_nothin
 
 
 def test_a_run_that_grows_is_drawn_on_the_lanes_in_each_frame_and_elsewhere_less_often() -> None:
-    extents = drawing(FrameSchedule(), 25, grows=True)[1:]
+    extents = drawing(FrameSchedule(), 21, grows=True)[1:]
     assert FrameContent.NOTHING not in extents
     assert [
         extents.count(extent) for extent in (FrameContent.LANES, FrameContent.ALL_BUT_TEXTS, FrameContent.ALL)
     ] == [
-        20,
+        16,
         2,
         2,
     ]
@@ -46,7 +46,7 @@ def test_texts_that_were_left_out_are_drawn_although_nothing_more_comes() -> Non
     assert set(extents) == {FrameContent.ALL, FrameContent.NOTHING}
 
 
-def test_what_the_person_did_is_drawn_at_once_but_no_faster_than_frames_come() -> None:
+def test_what_the_person_did_is_drawn_at_once_unless_all_was_drawn_just_now() -> None:
     clock = Clock()
     schedule = FrameSchedule(clock)
     schedule.invalidate()
@@ -54,10 +54,10 @@ def test_what_the_person_did_is_drawn_at_once_but_no_faster_than_frames_come() -
     schedule.drawn(FrameContent.ALL)
     schedule.invalidate()
     assert not schedule.is_due_before_next()
-    clock.now += 0.04
+    clock.now += 0.02
     assert schedule.is_due_before_next()
     schedule.drawn(FrameContent.ALL)
-    clock.now += 0.04
+    clock.now += 0.02
     assert not schedule.is_due_before_next()
 
 
