@@ -13,8 +13,8 @@ SECOND = 1_000_000_000
 def paced(speed: float | None, program: Callable[[VirtualClock], object]) -> float:
     """Run ``program`` at a speed; how many real seconds it took."""
     with no_thread_left():
-        clock = EndedClock(speed)
         began = time.monotonic()
+        clock = EndedClock(speed)
         program(clock)
         took = time.monotonic() - began
         clock.wind_up()
