@@ -18,6 +18,9 @@ from dataclasses import dataclass
 DISTROS = {"humble": "3.3.22", "jazzy": "7.1.12", "kilted": "9.1.2", "lyrical": ""}
 """The distributions, and the patch that is meant where none is named; those of Lyrical are not known."""
 
+RUN = ("jazzy", "kilted")
+"""Those of which real rclpy was run beside the model."""
+
 
 class UnknownProfileError(ValueError):
     """There is no such distribution, or no such patch of it; the text is a sentence on that."""
@@ -40,7 +43,9 @@ class Profile:
         distro, _, patch = name.partition("@")
         usual = DISTROS.get(distro)
         if usual is None:
-            raise UnknownProfileError(f"no distribution {distro!r} is known; give {', '.join(DISTROS)}")
+            *others, last = DISTROS
+            give = f"{', '.join(others)} or {last}"
+            raise UnknownProfileError(f"{distro!r} is no distribution; give {give}")
         if "@" not in name:
             return cls(distro, usual)
         line = usual.rpartition(".")[0]

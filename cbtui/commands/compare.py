@@ -46,6 +46,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
             type=values.threads,
             help=f"number of threads of {letter.upper()}'s executor, instead of its own",
         )
+        changes.add_distro(parser, f"-{letter}")
         changes.add_on(parser, f"-{letter}")
     inputs.add_options(parser)
     parser.add_argument(
@@ -78,7 +79,8 @@ def _check(options: argparse.Namespace) -> None:
         is_real = getattr(options, f"on_{letter}") != "model"
         if is_real and options.inputs is not None:
             refuse(f"a run on real ROS 2 cannot be repeated; leave out --inputs, or --on-{letter}")
-        for option, given in (("threads", getattr(options, f"threads_{letter}")), ("on", is_real)):
+        given_options = {name: getattr(options, f"{name}_{letter}") for name in ("threads", "distro")}
+        for option, given in (*given_options.items(), ("on", is_real)):
             if given and _is_recording(name):
                 refuse(f"{name} is a recording and stays as it is; leave out --{option}-{letter}")
     if all(map(_is_recording, names)):
@@ -102,7 +104,9 @@ def _is_recording(name: str) -> bool:
 def _changes(options: argparse.Namespace, letter: str) -> "Changes":
     from cbtui.runs.setup.changes import Changes
 
-    return Changes(getattr(options, f"threads_{letter}"), real=changes.real_ros_of(options, f"-{letter}"))
+    real = changes.real_ros_of(options, f"-{letter}")
+    threads, distro = (getattr(options, f"{name}_{letter}") for name in ("threads", "distro"))
+    return Changes(threads, distro=distro, real=real)
 
 
 def _compared_run(name: str, changed: "Changes", arguments: list[str]) -> "ComparedRun":

@@ -41,7 +41,7 @@ class Scope(StrEnum):
     PREDICTION = "Prediction"
     SOLUTION = "Solution"
     ASKING = "Question"
-    NUMBER = "Choice of a number"
+    VALUE = "Choice of a value"
     MOMENT = "Choice of a moment"
     CHAIN = "Choice of a chain"
     HELP = "Help"

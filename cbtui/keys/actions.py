@@ -274,9 +274,9 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("take", "enter", "look at it", "Look at the solution"),
         ("close", "escape,q", "not yet", "Close the window"),
     ),
-    Scope.NUMBER: (
-        ("go", "enter", "take", "Take the number"),
-        ("close", "escape", "close", "Close the window, and keep the number"),
+    Scope.VALUE: (
+        ("go", "enter", "take", "Take the value"),
+        ("close", "escape", "close", "Close the window, and keep the value"),
     ),
     Scope.MOMENT: (
         ("go", "enter", "go", "Go to the moment"),

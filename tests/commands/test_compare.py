@@ -9,6 +9,27 @@ from tests.recording.files import write
 from tests.support.commands import cbtui
 from tests.trace.samples import FULL
 
+_CALLS_OUT_OF_TIME = """
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+rclpy.init()
+node = Node("asker")
+client = node.create_client(Trigger, "/nobody")
+
+def tick():
+    client.call(Trigger.Request(), timeout_sec=0.1)
+
+node.create_timer(0.9, tick, callback_group=ReentrantCallbackGroup())
+executor = MultiThreadedExecutor(2)
+executor.add_node(node)
+executor.spin()
+"""
+"""Kilted raises TimeoutError where Jazzy returns None."""
+
 
 def told(*words: str) -> str:
     done = cbtui(*words)
@@ -32,6 +53,16 @@ def test_a_lesson_can_be_compared_with_itself_with_other_threads() -> None:
     )
     assert figures(text, "timer_callback", "calls") == ["7", "3", "4 fewer"]
     assert "  run B waits: no free worker" in text.splitlines()
+
+
+def test_a_program_can_be_compared_with_itself_on_another_release(tmp_path: Path) -> None:
+    node = tmp_path / "node.py"
+    node.write_text(_CALLS_OUT_OF_TIME)
+    distros = ("--distro-a", "jazzy", "--distro-b", "kilted")
+    done = cbtui("compare", str(node), str(node), *distros, "--to", "3")
+    assert f"run B  {node}, kilted@9.1.2" in done.stdout.splitlines()
+    assert figures(done.stdout, "tick", "calls") == ["3", "2", "1 fewer"]
+    assert (done.returncode, "TimeoutError" in done.stderr) == (1, True)
 
 
 @pytest.mark.slow
@@ -90,6 +121,9 @@ LESSONS = ["single-thread", "split-groups"]
         ([*LESSONS, "--", "-some"], "only a file takes arguments; leave out what stands behind --"),
         (["RECORDING", "single-thread", "--threads-a", "2"], "leave out --threads-a"),
         (["single-thread", "RECORDING", "--threads-b", "2"], "leave out --threads-b"),
+        (["single-thread", "RECORDING", "--distro-b", "kilted"], "leave out --distro-b"),
+        ([*LESSONS, "--distro-a", "noetic"], "'noetic' is no distribution; give humble, jazzy"),
+        ([*LESSONS, "--on-a", "ros2", "--distro-a", "jazzy"], "leave out --distro-a; --python-a names"),
         (["RECORDING", "RECORDING", "--call", "1"], "nothing is run; leave out --call"),
         (["RECORDING", "RECORDING", "--at", "1", "ros2 topic list"], "nothing is run; leave out --at"),
         (["RECORDING", "RECORDING", "--inputs", "RECORDING"], "nothing is run; leave out --inputs"),

@@ -16,12 +16,12 @@ from cbtui.screens.windows.export import ExportScreen
 from cbtui.screens.windows.group import GroupScreen
 from cbtui.screens.windows.help import HelpScreen
 from cbtui.screens.windows.moment import MomentScreen
-from cbtui.screens.windows.number import NumberScreen
 from cbtui.screens.windows.open_file import OpenFileScreen
 from cbtui.screens.windows.prediction import PredictionScreen
 from cbtui.screens.windows.setup import SetupScreen
 from cbtui.screens.windows.solution import ConfirmSolutionScreen, SolutionScreen
 from cbtui.screens.windows.threads import ThreadsScreen
+from cbtui.screens.windows.value import ValueScreen
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.choice import ChoiceOptions
 from cbtui.widgets.code import CodeView
@@ -49,7 +49,7 @@ HOMES: dict[Scope, type[DOMNode]] = {
     Scope.PREDICTION: PredictionScreen,
     Scope.SOLUTION: SolutionScreen,
     Scope.ASKING: ConfirmSolutionScreen,
-    Scope.NUMBER: NumberScreen,
+    Scope.VALUE: ValueScreen,
     Scope.MOMENT: MomentScreen,
     Scope.CHAIN: ChainScreen,
     Scope.HELP: HelpScreen,

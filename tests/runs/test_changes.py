@@ -46,6 +46,7 @@ ABOUT = ChangeableSetup(
     ),
     (),
     20.0,
+    "jazzy@7.1.12",
 )
 SERVER = find("exclusive-2-threads")
 
@@ -197,6 +198,11 @@ def test_changes_are_told_in_few_words(changes: Changes, words: str) -> None:
             ["self.create_…(…, self.odom_callback, …)  # no group named"],
         ),
         (Changes(periods={TIMER: 200_000_000}), ["self.create_timer(0.2, self.timer_callback, …)"]),
+        (Changes(distro="kilted@9.1.2"), ["# cbtui: distro = kilted@9.1.2"]),
+        (
+            Changes(distro="lyrical"),
+            ["# cbtui: distro = lyrical\n# it follows documentation and source, not runs"],
+        ),
         (
             Changes(sensor_rate=5),
             ["# no line of the node: the robot's sensors measure 5 times a second"],

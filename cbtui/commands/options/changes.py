@@ -52,12 +52,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_distro(parser)
 
 
-def add_distro(parser: argparse.ArgumentParser) -> None:
-    """Add ``--distro``."""
+def add_distro(parser: argparse.ArgumentParser, side: str = "") -> None:
+    """Add ``--distro``, or ``--distro-a`` and ``--distro-b`` where two programs are run."""
     from sim.profiles import Profile
 
     parser.add_argument(
-        "--distro",
+        f"--distro{side}",
         metavar="NAME[@PATCH]",
         type=values.distro,
         help="the release whose rclpy the model is like: humble, jazzy, kilted, lyrical, also with a patch, "
@@ -132,15 +132,19 @@ def changes_of(options: argparse.Namespace) -> "Changes":
 
 def real_ros_of(options: argparse.Namespace, side: str = "") -> "RealRos | None":
     """The real ROS 2 that ``--on`` asks for; what contradicts that ends the program with one line and 2."""
-    ground, chosen = (getattr(options, f"{name}{side.replace('-', '_')}") for name in ("on", "python"))
+    own = side.replace("-", "_")
+    ground, chosen = (getattr(options, f"{name}{own}") for name in ("on", "python"))
     if ground == "model":
         if chosen is not None:
             refuse(f"--python{side} names the Python of a real ROS 2: give --on{side} ros2 with it")
         return None
     if getattr(options, "clock", None) == "virtual" or getattr(options, "seed", None) is not None:
         refuse("real ROS 2 runs on the real clock and in its own order: leave out --clock virtual and --seed")
-    if getattr(options, "distro", None) is not None:
-        refuse("a real ROS 2 is the release it is: leave out --distro; --python names a Python with another")
+    if getattr(options, f"distro{own}", None) is not None:
+        refuse(
+            f"a real ROS 2 is the release it is: leave out --distro{side}; "
+            f"--python{side} names a Python with another"
+        )
     return real_ros(chosen, side)
 
 

@@ -47,6 +47,7 @@ class ChangeableSetup:
 
     ``executor`` is the program's own, ``executor_now`` the run's. ``threads_argument`` is the argument for
     the number of threads, if the program has one. ``sensor_rate`` is in Hz, None without a robot.
+    ``release`` is the rclpy that the model is like, None on real ROS 2.
     """
 
     executor: str
@@ -55,11 +56,12 @@ class ChangeableSetup:
     callbacks: tuple[ChangeableCallback, ...]
     arguments: tuple[ChangeableArgument, ...]
     sensor_rate: float | None
+    release: str | None
 
 
 def changeable(subject: ShownProgram, setup: RunSetup, timeline: Timeline) -> ChangeableSetup:
     """Return what can be changed about a run, as far as its trace tells."""
-    lesson = subject.lesson
+    lesson, started = subject.lesson, timeline.started
     words = setup.programs[0].arguments if setup.programs else ()
     arguments = [
         ChangeableArgument(each.argument, Quantity(each.name, each.unit, each.least, each.most), number)
@@ -73,6 +75,7 @@ def changeable(subject: ShownProgram, setup: RunSetup, timeline: Timeline) -> Ch
         tuple(callbacks_of(timeline).values()),
         tuple(arguments),
         None if setup.robot is RobotUse.NEVER else setup.sensor_rate or USUAL_SENSOR_RATE,
+        None if setup.real is not None else started.distro if started is not None else setup.distro,
     )
 
 

@@ -124,7 +124,7 @@ class Changes:
         if self.threads is not None:
             said.append(counted(self.threads, "thread"))
         if self.distro is not None:
-            said.append(f"as on {self.distro}")
+            said.append(self.distro)
         if self.real is not None:
             said.append("on real ROS 2")
         if self.seed is not None:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from cbtui.runs.setup.changeable import ChangeableSetup
 from cbtui.runs.setup.changes import CallbackPlace, Changes
+from sim.profiles import RUN, Profile
 from sim.trace.events import EntityKind
 from sim.units import SECOND
 
@@ -33,6 +34,8 @@ def code_of(changes: Changes, about: ChangeableSetup) -> list[str]:
         statements.append(code_of_threads(changes.threads, about))
     if changes.sensor_rate is not None:
         statements.append(code_of_sensor_rate(changes.sensor_rate))
+    if changes.distro is not None:
+        statements.append(code_of_release(changes.distro))
     return list(dict.fromkeys(statements))
 
 
@@ -56,6 +59,13 @@ def code_of_argument(argument: str, number: float) -> str:
 def code_of_sensor_rate(rate: float) -> str:
     """Return a comment instead of code: the sensors are not part of the program."""
     return f"# no line of the node: the robot's sensors measure {rate:g} times a second"
+
+
+def code_of_release(release: str) -> str:
+    """Return the line that makes a file run as on a release, and what such a run stands on."""
+    was_run = Profile.named(release).distro in RUN
+    caveat = "" if was_run else "\n# it follows documentation and source, not runs"
+    return f"# cbtui: distro = {release}{caveat}"
 
 
 def code_of_group(callback: str, kind: EntityKind, wish: str) -> list[str]:

@@ -1,11 +1,37 @@
-"""Numbers that a person can set: their bounds, and the message for invalid input."""
+"""Values that a person can type: their bounds, and the message for invalid input."""
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, Protocol, TypeVar
+
+from sim.profiles import DISTROS, Profile
+
+Value = TypeVar("Value")
 
 
 class BadQuantityError(ValueError):
     """Text that is not a valid number; the message says why and what to enter."""
+
+
+class TypedValue(Protocol[Value]):
+    """A kind of value with a ``name`` for people; ``bounds`` are all values, in words."""
+
+    @property
+    def name(self) -> str:
+        """The name."""
+
+    @property
+    def bounds(self) -> str:
+        """All values, in words."""
+
+    def read(self, text: str) -> Value:
+        """Return the value that somebody typed.
+
+        Raises:
+            ValueError: the text is no such value; the message says why and what to enter.
+        """
+
+    def shown(self, value: Value) -> str:
+        """The value as a person reads it."""
 
 
 class Quantity(NamedTuple):
@@ -39,6 +65,25 @@ class Quantity(NamedTuple):
     def shown(self, number: float) -> str:
         """The number with its unit."""
         return f"{number:g} {self.unit}"
+
+
+class Release(NamedTuple):
+    """A release of rclpy: a distribution, perhaps with a patch."""
+
+    name: str = "release"
+    bounds: str = f"{', '.join(list(DISTROS)[:-1])} or {list(DISTROS)[-1]}, also with a patch (jazzy@7.1.5)"
+
+    def read(self, text: str) -> str:
+        """Return the release's name with its patch.
+
+        Raises:
+            UnknownProfileError: there is no such release.
+        """
+        return str(Profile.named(text.strip().lower()))
+
+    def shown(self, value: str) -> str:
+        """The name itself."""
+        return value
 
 
 PERIOD = Quantity("period", "s", 0.001, 3600)

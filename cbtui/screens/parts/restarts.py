@@ -24,7 +24,7 @@ from cbtui.screens.parts.part import RunHost, ScreenHost, ScreenPart, WindowHost
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.windows.setup import SetupScreen
-from cbtui.screens.windows.setup_rows import GroupRow, NumberRow, SettingRow, ThreadsRow
+from cbtui.screens.windows.setup_rows import GroupRow, SettingRow, ThreadsRow, ValueRow
 from sim.engine.setup import TimedInput
 
 _TOLD = 2
@@ -133,7 +133,7 @@ class SetUpKeys(ScreenPart):
         """Open the set-up window at the selected timer's period."""
         callback = self._selected_callback
         name = callback.name if callback is not None and callback.period else None
-        self._open_set_up(lambda row: isinstance(row, NumberRow) and row.what in {name, name or row.what})
+        self._open_set_up(lambda row: isinstance(row, ValueRow) and row.what in {name, name or row.what})
 
     @property
     def _changeable(self) -> ChangeableSetup:

@@ -41,6 +41,7 @@ class SetupScreen(WindowScreen[Changes]):
         super().__init__(charset)
         self._about = about
         self._changes = changes
+        self._unchanged = Changes(real=changes.real, whole_tracebacks=changes.whole_tracebacks)
         self._rows = rows_of(about)
         self._first = first
 
@@ -59,7 +60,7 @@ class SetupScreen(WindowScreen[Changes]):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer ``undo_all`` if there are changes."""
-        return action != "undo_all" or self._changes != Changes()
+        return action != "undo_all" or self._changes != self._unchanged
 
     @on(OptionList.OptionSelected)
     def _ask(self, event: OptionList.OptionSelected) -> None:
@@ -76,8 +77,8 @@ class SetupScreen(WindowScreen[Changes]):
         self.query_one(OptionList).action_select()
 
     def action_undo_all(self) -> None:
-        """Discard all changes."""
-        self._changes = Changes(whole_tracebacks=self._changes.whole_tracebacks)
+        """Discard all changes, except what the program runs on."""
+        self._changes = self._unchanged
         self._show()
 
     def action_run(self) -> None:
@@ -97,7 +98,8 @@ class SetupScreen(WindowScreen[Changes]):
         changed_to = row.changed_to(self._changes)
         line = self._line(row.what, row.aspect, row.now, changed_to)
         kept = len(line) - _COLUMNS[-1]
-        return Option(Content.assemble(line[:kept], (line[kept:], "bold $text-accent")))
+        text = Content.assemble(line[:kept], (line[kept:], "bold $text-accent"))
+        return Option(text, disabled=row.is_fixed)
 
     def _line(self, *texts: str) -> str:
         parts = (fit(text, width, self._charset) for text, width in zip(texts, _COLUMNS, strict=True))

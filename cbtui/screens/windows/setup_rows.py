@@ -3,24 +3,29 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any, Protocol
+from typing import Any, Generic, Protocol
 
 from textual.screen import ModalScreen
 
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.changeable import ChangeableArgument, ChangeableCallback, ChangeableSetup
 from cbtui.runs.setup.changes import Changes
-from cbtui.runs.setup.equivalent_code import code_of_argument, code_of_period, code_of_sensor_rate
-from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, Quantity
+from cbtui.runs.setup.equivalent_code import (
+    code_of_argument,
+    code_of_period,
+    code_of_release,
+    code_of_sensor_rate,
+)
+from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, Release, TypedValue, Value
 from cbtui.screens.windows.group import UNCHANGED, GroupScreen
-from cbtui.screens.windows.number import NumberScreen
 from cbtui.screens.windows.threads import ThreadsScreen
+from cbtui.screens.windows.value import ValueScreen
 from sim.plural import counted
 from sim.units import SECOND, nearest_ns
 
 
 class SettingRow(Protocol):
-    """One changeable setting: ``what`` it belongs to, and its value ``now``."""
+    """One setting: ``what`` it belongs to, and its value ``now``; ``is_fixed`` if it cannot be changed."""
 
     @property
     def what(self) -> str:
@@ -32,7 +37,11 @@ class SettingRow(Protocol):
 
     @property
     def now(self) -> str:
-        """The value in the run on screen."""
+        """The value in the run on screen, or why it cannot be changed."""
+
+    @property
+    def is_fixed(self) -> bool:
+        """Whether it cannot be changed."""
 
     def changed_to(self, changes: Changes) -> str:
         """The changed value; "" if it is unchanged."""
@@ -51,6 +60,7 @@ class ThreadsRow:
     about: ChangeableSetup
     what = "executor"
     aspect = "threads"
+    is_fixed = False
 
     @property
     def now(self) -> str:
@@ -76,6 +86,7 @@ class GroupRow:
 
     callback: ChangeableCallback
     aspect = "group"
+    is_fixed = False
 
     @property
     def what(self) -> str:
@@ -101,35 +112,30 @@ class GroupRow:
 
 
 @dataclass(frozen=True)
-class NumberRow:
-    """A number: ``chosen`` reads it from the changes, ``changed`` sets it there, ``code`` is its line."""
+class ValueRow(Generic[Value]):
+    """A value to type: ``chosen`` reads it from the changes, ``changed`` sets it, ``code`` is its line."""
 
     what: str
     aspect: str
-    quantity: Quantity
-    number: float
-    chosen: Callable[[Changes], float | None]
-    changed: Callable[[Changes, float | None], Changes]
-    code: Callable[[float], str]
-
-    @property
-    def now(self) -> str:
-        """The run's number."""
-        return self.quantity.shown(self.number)
+    kind: TypedValue[Value]
+    now: str
+    chosen: Callable[[Changes], Value | None]
+    changed: Callable[[Changes, Value | None], Changes]
+    code: Callable[[Value], str]
+    is_fixed: bool = False
 
     def changed_to(self, changes: Changes) -> str:
-        """The number that was chosen."""
-        number = self.chosen(changes)
-        return "" if number is None else self.quantity.shown(number)
+        """The value that was chosen."""
+        value = self.chosen(changes)
+        return "" if value is None else self.kind.shown(value)
 
     def ask(self, changes: Changes, charset: Charset) -> ModalScreen[Any]:
-        """Ask for a number."""
-        chosen = self.chosen(changes)
-        number = self.number if chosen is None else chosen
-        return NumberScreen(f"{self.what}: {self.aspect}", self.quantity, number, self.code, charset)
+        """Ask for a value."""
+        text = self.changed_to(changes) or self.now
+        return ValueScreen(f"{self.what}: {self.aspect}", self.kind, text, self.code, charset)
 
-    def take(self, changes: Changes, answer: tuple[float | None]) -> Changes:
-        """Take the number."""
+    def take(self, changes: Changes, answer: tuple[Value | None]) -> Changes:
+        """Take the value."""
         return self.changed(changes, answer[0])
 
 
@@ -141,10 +147,11 @@ def rows_of(about: ChangeableSetup) -> list[SettingRow]:
     rows += [_argument_row(argument) for argument in about.arguments]
     if about.sensor_rate is not None:
         rows.append(_sensors_row(about.sensor_rate))
+    rows.append(_release_row(about.release))
     return rows
 
 
-def _period_row(callback: ChangeableCallback) -> NumberRow:
+def _period_row(callback: ChangeableCallback) -> ValueRow[float]:
     place = callback.place
 
     def chosen(changes: Changes) -> float | None:
@@ -154,36 +161,49 @@ def _period_row(callback: ChangeableCallback) -> NumberRow:
     def changed(changes: Changes, seconds: float | None) -> Changes:
         return changes.with_period(place, None if seconds is None else nearest_ns(seconds))
 
-    return NumberRow(
+    return ValueRow(
         callback.name,
         "period",
         PERIOD,
-        callback.period / SECOND,
+        PERIOD.shown(callback.period / SECOND),
         chosen,
         changed,
         lambda seconds: code_of_period(callback.name, nearest_ns(seconds)),
     )
 
 
-def _argument_row(argument: ChangeableArgument) -> NumberRow:
-    return NumberRow(
+def _argument_row(argument: ChangeableArgument) -> ValueRow[float]:
+    return ValueRow(
         argument.quantity.name,
         "number",
         argument.quantity,
-        argument.now,
+        argument.quantity.shown(argument.now),
         lambda changes: changes.settings.get(argument.name),
         lambda changes, number: changes.with_setting(argument.name, number),
         partial(code_of_argument, argument.name),
     )
 
 
-def _sensors_row(rate: float) -> NumberRow:
-    return NumberRow(
+def _sensors_row(rate: float) -> ValueRow[float]:
+    return ValueRow(
         "robot's sensors",
         "rate",
         SENSOR_RATE,
-        rate,
+        SENSOR_RATE.shown(rate),
         lambda changes: changes.sensor_rate,
         lambda changes, chosen: replace(changes, sensor_rate=chosen),
         code_of_sensor_rate,
+    )
+
+
+def _release_row(release: str | None) -> ValueRow[str]:
+    return ValueRow(
+        "rclpy",
+        "release",
+        Release(),
+        "fixed: real ROS 2 has its own" if release is None else release,
+        lambda changes: changes.distro,
+        lambda changes, chosen: replace(changes, distro=chosen),
+        code_of_release,
+        is_fixed=release is None,
     )

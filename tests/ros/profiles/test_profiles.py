@@ -87,5 +87,5 @@ def test_a_file_may_choose_its_release_and_the_trace_tells_it(tmp_path: Path) ->
 def test_a_release_that_a_file_cannot_have_is_told(tmp_path: Path) -> None:
     run = run_program(tmp_path, "# cbtui: distro = foxy\n")
     (said,) = [each.text for each in run.events if isinstance(each, Notice)]
-    assert "no distribution 'foxy' is known" in said
+    assert "'foxy' is no distribution" in said
     assert said.endswith(f"the run is like {Profile()}")

@@ -7,14 +7,15 @@ from pathlib import Path
 
 import pytest
 from textual.pilot import Pilot
+from textual.widgets import OptionList
 
 from cbtui.app import CbtuiApp
 from cbtui.runs.setup.changes import Changes
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.windows.group import GroupScreen
-from cbtui.screens.windows.number import NumberScreen
 from cbtui.screens.windows.setup import SetupScreen
-from sim.engine.setup import GroupChange, PeriodChange
+from cbtui.screens.windows.value import ValueScreen
+from sim.engine.setup import GroupChange, PeriodChange, RealRos
 from sim.trace.events import AnyEvent
 from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
 from tests.support.daily import first_row_daily
@@ -130,7 +131,7 @@ async def test_g_without_a_selected_callback_lets_one_be_chosen_first() -> None:
 async def test_p_begins_with_the_period_of_a_timer() -> None:
     async with console() as (app, pilot):
         await press(pilot, "p", "enter")
-        assert isinstance(app.screen, NumberScreen)
+        assert isinstance(app.screen, ValueScreen)
         assert "self.create_timer(0.5, self.timer_callback, …)" in text_of(app)
         await press(pilot, *"0.2", "enter", "r")
         assert app.lesson_screen.runs.run.setup.periods == (
@@ -143,7 +144,7 @@ async def test_what_is_no_period_is_asked_for_again() -> None:
     async with console() as (app, pilot):
         await press(pilot, "p", "enter", "0", "enter")
         assert "0 is not a period; give 0.001 to 3600 s." in text_of(app)
-        assert isinstance(app.screen, NumberScreen)
+        assert isinstance(app.screen, ValueScreen)
         await press(pilot, "escape", "escape")
         assert len(sessions(app)) == 1
 
@@ -167,6 +168,40 @@ async def test_a_lesson_s_own_number_and_the_sensors_rate_can_be_changed() -> No
         assert "-service_wait_time 2.5" in " ".join(setup.programs[0].arguments)
         assert setup.sensor_rate == 5
         assert "changed: -service_wait_time 2.5, sensors 5 Hz" in text_of(app)
+
+
+# the release
+
+
+async def test_the_release_can_be_changed_and_what_is_none_is_asked_for_again() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "p", "end", "enter", *"noetic", "enter")
+        assert "'noetic' is no distribution; give humble, jazzy, kilted or lyrical." in text_of(app)
+        await press(pilot, *["backspace"] * 6, *"Kilted")
+        assert "# cbtui: distro = kilted@9.1.2" in text_of(app)
+        await press(pilot, "enter", "r")
+        assert app.lesson_screen.runs.run.setup.distro == "kilted@9.1.2"
+        assert "changed: kilted@9.1.2" in lines_of(app)[8]
+        await press(pilot, "p", "end", "enter", "backspace", "enter", "r")
+        assert app.lesson_screen.runs.run.setup.distro == ""
+
+
+async def test_on_real_ros_the_release_is_fixed_and_undoing_all_stays_there(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    engines = FakeEngines(shared_group_run().events, ns(12.9))
+    changes = Changes(threads=2, real=RealRos())
+    app = CbtuiApp(start_file=(file, [], "real"), start_changes=changes, open_session=engines)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        await press(pilot, "p", "end")
+        assert "fixed: real ROS 2 has its own" in text_of(app)
+        rows = app.screen.query_one(OptionList)
+        assert rows.get_option_at_index(rows.option_count - 1).disabled
+        assert rows.highlighted == rows.option_count - 2
+        await press(pilot, "u", "r")
+        setup = engines.sessions[-1].setup
+        assert (setup.threads, setup.real) == (None, RealRos())
 
 
 # several at once
