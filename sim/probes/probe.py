@@ -119,6 +119,7 @@ class Probe:
                 last,
                 entity.depth,
                 entity.period,
+                entity.interface_type,
             )
         )
 

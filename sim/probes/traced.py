@@ -59,6 +59,10 @@ class TracedEntity(Protocol):
         """The period of a timer in nanoseconds, 0 for others."""
 
     @property
+    def interface_type(self) -> str:
+        """The type of the topic or service it is for; empty for none."""
+
+    @property
     def ready_since(self) -> int:
         """When it became ready."""
 

@@ -85,6 +85,7 @@ class EntityInfo:
     last_line: int
     depth: int
     period: Nanoseconds
+    interface_type: str = ""
 
     @property
     def label(self) -> str:

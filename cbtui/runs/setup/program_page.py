@@ -11,6 +11,8 @@ from sim.trace.events import EntityKind
 from sim.trace.model import EntityInfo
 from sim.trace.timeline import Timeline
 
+_SET_BOOL = "std_srvs/srv/SetBool"
+
 MOST = 20
 """Nodes, groups, and callbacks of one group, that are listed: a program may make them without end."""
 
@@ -75,8 +77,16 @@ def _tries(timeline: Timeline, problems: Sequence[str]) -> Iterator[str]:
     own = [each for each in timeline.entities.values() if programs_own(each)]
     if problems:
         yield f"`d` shows {counted(len(problems), 'problem')}, at which line, and a cure: {problems[0]}."
-    if any(each.kind is EntityKind.SERVICE for each in own):
-        yield "`s` calls its first SetBool service with true, `S` with false."
+    services = [each for each in own if each.kind is EntityKind.SERVICE]
+    calls = next((each.name for each in services if each.interface_type == _SET_BOOL), None)
+    if calls is not None:
+        yield f"`s` calls ``{calls}`` with true, `S` with false."
+    elif services:
+        service = services[0]
+        yield (
+            f"`:` and ``ros2 service call {service.name} {service.interface_type}`` call its service; "
+            "`tab` completes the rest."
+        )
     silent = [
         each.name
         for each in own

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from sim.interfaces import type_name
 from sim.ros.entities.service_introspection import ServiceIntrospection, ServiceIntrospectionState
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ class ClientOrService:
 
     def _set_service(self, srv_type: Any, srv_name: str | None, qos_profile: QoSProfile) -> None:
         self.srv_type = srv_type
+        self.interface_type = type_name(srv_type)
         self.srv_name = self.name if srv_name is None else srv_name
         self.qos_profile = qos_profile
         self.depth = qos_profile.queue_length or 0

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from enum import Enum
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from sim.interfaces import copy_message, to_cdr
+from sim.interfaces import copy_message, to_cdr, type_name
 from sim.ros.entities.entity_handles import SubscriptionHandle
 from sim.ros.entities.event_handler import (
     EndpointEvents,
@@ -71,6 +71,7 @@ class Subscription(Entity):
     ) -> None:
         super().__init__(node, topic_name, callback_group)
         self.msg_type = msg_type
+        self.interface_type = type_name(msg_type)
         self.topic = topic_name if topic is None else topic
         self.raw = raw
         self.callback = callback

@@ -109,6 +109,7 @@ class Entity:
         self.ready_since = 0
         self.depth = 0
         self.period = 0
+        self.interface_type = ""
         self.trace_id = 0
         self.wait_shown: tuple[Reason, int, bool] | None = None
         callback_group.add_entity(self)

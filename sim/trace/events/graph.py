@@ -14,6 +14,7 @@ from sim.trace.events.fields import (
     ProcessId,
     ThreadId,
     ThreadName,
+    TypeName,
     WireOnly,
 )
 
@@ -115,6 +116,8 @@ class EntityAppeared(TraceEvent, frozen=True, tag="entity"):
     """QoS depth of the queue; 0 for timers."""
     period: Nanoseconds
     """Time between a timer's calls; 0 for others."""
+    interface_type: Maybe[TypeName] = ""
+    """Type of the topic or service (``std_srvs/srv/SetBool``); empty where there is neither."""
 
 
 class EntityGone(TraceEvent, frozen=True, tag="entity_gone"):

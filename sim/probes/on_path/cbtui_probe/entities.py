@@ -68,6 +68,12 @@ def _nothing() -> None:
     return None
 
 
+def _type_of(made: Any) -> str:
+    """The type of a topic or service, such as ``std_srvs/srv/SetBool``; "" for what is for neither."""
+    made_for = getattr(made, "srv_type", None) or getattr(made, "msg_type", None)
+    return "" if made_for is None else "/".join([*made_for.__module__.split(".")[:2], made_for.__name__])
+
+
 def _overruled(name: str, frame: FrameType | None) -> str:
     while frame is not None and not is_own(frame):
         frame = frame.f_back
@@ -229,6 +235,7 @@ class Entities:
             *written_at(callback),
             0 if entity.kind == "timer" else depth,
             entity.period,
+            _type_of(made),
         )
         if entity.kind == "timer" and not made.is_canceled():
             entity.due = now() + made.time_until_next_call()

@@ -1,0 +1,39 @@
+"""The guide to a learner's own file: what it says can be tried is there."""
+
+from pathlib import Path
+
+import pytest
+
+from cbtui.runs.setup.program_page import page_of_program
+from tests.support.engine_runs import run_program
+
+_NODE = """
+import rclpy
+from rclpy.node import Node
+from std_srvs.srv import SetBool, Trigger
+
+rclpy.init()
+node = Node("server")
+{}
+rclpy.spin_once(node, timeout_sec=0.1)
+"""
+_TRIGGER = 'node.create_service(Trigger, "press", lambda request, response: response)'
+_SET_BOOL = 'node.create_service(SetBool, "switch", lambda request, response: response)'
+
+
+@pytest.mark.parametrize(
+    ("services", "said"),
+    [
+        ([_TRIGGER, _SET_BOOL], "- `s` calls ``/switch`` with true, `S` with false."),
+        (
+            [_TRIGGER],
+            "- `:` and ``ros2 service call /press std_srvs/srv/Trigger`` call its service; "
+            "`tab` completes the rest.",
+        ),
+    ],
+)
+def test_a_service_is_called_as_its_type_allows(services: list[str], said: str, tmp_path: Path) -> None:
+    run = run_program(tmp_path, _NODE.format("\n".join(services)))
+    page = page_of_program("node.py", "virtual", run.timeline)
+    assert said in page["tries"].splitlines()
+    assert "SetBool" not in page["tries"]
