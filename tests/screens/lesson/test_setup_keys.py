@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 from textual.widgets import OptionList
+from textual.widgets._toast import Toast
 
 from cbtui.app import CbtuiApp
 from cbtui.runs.setup.changes import Changes
@@ -15,10 +16,11 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.windows.group import GroupScreen
 from cbtui.screens.windows.setup import SetupScreen
 from cbtui.screens.windows.value import ValueScreen
+from cbtui.widgets.key_bar import KeyBar
 from sim.engine.setup import GroupChange, PeriodChange, RealRos
 from sim.trace.events import AnyEvent
 from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
-from tests.support.daily import first_row_daily
+from tests.support.daily import first_daily, first_row_daily
 from tests.support.fake_session import FakeEngines, FakeSession
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import dummy_server_run, ns, shared_group_run
@@ -202,6 +204,18 @@ async def test_on_real_ros_the_release_is_fixed_and_undoing_all_stays_there(tmp_
         await press(pilot, "u", "r")
         setup = engines.sessions[-1].setup
         assert (setup.threads, setup.real) == (None, RealRos())
+
+
+# notifications
+
+
+@pytest.mark.parametrize("size", first_daily(NARROW, WIDE))
+async def test_a_notification_hides_the_keys_and_nothing_else(size: tuple[int, int]) -> None:
+    async with console(size) as (app, pilot):
+        await press(pilot, "t", "o")
+        assert notes(app) == ["everything is back to what the program says"]
+        keys = next(bar for bar in app.screen.query(KeyBar) if bar.display)
+        assert app.screen.query_one(Toast).region == keys.region
 
 
 # several at once
