@@ -1,18 +1,22 @@
 """The rule on waits without a timeout, for notices with and without the fields that older recordings lack."""
 
+from typing import Any
+
 import msgspec
+import pytest
 
 from sim.diagnosis.diagnoses import diagnose
+from sim.engine.watchdogs import hung_callbacks, outside_time
 from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity, decode
 from sim.trace.timeline import Timeline
 from tests.trace.samples import CAST
 
 
-def explained(*events: AnyEvent) -> list[tuple[str, str]]:
+def explained(*events: AnyEvent, rule: str = "endless-wait") -> list[tuple[str, str]]:
     timeline = Timeline()
     timeline.extend([*CAST, *events])
     told = [(found, found.rule.explain(found, timeline)) for found in diagnose(timeline)]
-    return [(each.what, each.cure) for found, each in told if found.rule.id == "endless-wait"]
+    return [(each.what, each.cure) for found, each in told if found.rule.id == rule]
 
 
 def test_what_is_wrong_and_what_to_do_are_fields_of_the_notice() -> None:
@@ -30,3 +34,17 @@ def test_a_recording_without_these_fields_is_told_in_the_words_of_its_notice() -
             "wait with a timeout, and see that something ends the wait",
         )
     ]
+
+
+def test_of_a_callback_that_computes_it_is_said_how_long_and_not_that_it_never_ends() -> None:
+    notice = Notice(
+        1, Severity.WARN, "words", 1, kind=NoticeKind.NO_PROGRESS, problem="has not come back for 1.5 s"
+    )
+    ((what, _),) = explained(notice, rule="still-computing")
+    assert what == "odom_callback computes and has not come back for 1.5 s"
+
+
+@pytest.mark.parametrize("watch", [hung_callbacks, outside_time])
+def test_a_callback_that_computes_is_reported_after_one_and_a_half_seconds(watch: Any) -> None:
+    assert watch._LOOK * watch._PATIENCE == pytest.approx(1.5)
+    assert "has not come back for 1.5 " in watch._PROBLEM

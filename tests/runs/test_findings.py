@@ -102,6 +102,16 @@ def test_the_rules_look_once_a_second_however_often_they_could() -> None:
     assert rule.asked == 10
 
 
+def test_what_the_engine_reports_is_looked_at_at_once() -> None:
+    clock = Clock()
+    watch, rule = watched(clock)
+    at_frames(watch, clock, [100.0])
+    run = Run("hung")
+    run.notice("tick has not come back for 1.5 s", 1.0)
+    watch._timeline.extend(run.events)
+    assert at_frames(watch, clock, [100.1, 100.2]) == [True, False]
+
+
 def test_after_a_dear_look_the_rules_rest_a_hundred_times_as_long() -> None:
     clock = Clock()
     watch, rule = watched(clock, takes=0.05)

@@ -29,7 +29,7 @@ _TROUBLE = (
     "self-made-deadlock",
     "needs-one-more-worker",
     "endless-wait",
-    "endless-loop",
+    "still-computing",
     "service-never-comes",
 )
 """The rules whose problems are worth a recording: a callback starves, or waits for ever."""

@@ -28,7 +28,7 @@ from sim.trace.model import Window
 
 PRELOADED = ["cbtui.cli", "sim.engine.preloaded"]
 """Modules of an engine, imported once in the server that every run is forked from."""
-_STUCK = ("self-made-deadlock", "needs-one-more-worker", "endless-loop", "service-never-comes")
+_STUCK = ("self-made-deadlock", "needs-one-more-worker", "still-computing", "service-never-comes")
 """Ids of the diagnosis rules on callbacks that wait for ever."""
 
 

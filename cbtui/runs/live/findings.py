@@ -65,6 +65,7 @@ class FindingsMonitor:
         self._clock = clock
         self._due = 0.0
         self._looked_to: Nanoseconds = 0
+        self._notices = 0
 
     def stuck_at(self, at: Nanoseconds) -> Finding | None:
         """The finding of callbacks that can never go on and had come to a stop by a moment; None for none."""
@@ -83,9 +84,13 @@ class FindingsMonitor:
         return found.at if stuck.issuperset(ran) else None
 
     def look_when_due(self) -> bool:
-        """Update if it is time, or if the run has grown much; returns whether the findings changed."""
+        """Update if it is time, the run has grown much, or its engine has reported something.
+
+        Returns whether the findings changed.
+        """
         grown = self._timeline.end - self._looked_to
-        if self._clock() < self._due and grown < _MAX_GROWTH:
+        has_news = len(self._timeline.notices) != self._notices
+        if self._clock() < self._due and grown < _MAX_GROWTH and not has_news:
             return False
         before = self.findings
         self.look()
@@ -95,7 +100,7 @@ class FindingsMonitor:
         """Update now."""
         began = self._clock()
         timeline = self._timeline
-        self._looked_to = timeline.end
+        self._looked_to, self._notices = timeline.end, len(timeline.notices)
         self.findings = tuple(_explained(found, timeline) for found in self._diagnoses.update(timeline))
         ended = self._clock()
         self._due = max(began + _MIN_INTERVAL, ended + (ended - began) / _TIME_SHARE)

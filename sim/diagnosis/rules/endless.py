@@ -49,33 +49,38 @@ class EndlessWait(Rule):
         return None if over else Weight.PROBLEM
 
 
-class EndlessLoop(Rule):
-    """A callback neither returns nor waits.
+class StillComputing(Rule):
+    """A callback has computed for long, and has neither returned nor come to a wait.
 
-    The engine reports it after a while, also on virtual time, which does not pass meanwhile.
+    The engine reports it after a while, also on virtual time, which does not pass meanwhile. Whether it would
+    return some day, nobody can know.
     """
 
-    id = "endless-loop"
-    summary = "a callback computes without end"
+    id = "still-computing"
+    summary = "a callback computes and does not come back"
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each call that the engine reported."""
         for notice in view.timeline.notices:
             if notice.entity and notice.kind is NoticeKind.NO_PROGRESS and _computes(notice, view):
                 stuck = frozenset([notice.entity])
-                yield Finding(self, notice.t, _until(notice, view), notice.entity, notice.entity, stuck=stuck)
+                until = _until(notice, view)
+                yield Finding(
+                    self, notice.t, until, notice.entity, notice.entity, detail=notice.text, stuck=stuck
+                )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name the loop, if it is in one."""
         subject = who(found.subject, timeline)
+        how_long = _notice_of(found, timeline).problem or "has not come back for long"
         at = timeline.positions_of(found.subject, Window(found.at, found.at + 1))
         file, line = at[-1].loop if at else ("", 0)
         place = CodeLocation(file, line, line) if file else line_of(found.subject, _moment(found), timeline)
         where = f" in the loop of line {line}" if file else ""
         return Explanation(
-            f"{subject} computes without end{where}",
-            f"while {subject} runs, no other callback of its group or thread does: what the loop waits for "
-            "cannot come",
+            f"{subject} computes{where} and {how_long}",
+            f"while {subject} runs, no other callback of its group or thread does: if it waits for what one of "
+            "them brings, that never comes",
             f"keep the state in self and return: {subject} is called again; or do one step of the loop at "
             "each call of a timer",
             place,

@@ -15,10 +15,12 @@ from sim.trace.events import AnyEvent, EntityId, Notice, NoticeKind, Severity
 _Thread = threading.Thread
 _sleep = time.sleep
 
-_LOOK = 0.5
+_LOOK = 0.25
 """Real seconds between two looks."""
-_PATIENCE = 3
+_PATIENCE = 6
 """Looks at which the same call was found hung before the person is told."""
+
+_PROBLEM = f"has not come back for {_LOOK * _PATIENCE:g} s"
 
 _MODEL = ("sim.ros.", "sim.interfaces.")
 
@@ -53,9 +55,9 @@ class HungCallbacks:
                 before, looks = self._seen.get(thread, (0, 0))
                 seen[thread] = id(call), looks + 1 if before == id(call) else 1
                 if seen[thread][1] == _PATIENCE:
-                    text, kind = _sentence(call, top), NoticeKind.NO_PROGRESS
-                    entity = self._callback_on(thread)
-                    self._record(Notice(self._clock.now(), Severity.WARN, text, entity, kind=kind))
+                    entity, kind = self._callback_on(thread), NoticeKind.NO_PROGRESS
+                    now, text = self._clock.now(), _sentence(call, top)
+                    self._record(Notice(now, Severity.WARN, text, entity, kind=kind, problem=_PROBLEM))
         self._seen = seen
 
 
@@ -78,6 +80,6 @@ def _hung_call(top: FrameType) -> FrameType | None:
 
 def _sentence(call: FrameType, top: FrameType) -> str:
     return (
-        f"{call.f_code.co_name} has not come back for {_LOOK * _PATIENCE:g} s ({place_of(top)}): it computes "
-        "without end, or waits for something that does not come; its thread serves nothing else meanwhile"
+        f"{call.f_code.co_name} {_PROBLEM} ({place_of(top)}): it computes, or waits for something that does not "
+        "come; its thread serves nothing else meanwhile"
     )

@@ -15,10 +15,11 @@ _real_sleep = time.sleep
 
 _LOOK = 0.1
 """Real seconds between two looks."""
-_PATIENCE = 30
+_PATIENCE = 15
 """Looks without a step after which the person is told."""
 _LAST_PATIENCE = 35
 """Looks without a step after which ``give_up`` is called."""
+_PROBLEM = f"has not come back for {_LOOK * _PATIENCE:g} real seconds"
 _PATIENCE_WITH_C_CODE = 10.0
 """Real seconds in which this thread must come to look; on a busy machine it may be late without C code."""
 _PATIENCE_WITH_IMPORTS = 150
@@ -61,7 +62,7 @@ class Watchdog:
                 sentence = self._sentence()
                 entity = self._callback_on(self._clock.current.ident)
                 kind, now = NoticeKind.NO_PROGRESS, self._clock.now()
-                self._record(Notice(now, Severity.WARN, sentence, entity, kind=kind))
+                self._record(Notice(now, Severity.WARN, sentence, entity, kind=kind, problem=_PROBLEM))
             elif still == (_PATIENCE_WITH_IMPORTS if self._imports() else _LAST_PATIENCE):
                 self._give_up(sentence)
 
@@ -72,7 +73,7 @@ class Watchdog:
     def _sentence(self) -> str:
         thread = self._clock.current
         return (
-            f"{thread.name} does not come to a wait ({place_of(thread)}): it computes without end, "
-            "or waits for something outside the virtual clock; mend it, "
+            f"{thread.name} does not come to a wait ({place_of(thread)}): it computes for long, perhaps "
+            "without end, or waits for something outside the virtual clock; mend it, "
             "or run the file by itself with --clock real"
         )
