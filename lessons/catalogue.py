@@ -47,9 +47,9 @@ def find(lesson_id: str) -> Lesson:
     )
 
 
-def lesson_on(rule: str) -> Lesson | None:
-    """Return the lesson whose node shows the problem of a rule, and the fewest others; None if none does."""
-    shown = [lesson for lesson in lessons() if rule in lesson.diagnoses.node]
+def lesson_on(problem: str) -> Lesson | None:
+    """Return the lesson whose node shows a kind of problem, and the fewest others; None if none does."""
+    shown = [each for each in lessons() if problem in (*each.diagnoses.node, *each.diagnoses.shows)]
     return min(shown, key=lambda lesson: len(lesson.diagnoses.node), default=None)
 
 

@@ -159,6 +159,8 @@ class DeclaredDiagnoses(Struct, frozen=True, kw_only=True, forbid_unknown_fields
     node: tuple[RuleId, ...] = ()
     starter: tuple[RuleId, ...] = ()
     solution: tuple[RuleId, ...] = ()
+    shows: tuple[RuleId, ...] = ()
+    """Kinds of problems that refer to the lesson, besides those of ``node``."""
 
 
 class Description(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):

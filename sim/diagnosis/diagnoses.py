@@ -60,14 +60,22 @@ class Diagnoses:
         self._settled = {}
 
     def _ordered(self, found: Iterable[Finding], timeline: Timeline) -> tuple[Finding, ...]:
-        """The findings that matter: problems before remarks, then by rule, the earliest first."""
+        """The findings that matter: problems before remarks, then by rule, the earliest first.
+
+        What is part of another finding follows that.
+        """
         found = tuple(found)
         stuck = frozenset[EntityId]().union(*(each.stuck for each in found if each.until >= timeline.end))
-        causes = [each for each in found if not (each.rule.is_effect and _is_due_to(stuck, each))]
-        weighed = [(each.rule.weigh(each, timeline), each) for each in causes]
-        relevant = [(weight, each) for weight, each in weighed if weight is not None]
-        relevant.sort(key=lambda pair: (pair[0] is Weight.REMARK, *self._rank(pair[1])))
-        return tuple(each for _, each in relevant)
+        left = [each for each in found if not (each.rule.is_effect and _is_due_to(stuck, each))]
+        causes = {each.culprit: each for each in left if each.rule.by_culprit}
+        parted = [each if each.due_to in causes else replace(each, due_to=0) for each in left]
+        weights = {each.key: each.rule.weigh(each, timeline) for each in parted}
+
+        def rank(each: Finding) -> tuple[object, ...]:
+            cause = causes.get(each.due_to, each)
+            return weights[cause.key] is Weight.REMARK, self._rank(cause), bool(each.due_to), self._rank(each)
+
+        return tuple(sorted((each for each in parted if weights[each.key] is not None), key=rank))
 
     def _rank(self, found: Finding) -> tuple[int, Nanoseconds, EntityId, str]:
         return self._rules.index(found.rule), found.at, found.subject, found.about

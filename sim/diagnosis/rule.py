@@ -51,6 +51,8 @@ class Finding:
     subject: EntityId = 0
     culprit: EntityId = 0
     about: str = ""
+    due_to: EntityId = 0
+    """The callback whose own finding this one is part of; 0 for none."""
     size: int = 0
     count: int = 1
     detail: str = ""
@@ -102,6 +104,10 @@ class Rule(ABC):
     @abstractmethod
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield every occurrence that reaches into the view's window, uncut."""
+
+    def kind(self, found: Finding) -> str:
+        """The kind of problem, by which a lesson says that it shows it."""
+        return self.id
 
     @abstractmethod
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:

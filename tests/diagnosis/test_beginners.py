@@ -52,3 +52,18 @@ def test_a_beginners_mistake_is_one_problem_at_its_line(
     assert told.place.file == str(path)
     assert culprit in path.read_text().splitlines()[told.place.first_line - 1]
     assert cure in told.cure
+
+
+@pytest.mark.parametrize(
+    ("program", "kind"),
+    [
+        ("call_in_timer", "self-made-deadlock"),
+        ("rate_sleep", "deadlock-over-a-rate"),
+        ("lock_across_callbacks", "deadlock-over-a-lock"),
+        ("lock_during_call", "deadlock-over-a-lock"),
+        ("held_group", "group-starvation"),
+    ],
+)
+def test_a_deadlock_is_of_the_kind_of_what_is_waited_for(program: str, kind: str) -> None:
+    found = diagnose(run_to_end(program_setup(PROGRAMS / f"{program}.py", 4.0)).timeline)[0]
+    assert found.rule.kind(found) == kind

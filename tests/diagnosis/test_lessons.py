@@ -6,13 +6,15 @@ from sim.diagnosis import Weight, diagnose
 from tests.support.daily import first_row_daily
 from tests.support.engine_runs import run_lesson
 
-GROUP_HELD = {
-    ("group-starvation", "odom_callback"),
+GROUP_HELD = {("group-starvation", "odom_callback")}
+TURNS_FOR_LONG = ("overrun-timer", "timer_callback")
+PARTS = {
+    TURNS_FOR_LONG,
     ("stale-data", "timer_callback"),
     ("dropped-messages", "odom_callback"),
     ("dropped-messages", "scan_callback"),
 }
-TURNS_FOR_LONG = ("overrun-timer", "timer_callback")
+"""What a group that is held brings about."""
 
 Findings = set[tuple[str, str]]
 
@@ -20,9 +22,9 @@ Findings = set[tuple[str, str]]
 @pytest.mark.parametrize(
     ("lesson", "calls", "threads", "problems", "remarks"),
     first_row_daily(
-        ("single-thread", (), None, GROUP_HELD, {TURNS_FOR_LONG}),
-        ("shared-group", (), None, GROUP_HELD, {TURNS_FOR_LONG}),
-        ("shared-group", (), 4, GROUP_HELD, {TURNS_FOR_LONG, ("groups-change-nothing", "odom_callback")}),
+        ("single-thread", (), None, GROUP_HELD, PARTS),
+        ("shared-group", (), None, GROUP_HELD, PARTS),
+        ("shared-group", (), 4, GROUP_HELD, {*PARTS, ("groups-change-nothing", "odom_callback")}),
         ("split-groups", (), None, set(), {TURNS_FOR_LONG, ("threads-never-used", "")}),
         ("exclusive-2-threads", (2.55,), None, set(), set()),
         ("reentrant-2-threads", (2.55,), None, set(), set()),

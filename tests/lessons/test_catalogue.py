@@ -6,7 +6,7 @@ from itertools import groupby, pairwise
 
 import pytest
 
-from lessons.catalogue import ROOT, UnknownLesson, find, lessons
+from lessons.catalogue import ROOT, UnknownLesson, find, lesson_on, lessons
 from lessons.lesson import Lesson, read_lesson
 
 every_lesson = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
@@ -30,6 +30,19 @@ def test_the_lessons_are_numbered_without_a_gap_in_the_order_of_the_numbers_they
 def test_the_lessons_of_a_unit_stand_together() -> None:
     units = [unit for unit, _ in groupby(lesson.unit for lesson in lessons())]
     assert len(units) == len(set(units))
+
+
+@pytest.mark.parametrize(
+    ("problem", "lesson"),
+    [
+        ("self-made-deadlock", "call-in-a-callback"),
+        ("deadlock-over-a-lock", "lock-or-group"),
+        ("deadlock-over-a-rate", "rate-sleep-in-a-callback"),
+        ("group-starvation", "single-thread"),
+    ],
+)
+def test_a_problem_leads_to_the_lesson_that_shows_its_kind(problem: str, lesson: str) -> None:
+    assert lesson_on(problem) == find(lesson)
 
 
 def test_every_lesson_folder_is_in_the_catalogue() -> None:

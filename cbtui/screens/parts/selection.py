@@ -114,7 +114,7 @@ class LaneSelection(ScreenPart):
 
     def _lesson_on(self, told: ExplainedFinding) -> Lesson | None:
         """The lesson that shows a problem, unless it is on screen."""
-        lesson = lesson_on(told.finding.rule.id) if told.is_problem else None
+        lesson = lesson_on(told.finding.rule.kind(told.finding)) if told.is_problem else None
         return None if lesson == self.lesson else lesson
 
     async def _take(self, chosen: Chosen | None) -> None:

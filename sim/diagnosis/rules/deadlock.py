@@ -33,6 +33,10 @@ class SelfMadeDeadlock(Rule):
             if not _lacks_worker(deadlock)
         )
 
+    def kind(self, found: Finding) -> str:
+        """Tell deadlocks over locks and rates from those over calls."""
+        return next((kind for wanted, kind in _KINDS.items() if wanted in found.ring), self.id)
+
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name the callbacks of the cycle."""
         subject = who(found.subject, timeline)
@@ -82,6 +86,7 @@ class NeedsOneMoreWorker(Rule):
         return _explanation(found, why, cure, Remedy(threads=found.size + 1), timeline)
 
 
+_KINDS = {LOCK: "deadlock-over-a-lock", RATE: "deadlock-over-a-rate"}
 _WHY_REPLY = "the reply is brought by the executor, and needs a group that lets it in and a thread"
 _OWN_LOCK = "its own lock"
 _LOCK_AND_CALL = "a lock and a reply"

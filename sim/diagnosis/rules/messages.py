@@ -39,7 +39,9 @@ class DroppedMessages(Rule):
                 count = len(times)
                 waits = view.timeline.waits_of(entity.id, Window(times[0], times[0] + 1))
                 holder = waits[-1].holder if waits else 0
-                yield Finding(self, times[0], times[-1], entity.id, holder, size=count, count=count)
+                yield Finding(
+                    self, times[0], times[-1], entity.id, holder, due_to=holder, size=count, count=count
+                )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Say what the callback waited for while its queue overflowed."""
@@ -59,8 +61,9 @@ class DroppedMessages(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
-        """A remark for queues of one."""
-        return Weight.REMARK if entity_of(found, timeline).depth <= 1 else Weight.PROBLEM
+        """A remark for queues of one, and where what keeps the callback waiting is the problem."""
+        is_minor = found.due_to or entity_of(found, timeline).depth <= 1
+        return Weight.REMARK if is_minor else Weight.PROBLEM
 
 
 class StaleData(Rule):
@@ -89,7 +92,10 @@ class StaleData(Rule):
                 for timer in timers:
                     for span in self._uninformed_calls(view, timer, wait):
                         age = span.start - wait.since
-                        yield Finding(self, span.start, span.start, timer, sensor, size=age)
+                        keeper = max(wait.parts, key=wait.length).holder
+                        yield Finding(
+                            self, span.start, span.start, timer, sensor, due_to=keeper, size=age
+                        )
 
     def _uninformed_calls(self, view: TimelineView, timer: EntityId, wait: LongWait) -> Iterator[Span]:
         spans = view.spans(timer)
@@ -113,6 +119,10 @@ class StaleData(Rule):
             place_of(found.subject, timeline),
             remedy=room,
         )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight:
+        """A remark where what keeps the messages waiting is the problem."""
+        return Weight.REMARK if found.due_to else Weight.PROBLEM
 
 
 class QosMismatch(Rule):
