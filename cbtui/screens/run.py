@@ -191,7 +191,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self.query_one(Lanes).changes = self.changes.words
         self.panes.update_titles()
         self.bars.select(None)
-        self.query_one(CodeView).read_anew()
+        self.query_one(CodeView).read_anew(self.changes.texts)
 
     # layout
 

@@ -1,9 +1,10 @@
-"""Advice for callbacks that wait: a callback group of their own, more threads, or both."""
+"""Cures that can be tried: a callback group of its own, more threads, an edit of the source, or several."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
+from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.diagnosis.words import threads_for, who, with_threads
 from sim.trace.events import EntityId, Reason
 from sim.trace.model import Nanoseconds, Wait, Window
@@ -16,20 +17,19 @@ _LOOKED_AT = 100
 
 @dataclass(frozen=True, slots=True)
 class Remedy:
-    """Changes of a program without an edit: callbacks that get a group of their own, threads (0: as many)."""
+    """Changes of a program: an edit, callbacks that get a group of their own, threads (0: as many)."""
 
     own_groups: tuple[EntityId, ...] = ()
     threads: int = 0
+    edit: CodeEdit | None = None
 
     def words(self, timeline: Timeline) -> str:
         """The changes as a clause; empty for none."""
-        advice = [f"give {who(each, timeline)} a callback group of its own" for each in self.own_groups]
+        advice = [] if self.edit is None else [self.edit.words]
+        advice += [f"give {who(each, timeline)} a callback group of its own" for each in self.own_groups]
         if self.threads:
             advice.append(f"spin with {with_threads(self.threads)}")
         return ", and ".join(advice)
-
-
-NO_REMEDY = Remedy()
 
 
 def remedy_for_waits(

@@ -2,14 +2,15 @@
 
 from abc import ABC, abstractmethod
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from typing import ClassVar
 
 import sim
-from sim.diagnosis.cures import NO_REMEDY, Remedy
+from sim.diagnosis.cures import Remedy
+from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.diagnosis.timeline_view import TimelineView
 from sim.trace.events import EntityId, ThreadId
 from sim.trace.model import EntityInfo, Nanoseconds, Window
@@ -78,7 +79,7 @@ class Explanation:
     """A finding in words: ``what`` happened (a line without a full stop), ``why``, and what to do.
 
     ``place`` is the learner's code in question; None if it is unknown. ``for_ever``: callbacks wait that can
-    never go on. ``remedy`` is the part of the cure that can be tried without an edit.
+    never go on. ``remedies`` are what of the cure can be tried, each by itself.
     """
 
     what: str
@@ -86,7 +87,7 @@ class Explanation:
     cure: str
     place: CodeLocation | None
     for_ever: bool = False
-    remedy: Remedy = NO_REMEDY
+    remedies: tuple[Remedy, ...] = ()
 
 
 class Rule(ABC):
@@ -144,6 +145,20 @@ def line_of(entity: EntityId, window: Window, timeline: Timeline) -> CodeLocatio
         return place_of(entity, timeline)
     ((file, line), _) = lasted.most_common(1)[0]
     return CodeLocation(file, line, line)
+
+
+def by_edit(
+    place: CodeLocation | None,
+    words: str,
+    change: Callable[..., None],
+    *more: object,
+    own_groups: tuple[EntityId, ...] = (),
+) -> tuple[Remedy, ...]:
+    """The remedy that edits a place, by a function that gets its line and ``more``; none without a place."""
+    if place is None:
+        return ()
+    edit = CodeEdit(place.file, words, change, (place.first_line, *more))
+    return (Remedy(own_groups, edit=edit),)
 
 
 def entity_of(found: Finding, timeline: Timeline) -> EntityInfo:

@@ -69,10 +69,14 @@ class TimedInput(msgspec.Struct, frozen=True):
 
 
 class ProgramSetup(msgspec.Struct, frozen=True):
-    """A Python file to run, a node's or a launch file, with its command-line arguments."""
+    """A Python file to run, a node's or a launch file, with its command-line arguments.
+
+    ``text`` is run in place of the node's file, "" for what the file holds.
+    """
 
     path: str
     arguments: tuple[str, ...] = ()
+    text: str = ""
 
     @property
     def is_launch_file(self) -> bool:

@@ -2,10 +2,11 @@
 
 import sys
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from mcap.writer import CompressionType, Writer
@@ -65,14 +66,21 @@ class RecordingWriter:
 
     Rosbag2, rosbags and Foxglove can read the topics, which have rosbag2's metadata. Events are on a channel
     of their own; of ``TimePassed`` only the last one is written. An error such as a full disk does not end
-    the run: ``failure`` has its text, and nothing more is recorded.
+    the run: ``failure`` has its text, and nothing more is recorded. ``texts`` were run in place of files.
 
     Raises:
         FileExistsError: there is such a file, and ``replace`` is not wanted.
         OSError: the file cannot be made.
     """
 
-    def __init__(self, path: Path, about: RecordingMetadata, *, replace: bool = False) -> None:
+    def __init__(
+        self,
+        path: Path,
+        about: RecordingMetadata,
+        *,
+        replace: bool = False,
+        texts: Mapping[str, str] = MappingProxyType({}),
+    ) -> None:
         self.path = path
         self.failure: str | None = None
         self._epoch = 0
@@ -92,7 +100,7 @@ class RecordingWriter:
         # Of a stream, the library wants these few methods only.
         stream: Any = self._file
         self._writer: Any = Writer(stream, chunk_size=sys.maxsize, compression=CompressionType.LZ4)
-        self._sources = SourceAttachments()
+        self._sources = SourceAttachments(texts)
         self._flusher = threading.Thread(target=self._flush_for_ever, name="recorder", daemon=True)
         self._guarded(lambda: self._begin(about))
         self._flusher.start()

@@ -1,6 +1,6 @@
 """The source files of a run's programs, attached to its recording to explain it elsewhere."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from sim.foreign_file import read_bytes
@@ -12,9 +12,13 @@ _MOST = 5_000_000
 
 
 class SourceAttachments:
-    """A queue of source files to attach, each once and within a limit of bytes."""
+    """A queue of source files to attach, each once and within a limit of bytes.
 
-    def __init__(self) -> None:
+    ``texts`` are attached in place of what the files hold, by path.
+    """
+
+    def __init__(self, texts: Mapping[str, str]) -> None:
+        self._texts = texts
         self._seen = {""}
         self._requested: list[str] = []
         self._room = _MOST
@@ -29,7 +33,8 @@ class SourceAttachments:
         """Pass path and text of each queued file to ``attach``, and empty the queue."""
         requested, self._requested = self._requested, []
         for path in requested:
-            text = _text_of(Path(path), min(_LONGEST, self._room))
+            own = self._texts.get(path)
+            text = _text_of(Path(path), min(_LONGEST, self._room)) if own is None else own.encode()
             if text is not None:
                 self._room -= len(text)
                 attach(path, text)

@@ -46,5 +46,5 @@ def test_of_a_callback_that_computes_it_is_said_how_long_and_not_that_it_never_e
 
 @pytest.mark.parametrize("watch", [hung_callbacks, outside_time])
 def test_a_callback_that_computes_is_reported_after_one_and_a_half_seconds(watch: Any) -> None:
-    assert watch._LOOK * watch._PATIENCE == pytest.approx(1.5)
+    assert pytest.approx(1.5) == watch._LOOK * watch._PATIENCE
     assert "has not come back for 1.5 " in watch._PROBLEM

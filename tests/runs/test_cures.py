@@ -8,46 +8,123 @@ import msgspec
 import pytest
 
 from cbtui.engines.follow import GivenUpError
-from cbtui.runs.judged.cures import changes_of, helps, problem_of, problems_in, with_inputs
+from cbtui.runs.judged.cures import (
+    Cure,
+    Problem,
+    TriedRun,
+    cures_of,
+    helps,
+    problem_of,
+    tried,
+    with_inputs,
+)
 from cbtui.runs.setup.changes import Changes
-from sim.diagnosis import Finding, diagnose
-from sim.diagnosis.cures import Remedy
+from sim.diagnosis import CodeLocation, diagnose
+from sim.diagnosis.edits.profiles import match_quality
+from sim.diagnosis.rule import by_edit
 from sim.engine.commands import CallService, input_text
-from sim.engine.setup import TimedInput
+from sim.engine.setup import RunSetup, TimedInput
 from sim.trace.timeline import Timeline
 from tests.support.engine_runs import SECOND, program_setup, run_to_end
 
 PROGRAMS = Path(__file__).parents[1] / "diagnosis" / "beginners"
 
 
-def first_problem(program: str) -> tuple[Finding, Remedy, Timeline]:
-    timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 3.0)).timeline
-    found = diagnose(timeline)[0]
-    return found, found.rule.explain(found, timeline).remedy, timeline
+UNTIL = 3 * SECOND
 
 
-def tried(program: str, remedy: Remedy | None = None) -> bool:
-    found, offered, timeline = first_problem(program)
+def run_of(program: str) -> tuple[RunSetup, Timeline]:
     setup = program_setup(PROGRAMS / f"{program}.py", 3.0)
-    changes = changes_of(remedy or offered, Changes(), timeline)
-    assert changes is not None
-    before, after = (problems_in(each, 3 * SECOND, Event()) for each in (setup, changes.applied(setup)))
-    return helps(problem_of(found, timeline), before, after)
+    return setup, run_to_end(setup).timeline
 
 
-@pytest.mark.parametrize("program", ["call_in_timer", "rate_sleep", "held_group", "sleep_in_service"])
-def test_a_cure_that_is_offered_ends_the_problem(program: str) -> None:
-    assert tried(program)
+def offered(program: str) -> tuple[Problem, RunSetup, list[Cure]]:
+    """The first problem of a program, and what can be tried of its cure."""
+    setup, timeline = run_of(program)
+    found = diagnose(timeline)[0]
+    told = found.rule.explain(found, timeline)
+    return problem_of(found, timeline), setup, list(cures_of(told, setup, Changes(), timeline))
+
+
+def helpful(program: str) -> list[str]:
+    problem, setup, cures = offered(program)
+    before = tried(setup, UNTIL, Event())
+    runs = ((cure, tried(cure.changes.applied(setup), UNTIL, Event())) for cure in cures)
+    return [f"{cure.words}{cure.diff and ' (diff)'}" for cure, after in runs if helps(problem, before, after)]
+
+
+APART = "give tick a callback group of its own, and spin with MultiThreadedExecutor(num_threads=2)"
+DONE = "let {0} return and go on in a done-callback of the future (diff)"
+AWAIT = "await the reply in an async def {0}, and give {0} a callback group of its own (diff)"
+LATER = "let tick return, and look again when it is next called (diff)"
+FIT = "give the callback the parameters that it is called with (diff)"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("program", "cures"),
+    [
+        ("nested_spin", [DONE.format("tick"), AWAIT.format("tick")]),
+        ("call_in_timer", [APART, DONE.format("tick"), AWAIT.format("tick")]),
+        (
+            "call_in_subscription",
+            [
+                "give on_order a callback group of its own",
+                DONE.format("on_order"),
+                AWAIT.format("on_order"),
+            ],
+        ),
+        ("wait_for_future", [APART, DONE.format("tick"), AWAIT.format("tick")]),
+        ("while_true", [LATER]),
+        ("qos_mismatch", ["let the subscription request what is offered (diff)"]),
+        ("rate_sleep", ["spin with MultiThreadedExecutor(num_threads=2)"]),
+        ("wrong_arity", [FIT]),
+        ("wrong_arity_of_timer", [FIT]),
+        ("wait_for_service", [LATER]),
+        (
+            "lock_across_callbacks",
+            ["let move take both locks at once, in the order of the other callback (diff)"],
+        ),
+        ("lock_during_call", []),
+        ("lock_taken_twice", ["make the lock a threading.RLock (diff)"]),
+        ("call_in_parameter_callback", [APART.replace("tick", "tune")]),
+        ("no_response", ["end answer with: return response (diff)"]),
+        ("held_group", ["give steer a callback group of its own"]),
+        ("sleep_in_service", [APART.replace("tick", "heartbeat")]),
+    ],
+)
+def test_the_cures_that_are_offered_end_the_problem(program: str, cures: list[str]) -> None:
+    assert helpful(program) == cures
+
+
+def test_an_edited_copy_is_run_and_the_file_stays() -> None:
+    before = (PROGRAMS / "qos_mismatch.py").read_text()
+    assert helpful("qos_mismatch") == ["let the subscription request what is offered (diff)"]
+    assert (PROGRAMS / "qos_mismatch.py").read_text() == before
 
 
 def test_threads_alone_do_not_open_a_held_group() -> None:
-    assert not tried("held_group", Remedy(threads=6))
+    problem, setup, _ = offered("held_group")
+    after = tried(Changes(threads=6).applied(setup), UNTIL, Event())
+    assert not helps(problem, tried(setup, UNTIL, Event()), after)
 
 
-def test_what_only_an_edit_cures_has_nothing_to_be_tried() -> None:
-    _, remedy, timeline = first_problem("lock_across_callbacks")
-    assert changes_of(remedy, Changes(), timeline) is None
-    assert changes_of(replace(remedy, threads=2), Changes(), timeline) == Changes(threads=2)
+def test_a_second_cure_edits_what_the_first_made() -> None:
+    setup, timeline = run_of("qos_mismatch")
+    found = diagnose(timeline)[0]
+    told, path = found.rule.explain(found, timeline), setup.programs[0].path
+    text = f"# a note\n{Path(path).read_text()}"
+    line = CodeLocation(path, told.place.first_line + 1, told.place.first_line + 1) if told.place else None
+    remedies = by_edit(line, "again", match_quality, found.detail)
+    (cure,) = cures_of(replace(told, remedies=remedies), setup, Changes(texts={path: text}), timeline)
+    assert cure.changes.texts[path].startswith("# a note\n")
+
+
+def test_a_module_that_a_program_imports_is_not_edited() -> None:
+    setup, timeline = run_of("qos_mismatch")
+    found = diagnose(timeline)[0]
+    other = msgspec.structs.replace(setup, programs=())
+    assert not list(cures_of(found.rule.explain(found, timeline), other, Changes(), timeline))
 
 
 def test_a_trial_can_be_given_up() -> None:
@@ -55,21 +132,28 @@ def test_a_trial_can_be_given_up() -> None:
     given_up.set()
     setup = program_setup(PROGRAMS / "held_group.py", 3.0)
     with pytest.raises(GivenUpError):
-        problems_in(setup, 3 * SECOND, given_up)
+        tried(setup, 3 * SECOND, given_up)
 
 
 def test_a_trial_tells_how_far_it_is() -> None:
     told: list[int] = []
-    problems_in(program_setup(PROGRAMS / "held_group.py", 3.0), 3 * SECOND, Event(), told.append)
+    tried(program_setup(PROGRAMS / "held_group.py", 3.0), 3 * SECOND, Event(), told.append)
     assert told == sorted(told)
     assert told[-1] == 3 * SECOND
 
 
-def test_no_cure_helps_a_run_that_does_not_come_to_its_end() -> None:
+def test_no_cure_helps_where_a_run_does_not_come_to_what_was_found_or_ends_too_soon() -> None:
     problem = ("group-starvation", "", "")
-    assert helps(problem, {problem: True}, {})
-    assert not helps(problem, None, {})
-    assert not helps(problem, {problem: True}, None)
+    bad, good = TriedRun({problem: True}), TriedRun({})
+    assert helps(problem, bad, good)
+    assert not helps(problem, good, good)
+    assert not helps(problem, bad, replace(good, is_whole=False))
+    assert not helps(problem, bad, bad)
+
+
+def test_a_crash_is_worse_than_what_comes_to_light_without_it() -> None:
+    crash, slow = ("program-raised", "", ""), ("group-starvation", "", "")
+    assert helps(crash, TriedRun({crash: False}, is_whole=False), TriedRun({slow: False}))
 
 
 def test_the_calls_of_a_run_belong_to_its_trial(tmp_path: Path) -> None:
@@ -77,10 +161,10 @@ def test_the_calls_of_a_run_belong_to_its_trial(tmp_path: Path) -> None:
     program = tmp_path / "served.py"
     program.write_text(text)
     setup = program_setup(program, 3.0)
-    assert problems_in(setup, 3 * SECOND, Event()) == {}
+    assert tried(setup, 3 * SECOND, Event()).problems == {}
     called = TimedInput(SECOND // 2, input_text(CallService(None, True)))
-    found = problems_in(with_inputs(setup, (called,)), 3 * SECOND, Event())
-    assert [rule for rule, _, _ in found or {}] == ["group-starvation"]
+    found = tried(with_inputs(setup, (called,)), 3 * SECOND, Event())
+    assert [rule for rule, _, _ in found.problems] == ["group-starvation"]
 
 
 def test_a_call_of_a_run_before_is_made_on_the_real_clock_too(tmp_path: Path) -> None:

@@ -104,7 +104,7 @@ def test_the_rules_look_once_a_second_however_often_they_could() -> None:
 
 def test_what_the_engine_reports_is_looked_at_at_once() -> None:
     clock = Clock()
-    watch, rule = watched(clock)
+    watch, _ = watched(clock)
     at_frames(watch, clock, [100.0])
     run = Run("hung")
     run.notice("tick has not come back for 1.5 s", 1.0)

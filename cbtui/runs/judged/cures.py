@@ -1,8 +1,9 @@
 """Tries a cure out of sight: the run as it is and with the cure, on virtual time at full speed."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from pathlib import Path
 from threading import Event
 from typing import TypeAlias
 
@@ -13,9 +14,11 @@ from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.changeable import place_of
 from cbtui.runs.setup.changes import Changes
 from lessons.checks import problems
-from sim.diagnosis import Finding
+from sim.diagnosis import Explanation, Finding
 from sim.diagnosis.cures import Remedy
+from sim.diagnosis.edits.code_edit import diff
 from sim.engine.setup import RunSetup, TimedInput
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -24,8 +27,28 @@ _LIMIT = 15.0
 
 Problem: TypeAlias = tuple[str, str, str]
 """A rule's id, whom it is about, and whom it blames: the same in several runs of a program."""
-Problems: TypeAlias = Mapping[Problem, bool]
-"""What is wrong in a run, and whether for ever."""
+
+
+@dataclass(frozen=True)
+class TriedRun:
+    """What is wrong in a run, and whether for ever; ``is_whole`` if it came to its end."""
+
+    problems: Mapping[Problem, bool]
+    is_whole: bool = True
+
+    @property
+    def badness(self) -> tuple[int, int]:
+        """How bad it is: fewer problems that last for ever make up for others, and so does no crash."""
+        return sum(self.problems.values()) + (not self.is_whole), len(self.problems)
+
+
+@dataclass(frozen=True)
+class Cure:
+    """A change of a run that can be tried: in words, and what it edits, as ``diff -u`` writes it."""
+
+    changes: Changes
+    words: str
+    diff: str = ""
 
 
 def problem_of(found: Finding, timeline: Timeline) -> Problem:
@@ -37,12 +60,38 @@ def problem_of(found: Finding, timeline: Timeline) -> Problem:
     return found.rule.id, subject, culprit
 
 
-def changes_of(remedy: Remedy, before: Changes, timeline: Timeline) -> Changes | None:
-    """Return the changes of a run with a remedy; None if it has none."""
+def cures_of(told: Explanation, setup: RunSetup, before: Changes, timeline: Timeline) -> Iterator[Cure]:
+    """Yield what can be tried of an explanation's cure, for a run of a set-up with changes.
+
+    A program's own file may be edited, not a module that it imports.
+    """
+    for remedy in told.remedies:
+        changes, edited = _without_edit(remedy, before, timeline), ""
+        if remedy.edit is not None:
+            file = remedy.edit.file
+            if all(each.path != file for each in setup.programs):
+                continue
+            text = before.texts.get(file) or _text_of(Path(file))
+            new = remedy.edit.applied(text)
+            if new is None:
+                continue
+            changes, edited = replace(changes, texts={**before.texts, file: new}), diff(file, text, new)
+        if changes != before:
+            yield Cure(changes, remedy.words(timeline), edited)
+
+
+def _without_edit(remedy: Remedy, before: Changes, timeline: Timeline) -> Changes:
     changes = before if not remedy.threads else replace(before, threads=remedy.threads)
     for entity in remedy.own_groups:
         changes = changes.with_group(place_of(timeline.entities[entity], timeline), "own")
-    return None if changes == before else changes
+    return changes
+
+
+def _text_of(path: Path) -> str:
+    """The text of a program's file; "" if it cannot be read, or is none."""
+    with suppress(OSError, UnicodeDecodeError):
+        return read_text(path, MOST_OF_A_PROGRAM)
+    return ""
 
 
 def with_inputs(setup: RunSetup, inputs: tuple[TimedInput, ...]) -> RunSetup:
@@ -50,20 +99,20 @@ def with_inputs(setup: RunSetup, inputs: tuple[TimedInput, ...]) -> RunSetup:
     return msgspec.structs.replace(setup, inputs=inputs) if inputs else setup
 
 
-def helps(problem: Problem, before: Problems | None, after: Problems | None) -> bool:
-    """Whether a run has a problem, and the same run with a cure has not, nor another one in its place.
+def helps(problem: Problem, before: TriedRun, after: TriedRun) -> bool:
+    """Whether a run has a problem, and the same run with a cure has not, nor a worse one in its place."""
+    return (
+        problem in before.problems
+        and after.is_whole
+        and problem not in after.problems
+        and after.badness < before.badness
+    )
 
-    Fewer problems that last for ever make up for others. None stands for a run that did not come to its end.
-    """
-    if before is None or problem not in before or after is None or problem in after:
-        return False
-    return (sum(after.values()), len(after)) < (sum(before.values()), len(before))
 
-
-def problems_in(
+def tried(
     setup: RunSetup, until: Nanoseconds, given_up: Event, note: Callable[[Nanoseconds], object] = lambda _: 0
-) -> Problems | None:
-    """Return what is wrong in a run; None if it did not come to its end. ``note`` gets how far it is.
+) -> TriedRun:
+    """Return what is wrong in a run. ``note`` gets how far it is.
 
     Raises:
         GivenUpError: ``given_up`` was set meanwhile.
@@ -77,10 +126,7 @@ def problems_in(
         for batch in run:
             timeline.extend(batch)
             note(timeline.end)
-    ended = timeline.ended
-    if ended is None or not ended.time_was_up:
-        return None
-    return {
-        problem_of(found, timeline): found.rule.explain(found, timeline).for_ever
-        for found in problems(timeline)
+    found = {
+        problem_of(each, timeline): each.rule.explain(each, timeline).for_ever for each in problems(timeline)
     }
+    return TriedRun(found, timeline.ended is not None and timeline.ended.time_was_up)

@@ -103,7 +103,7 @@ class _RecordedFacts:
 
 
 def _check_programs(recorded: RunSetup, recording: Recording) -> None:
-    for program in recorded.programs:
+    for program in (each for each in recorded.programs if not each.text):
         path = Path(program.path)
         try:
             content = read_bytes(path, MOST_OF_A_PROGRAM)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TypeAlias, TypeVar
 
 import msgspec
@@ -33,6 +34,7 @@ class Changes:
     ``groups`` holds values of ``GROUP_CHOICES``, ``periods`` nanoseconds, ``settings`` numbers by the name of
     their command-line argument. ``sensor_rate`` is in Hz; ``seed`` chooses the order of threads. ``real`` is
     the ROS 2 that replaces the model, always on the real clock; ``distro`` is the model's release.
+    ``texts`` are run in place of the programs' files, by path.
     ``whole_tracebacks`` affects only how exceptions are printed.
     """
 
@@ -46,6 +48,7 @@ class Changes:
     whole_tracebacks: bool = field(default=False, compare=False)
     physics: PhysicsChoice | None = None
     distro: str | None = None
+    texts: Mapping[str, str] = field(default_factory=dict)
 
     def with_group(self, place: CallbackPlace, wish: str | None) -> Changes:
         """The same with another group for a callback."""
@@ -80,6 +83,7 @@ class Changes:
             None if self.real == others.real else self.real,
             physics=None if self.physics == others.physics else self.physics,
             distro=None if self.distro == others.distro else self.distro,
+            texts=_without(self.texts, others.texts),
         )
 
     def applied(self, setup: RunSetup) -> RunSetup:
@@ -87,7 +91,7 @@ class Changes:
         return msgspec.structs.replace(
             setup,
             threads=setup.threads if self.threads is None else self.threads,
-            programs=tuple(self._with_settings(program) for program in setup.programs),
+            programs=tuple(self._changed(program) for program in setup.programs),
             sensor_rate=setup.sensor_rate if self.sensor_rate is None else self.sensor_rate,
             physics=self.physics or setup.physics,
             seed=setup.seed if self.seed is None else self.seed,
@@ -102,11 +106,11 @@ class Changes:
             ),
         )
 
-    def _with_settings(self, program: ProgramSetup) -> ProgramSetup:
+    def _changed(self, program: ProgramSetup) -> ProgramSetup:
         arguments = program.arguments
         for name, number in self.settings.items():
             arguments = tuple(with_argument(arguments, name, f"{number:g}"))
-        return ProgramSetup(program.path, arguments)
+        return ProgramSetup(program.path, arguments, self.texts.get(program.path, program.text))
 
     @property
     def words(self) -> str:
@@ -127,6 +131,7 @@ class Changes:
             said.append(self.distro)
         if self.real is not None:
             said.append("on real ROS 2")
+        said += [f"{Path(path).name} edited" for path in self.texts]
         if self.seed is not None:
             said.append(f"seed {self.seed}")
         return ", ".join(said)
@@ -143,6 +148,7 @@ def changes_in(setup: RunSetup) -> Changes:
         real=setup.real,
         physics=setup.physics,
         distro=setup.distro or None,
+        texts={each.path: each.text for each in setup.programs if each.text},
     )
 
 

@@ -1,16 +1,18 @@
 """A lesson or a file in lines, with the commands of its engine."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import partial
 from threading import Event, Thread
+from typing import TypeAlias
 
 import msgspec
 
 from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.learning.lesson_page import introduction
 from cbtui.learning.outcome import Observe
+from cbtui.runs.judged.cures import Cure
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
@@ -22,7 +24,7 @@ from cbtui.screens.linear.dialogue import Dialogue
 from cbtui.screens.linear.exercise import ExerciseInLines
 from cbtui.screens.linear.teaching import Teaching
 from cbtui.screens.parts.choices import TakeOver
-from cbtui.screens.parts.cures import CureTrials
+from cbtui.screens.parts.cures import CureTrial, CureTrials
 from cbtui.screens.parts.engine_keys import PaceKeys, WorldKeys
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.parts.restarts import Restarts
@@ -198,32 +200,42 @@ class CuresByNumber(ScreenPart):
     def action_diagnoses(self) -> None:
         """Tell what was found, and ask which cure is to be tried."""
         self.host.telling.action_diagnoses()
-        if any(map(self.trials.can_try, self.host.runs.findings.findings)):
-            self.host.ask(self._choose())
+        trial = self.trials.begin()
+        cures = {
+            str(place): (told, found)
+            for place, told in enumerate(self.host.runs.findings.findings, 1)
+            if (found := trial.cures(told))
+        }
+        if cures:
+            self.host.ask(self._choose(trial, cures))
 
-    def _choose(self) -> Dialogue:
-        runs = self.host.runs
-        findings, number = runs.findings.findings, runs.number
-        can_be_tried = [str(place) for place, each in enumerate(findings, 1) if self.trials.can_try(each)]
-        line = yield f"Type the number of a problem to try its cure ({', '.join(can_be_tried)}), or nothing:"
-        if line not in can_be_tried:
+    def _choose(self, trial: CureTrial, cures: Mapping[str, "_Tried"]) -> Dialogue:
+        number = self.host.runs.number
+        line = yield f"Type the number of a problem to try its cure ({', '.join(cures)}), or nothing:"
+        if line not in cures:
             self.host.tell(f"The cure of {line} cannot be tried." if line else None)
             return
-        told = findings[int(line) - 1]
-        self.host.tell(f"It is tried in the background: {told.explanation.cure}.")
-
-        trial = self.trials.begin()
+        told, offered = cures[line]
+        for cure in offered:
+            self.host.tell(f"It is tried in the background: {cure.words}.")
 
         def try_out() -> None:
-            helps = trial.helps(told, self.given_up)
-            self.host.post(lambda: self._take_verdict(told, helps) if runs.number == number else None)
+            helpful = next((each for each in offered if trial.helps(told, each, self.given_up)), None)
+            self.host.post(
+                lambda: self._take_verdict(told, helpful) if self.host.runs.number == number else None
+            )
 
         Thread(target=try_out, name="cure", daemon=True).start()
 
-    def _take_verdict(self, told: ExplainedFinding, helps: bool) -> None:
-        name, cure = told.name, told.explanation.cure
-        if helps:
-            self.host.tell(f"Tried, it helps: {cure}. With that there is no {name} any more.")
-            asyncio.run(self.trials.run(told))
-        else:
-            self.host.tell(f"Tried, it does not help: {name} stays, or something worse comes.")
+    def _take_verdict(self, told: ExplainedFinding, helpful: Cure | None) -> None:
+        if helpful is None:
+            self.host.tell(f"Tried, it does not help: {told.name} stays, or something worse comes.")
+            return
+        self.host.tell(f"Tried, it helps: {helpful.words}. With that there is no {told.name} any more.")
+        for line in helpful.diff.splitlines():
+            self.host.tell(line)
+        asyncio.run(self.trials.run(helpful))
+
+
+_Tried: TypeAlias = tuple[ExplainedFinding, tuple[Cure, ...]]
+"""A problem, and what can be tried of its cure."""

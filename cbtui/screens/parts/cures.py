@@ -7,7 +7,7 @@ from itertools import chain, takewhile
 from threading import Event
 
 from cbtui.engines.follow import GivenUpError
-from cbtui.runs.judged.cures import Problems, changes_of, helps, problem_of, problems_in, with_inputs
+from cbtui.runs.judged.cures import Cure, TriedRun, cures_of, helps, problem_of, tried, with_inputs
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
@@ -28,61 +28,53 @@ Note = Callable[[int], object]
 
 @dataclass
 class CureTrials:
-    """Tries cures that need no edit of the program; ``compare`` compares with the run before."""
+    """Tries cures of findings; ``compare`` compares with the run before."""
 
     runs: RunController[LiveRun]
     restarts: Restarts
     subject: ShownProgram
     compare: Callable[[], None]
 
-    def can_try(self, told: ExplainedFinding) -> bool:
-        """Whether a finding's cure can be tried out of sight."""
-        on_model = self.restarts.changes.real is None
-        return told.is_problem and on_model and self._changes_for(told) is not None
-
     def begin(self) -> "CureTrial":
         """Return a trial of cures of the run on screen, as far as it has come."""
         until = min(max(self.runs.timeline.end, _SHORTEST), _LONGEST)
         return CureTrial(self, self.runs.run, self.restarts.changes, until)
 
-    async def run(self, told: ExplainedFinding) -> None:
-        """Run again with a finding's cure and the same inputs, and compare with the run before."""
-        changes = self._changes_for(told)
-        if changes is not None:
-            await self.restarts.again(changes, self.begin().inputs)
-            self.compare()
-
-    def _changes_for(self, told: ExplainedFinding) -> Changes | None:
-        return changes_of(told.explanation.remedy, self.restarts.changes, self.runs.timeline)
+    async def run(self, cure: Cure) -> None:
+        """Run again with a cure and the same inputs, and compare with the run before."""
+        await self.restarts.again(cure.changes, self.begin().inputs)
+        self.compare()
 
 
 @dataclass
 class CureTrial:
-    """Tries several cures of a run up to a moment; used on one thread, which may be another."""
+    """Tries several cures of a run up to a moment; ``helps`` is used on one thread, which may be another."""
 
     trials: CureTrials
     run: LiveRun
     changes: Changes
     until: Nanoseconds
-    _tried: tuple[Problems | None] | None = None
+    _before: TriedRun | None = None
 
-    def helps(self, told: ExplainedFinding, given_up: Event, note: Note = lambda _: None) -> bool:
-        """Whether a finding's cure ends it; takes the time of two runs, for further cures of one.
+    def cures(self, told: ExplainedFinding) -> tuple[Cure, ...]:
+        """What can be tried out of sight of a finding's cure: on the model, and for problems."""
+        if not told.is_problem or self.changes.real is not None:
+            return ()
+        return tuple(cures_of(told.explanation, self.run.setup, self.changes, self.run.timeline))
 
-        A run that does not come to its end in time tells nothing; then no cure is tried on it.
+    def helps(self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Note = lambda _: None) -> bool:
+        """Whether a cure ends a finding; takes the time of two runs, for further cures of one.
+
+        A run that does not come to what was found, in time, tells nothing; then no cure is tried on it.
         """
-        if not self.trials.can_try(told):
-            return False
-        timeline = self.run.timeline
-        cured = changes_of(told.explanation.remedy, self.changes, timeline)
-        assert cured is not None
+        problem = problem_of(told.finding, self.run.timeline)
         try:
-            if self._tried is None:
-                self._tried = (self._problems(self.changes, given_up, lambda done: note(done // 2)),)
-            if self._tried[0] is None:
+            if self._before is None:
+                self._before = self._tried(self.changes, given_up, lambda done: note(done // 2))
+            if problem not in self._before.problems:
                 return False
-            after = self._problems(cured, given_up, lambda done: note(50 + done // 2))
-            return helps(problem_of(told.finding, timeline), self._tried[0], after)
+            after = self._tried(cure.changes, given_up, lambda done: note(50 + done // 2))
+            return helps(problem, self._before, after)
         except (GivenUpError, OSError, UnknownInputError):
             return False
 
@@ -93,9 +85,7 @@ class CureTrial:
         given = inputs_of(takewhile(lambda event: event.t <= self.until, events))
         return tuple(each for each in given if not stops(each))
 
-    def _problems(self, changes: Changes, given_up: Event, note: Note) -> Problems | None:
+    def _tried(self, changes: Changes, given_up: Event, note: Note) -> TriedRun:
         setup = changes.applied(self.trials.subject.set_up(changes.threads, None))
         until = self.until
-        return problems_in(
-            with_inputs(setup, self.inputs), until, given_up, lambda end: note(100 * end // until)
-        )
+        return tried(with_inputs(setup, self.inputs), until, given_up, lambda end: note(100 * end // until))

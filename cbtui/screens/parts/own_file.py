@@ -1,7 +1,7 @@
 """A file of the learner's own on screen: run again when it is saved, with a guide written as it runs."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from textual.message import Message
@@ -84,6 +84,6 @@ class OwnFile(ScreenPart):
             await self.run_anew(self.file.name)
 
     async def run_anew(self, saved: str) -> None:
-        """Run the file again, since one of the program's files was saved."""
+        """Run the file again, since one of the program's files was saved; no longer an edited copy of it."""
         self.host.tell(f"{saved} was saved: it runs again.")
-        await self.restarts.again(self.restarts.changes)
+        await self.restarts.again(replace(self.restarts.changes, texts={}))

@@ -108,8 +108,8 @@ class LaneSelection(ScreenPart):
         monitor = self.runs.findings
         monitor.look()
         self.host.redraw()
-        helps = None if self.cures is None else self.cures.begin().helps
-        screen = DiagnosesScreen(monitor.findings, self.host.charset, helps, self._lesson_on)
+        trial = None if self.cures is None else self.cures.begin()
+        screen = DiagnosesScreen(monitor.findings, self.host.charset, trial, self._lesson_on)
         self.host.ask(screen, self._take)
 
     def _lesson_on(self, told: ExplainedFinding) -> Lesson | None:
@@ -121,8 +121,8 @@ class LaneSelection(ScreenPart):
         if chosen is None:
             return
         lesson = self._lesson_on(chosen.finding)
-        if chosen.way is Way.CURE and self.cures is not None:
-            await self.cures.run(chosen.finding)
+        if chosen.cure is not None and self.cures is not None:
+            await self.cures.run(chosen.cure)
         elif chosen.way is Way.LESSON and lesson is not None:
             self.host.console.open_lesson(lesson)
         else:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from functools import partial
 from threading import Event
-from typing import TypeAlias
+from typing import Protocol
 
 from textual import on
 from textual.app import ComposeResult
@@ -17,13 +17,13 @@ from textual.widgets.option_list import Option
 from cbtui.keys.action import Scope
 from cbtui.keys.keymap import Keymap
 from cbtui.looks.theme import GLYPHS, Charset
+from cbtui.runs.judged.cures import Cure
 from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
 from cbtui.screens.windows.window import WindowScreen
 from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
 from lessons.lesson import Lesson
 from sim.diagnosis import location_text, sentence
-from sim.diagnosis.cures import NO_REMEDY
 from sim.durations import timestamp
 from sim.plural import counted
 
@@ -31,7 +31,19 @@ _ALL_IS_WELL = "✓ Nothing has gone wrong so far: no rule has found a problem."
 _TIME = 10
 
 
-Helps: TypeAlias = Callable[[ExplainedFinding, Event, Callable[[int], object]], bool]
+class Trial(Protocol):
+    """Tries cures out of sight."""
+
+    def cures(self, told: ExplainedFinding) -> Sequence[Cure]:
+        """What can be tried of a finding's cure."""
+
+    def helps(
+        self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
+    ) -> bool:
+        """Whether a cure ends a finding, when it is tried: called on a thread of its own.
+
+        It comes back soon once ``given_up`` is set, and tells ``note`` how many per cent are done.
+        """
 
 
 class Way(Enum):
@@ -44,18 +56,27 @@ class Way(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """What is to be done about a finding: go to it, try its cure, or open the lesson that shows it."""
+    """What is to be done about a finding: go to it, try a cure, or open the lesson that shows it."""
 
     finding: ExplainedFinding
     way: Way = Way.LOOK
+    cure: Cure | None = None
+
+
+@dataclass(frozen=True)
+class _Row:
+    """A row of the list: a finding by its place, a way on from it, and the cure that this way is."""
+
+    place: int
+    way: Way
+    cure: Cure | None = None
 
 
 class DiagnosesScreen(WindowScreen[Chosen]):
     """Lists findings, problems first, each with the ways on; its result is the chosen one, None to stay.
 
-    ``helps`` tells, on a thread of its own, whether the cure of a finding ends it when it is tried: only then
-    the window offers to try it. It has to come back soon once the event that it gets is set, and tells how
-    many per cent are done. ``lesson_on`` returns the lesson that shows a problem.
+    A cure is offered once ``trial`` has found that it helps. ``lesson_on`` returns the lesson that shows a
+    problem.
     """
 
     SCOPE = Scope.DIAGNOSES
@@ -64,21 +85,20 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         self,
         findings: Sequence[ExplainedFinding],
         charset: Charset,
-        helps: Helps | None = None,
+        trial: Trial | None = None,
         lesson_on: Callable[[ExplainedFinding], Lesson | None] = lambda _: None,
     ) -> None:
         super().__init__(charset)
         self._findings = findings
-        self._helps = helps
+        self._trial = trial
         self._lessons = [lesson_on(each) for each in findings]
-        self._helpful: dict[int, bool | None] = {
-            place: None
-            for place, each in enumerate(findings)
-            if helps is not None and each.explanation.remedy != NO_REMEDY
-        }
-        """Whether the cures of findings help; None while that is being tried."""
+        cures = [() if trial is None else trial.cures(each) for each in findings]
+        self._untried = [len(each) for each in cures]
+        """How many cures of each finding are not yet tried."""
+        self._cures = [(place, cure) for place, each in enumerate(cures) for cure in each]
+        self._helpful: list[tuple[int, Cure]] = []
         self._percent: dict[int, int] = {}
-        """How much of the trials is done."""
+        """How much of the trial that goes on is done."""
         self._rows = tuple(self._ways())
         self._given_up = Event()
         self.heading = title_of(findings)
@@ -96,49 +116,49 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         """Highlight the worst."""
         for listed in self.query(FindingList):
             listed.highlighted = 0
-        if self._helps is not None:
-            self.run_worker(partial(self._try_all, self._helps), thread=True)
+        if self._trial is not None:
+            self.run_worker(partial(self._try_all, self._trial), thread=True)
 
     def on_unmount(self) -> None:
         """Stop trying cures."""
         self._given_up.set()
 
-    def _ways(self) -> Iterator[tuple[int, Way]]:
-        """The rows: the places of findings, and the ways on from them."""
+    def _ways(self) -> Iterator[_Row]:
         for place, lesson in enumerate(self._lessons):
-            yield place, Way.LOOK
-            if self._helpful.get(place):
-                yield place, Way.CURE
+            yield _Row(place, Way.LOOK)
+            yield from (_Row(place, Way.CURE, cure) for about, cure in self._helpful if about == place)
             if lesson is not None and lesson not in self._lessons[:place]:
-                yield place, Way.LESSON
+                yield _Row(place, Way.LESSON)
 
     def _options(self) -> Iterator[Option]:
-        for place, way in self._rows:
-            each, lesson = self._findings[place], self._lessons[place]
-            if way is Way.LOOK:
-                yield Option(row_of(each, self._charset))
-            elif way is Way.CURE:
-                yield Option(way_row(f"tried, it helps: {each.explanation.cure}", self._charset))
-            elif lesson is not None:
+        for row in self._rows:
+            lesson = self._lessons[row.place]
+            if row.cure is not None:
+                yield Option(way_row(f"tried, it helps: {row.cure.words}", self._charset))
+            elif row.way is Way.LESSON and lesson is not None:
                 yield Option(way_row(f"lesson {lesson.number} shows this: {lesson.title}", self._charset))
+            else:
+                yield Option(row_of(self._findings[row.place], self._charset))
 
-    def _try_all(self, helps: Helps) -> None:
-        for place in self._helpful:
-            answer = not self._given_up.is_set() and helps(
-                self._findings[place], self._given_up, partial(self._note_progress, place)
+    def _try_all(self, trial: Trial) -> None:
+        for place, cure in self._cures:
+            answer = not self._given_up.is_set() and trial.helps(
+                self._findings[place], cure, self._given_up, partial(self._note_progress, place)
             )
             if not self._given_up.is_set():
-                self.app.call_from_thread(self._note_tried, place, answer)
+                self.app.call_from_thread(self._note_tried, place, cure, answer)
 
     def _note_progress(self, place: int, percent: int) -> None:
         if percent != self._percent.get(place) and not self._given_up.is_set():
             self._percent[place] = percent
             self.app.call_from_thread(self._tell_highlighted)
 
-    def _note_tried(self, place: int, helps: bool) -> None:
+    def _note_tried(self, place: int, cure: Cure, helps: bool) -> None:
         """Offer to try a cure if it helps; the highlight stays where it is."""
         chosen = self._chosen
-        self._helpful[place] = helps
+        self._untried[place] -= 1
+        if helps:
+            self._helpful.append((place, cure))
         self._rows = tuple(self._ways())
         listed = self.query_one(FindingList)
         listed.clear_options()
@@ -153,19 +173,31 @@ class DiagnosesScreen(WindowScreen[Chosen]):
                 return len(self._rows) > 1
             case "go":
                 return chosen is not None and (
-                    chosen[1] is not Way.LOOK or self._findings[chosen[0]].leads_somewhere
+                    chosen.way is not Way.LOOK or self._findings[chosen.place].leads_somewhere
                 )
             case "try_cure":
-                return chosen is not None and bool(self._helpful.get(chosen[0]))
+                return self._cure_at_hand is not None
         return True
 
+    @property
+    def _cure_at_hand(self) -> Cure | None:
+        """The highlighted cure, or the first one of the highlighted finding."""
+        chosen = self._chosen
+        if chosen is None or chosen.cure is not None:
+            return None if chosen is None else chosen.cure
+        return next((cure for place, cure in self._helpful if place == chosen.place), None)
+
     def _tell_highlighted(self) -> None:
-        """Show what there is to say of the highlighted finding."""
-        if self._chosen is not None:
-            place, _ = self._chosen
-            percent = self._percent.get(place, 0) if self._helpful.get(place, False) is None else None
-            told = details_of(self._findings[place], self._charset, percent)
-            self.query_one(".told", Static).update(told)
+        """Show what there is to say of the highlighted row."""
+        chosen = self._chosen
+        if chosen is None:
+            return
+        if chosen.cure is not None:
+            told = cure_details(chosen.cure, self._charset)
+        else:
+            percent = self._percent.get(chosen.place, 0) if self._untried[chosen.place] else None
+            told = details_of(self._findings[chosen.place], self._charset, percent)
+        self.query_one(".told", Static).update(told)
 
     @on(OptionList.OptionHighlighted)
     def _tell(self) -> None:
@@ -184,16 +216,16 @@ class DiagnosesScreen(WindowScreen[Chosen]):
     def action_go(self) -> None:
         """Go where the highlighted row leads."""
         if self._chosen is not None:
-            place, way = self._chosen
-            self.dismiss(Chosen(self._findings[place], way))
+            row = self._chosen
+            self.dismiss(Chosen(self._findings[row.place], row.way, row.cure))
 
     def action_try_cure(self) -> None:
         """Run again with the cure of what is highlighted."""
         if self._chosen is not None:
-            self.dismiss(Chosen(self._findings[self._chosen[0]], Way.CURE))
+            self.dismiss(Chosen(self._findings[self._chosen.place], Way.CURE, self._cure_at_hand))
 
     @property
-    def _chosen(self) -> tuple[int, Way] | None:
+    def _chosen(self) -> _Row | None:
         highlighted = next((listed.highlighted for listed in self.query(FindingList)), None)
         return None if highlighted is None else self._rows[highlighted]
 
@@ -236,11 +268,25 @@ def details_of(each: ExplainedFinding, charset: Charset, percent: int | None = N
         (f"\n→ {visible(explained.cure, charset)}.", "$text-success"),
     ]
     if percent is not None:
-        parts.append((f"\n· This cure is being tried in the background: {percent} %.", ""))
+        parts.append((f"\n· What may cure it is being tried in the background: {percent} %.", ""))
     where = location_text(each.finding, explained)
     if where:
         parts.append((f"\n{visible(where, charset)}", "$text-muted"))
     return Content.assemble(*parts)
+
+
+_DIFF_STYLES = {"+": "$text-success", "-": "$text-error", "@": "$text-muted"}
+
+
+def cure_details(cure: Cure, charset: Charset) -> Content:
+    """Return what a cure changes: in words, and line by line what it edits."""
+    told = [(f"{visible(sentence(cure.words), charset)}", "bold")]
+    if cure.diff:
+        told.append(("\nYour file stays as it is; a copy is run, with these lines:", ""))
+    told += [
+        (f"\n{visible(line, charset)}", _DIFF_STYLES.get(line[:1], "")) for line in cure.diff.splitlines()
+    ]
+    return Content.assemble(*told)
 
 
 def problems_note(findings: Sequence[ExplainedFinding], keymap: Keymap, charset: Charset) -> str:

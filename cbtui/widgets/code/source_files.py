@@ -23,12 +23,16 @@ _LIBRARY_FOLDERS = tuple(
 
 @dataclass(frozen=True, eq=False)
 class SourceFile:
-    """A file, its text, and the text's lines in words of a kind."""
+    """A file, its text, and the text's lines in words of a kind.
+
+    ``recorded``: the text is that of a recording, or of an edited copy (``is_copy``), not the file's own.
+    """
 
     path: Path
     text: str
     lines: tuple[list[SourceToken], ...]
     recorded: bool = False
+    is_copy: bool = False
 
     @property
     def widest(self) -> int:
@@ -36,7 +40,7 @@ class SourceFile:
         return max((sum(cell_len(word.text) for word in line) for line in self.lines), default=0)
 
     def has_changed(self) -> bool:
-        """Whether the file on disk has another text; False if it was recorded or cannot be read."""
+        """Whether the file on disk has another text; False if it is recorded or cannot be read."""
         text = None if self.recorded else _read(self.path)
         return text is not None and text != self.text
 
@@ -74,13 +78,21 @@ class SourceFiles:
         others = (file for path, file in self._by_path.items() if path != self._real_main)
         return next((file for file in others if file.has_changed()), None)
 
-    def read_anew(self) -> None:
-        """Read the files again; an unreadable one stays as it was."""
+    def read_anew(self, texts: Mapping[str, str]) -> None:
+        """Read the files again; an unreadable one stays as it was.
+
+        ``texts`` are run in place of files, by path.
+        """
         self._found.clear()
+        copies = {Path(path).resolve(): text for path, text in texts.items()}
         for path, known in self._by_path.items():
-            text = _read(known.path) if known.has_changed() else None
+            text = copies.get(path)
+            if text is None and (known.recorded or known.has_changed()):
+                text = _read(known.path)
             if text is not None:
-                self._by_path[path] = _source_file(known.path, text)
+                self._by_path[path] = _source_file(
+                    known.path, text, recorded=path in copies, is_copy=path in copies
+                )
         self.main = self._by_path[self._real_main]
 
     def _find(self, file: str) -> SourceFile | None:
@@ -107,8 +119,8 @@ class SourceFiles:
         return any(path.is_relative_to(folder) for folder in folders)
 
 
-def _source_file(path: Path, text: str, *, recorded: bool = False) -> SourceFile:
-    return SourceFile(path, text, tuple(highlight(text)), recorded)
+def _source_file(path: Path, text: str, *, recorded: bool = False, is_copy: bool = False) -> SourceFile:
+    return SourceFile(path, text, tuple(highlight(text)), recorded, is_copy)
 
 
 def _read(path: Path) -> str | None:

@@ -160,9 +160,9 @@ class CodeView(InkedView):
 
     # files
 
-    def read_anew(self) -> None:
-        """Read the files again, as the next run uses those on disk."""
-        self._files.read_anew()
+    def read_anew(self, texts: Mapping[str, str]) -> None:
+        """Read the files again, as the next run uses those on disk; ``texts`` in place of some, by path."""
+        self._files.read_anew(texts)
         self._marks, self._lines, self._long = {}, {}, set()
         self._open(self._files.of(str(self._file.path.absolute())) or self._files.main)
 
@@ -194,7 +194,8 @@ class CodeView(InkedView):
 
     def _name_it(self) -> None:
         changed = " · changed; r runs it again" if self.over else " · changed on disk"
-        self.note = visible(self._file.path.name, Charset.BRAILLE) + (changed if self._changed else "")
+        more = changed if self._changed else " · edited copy" if self._file.is_copy else ""
+        self.note = visible(self._file.path.name, Charset.BRAILLE) + more
 
     @property
     def _marked(self) -> list[CallbackMark]:

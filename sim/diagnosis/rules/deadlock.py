@@ -3,7 +3,9 @@
 from collections.abc import Iterator, Sequence
 
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.rule import Explanation, Finding, Rule, line_of
+from sim.diagnosis.edits.locks import make_reentrant, take_together
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, line_of
+from sim.diagnosis.rules.edits import edits_for_reply
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import LOCK, RATE, StuckCallback, WaitForGraph
 from sim.diagnosis.words import often, threads_for, who, with_threads
@@ -58,8 +60,24 @@ class SelfMadeDeadlock(Rule):
         if LOCK not in found.ring and threads_for([found.subject], found.until, timeline) == 1:
             threads = found.size + 1
             cure += f", and spin with {with_threads(threads)}"
-        apart_too = () if found.about == RATE or LOCK in found.ring else (found.subject,)
-        return _explanation(found, why, cure, Remedy(apart_too, threads), timeline)
+        return _explanation(found, why, cure, self._remedies(found, threads, timeline), timeline)
+
+    def _remedies(self, found: Finding, threads: int, timeline: Timeline) -> tuple[Remedy, ...]:
+        place = _line_of(found.subject, found, timeline)
+        if found.about == RATE:
+            return (Remedy(threads=threads),)
+        if LOCK not in found.ring:
+            apart = Remedy((found.subject,), threads)
+            return apart, *edits_for_reply(place, found.subject, timeline)
+        other = _line_of(found.culprit, found, timeline)
+        if found.size == 1:
+            return by_edit(place, "make the lock a threading.RLock", make_reentrant)
+        if other is None or any(step.startswith("/") for step in found.ring):
+            return ()
+        order = (
+            f"let {who(found.subject, timeline)} take both locks at once, in the order of the other callback"
+        )
+        return by_edit(place, order, take_together, other.first_line)
 
 
 class NeedsOneMoreWorker(Rule):
@@ -83,7 +101,9 @@ class NeedsOneMoreWorker(Rule):
         """Name the number of threads that would do."""
         why = f"{found.size} callbacks in call() at once need at least {found.size + 1} threads"
         cure = f"spin with {with_threads(found.size + 1)}, or use call_async()"
-        return _explanation(found, why, cure, Remedy(threads=found.size + 1), timeline)
+        place = _line_of(found.subject, found, timeline)
+        edits = edits_for_reply(place, found.subject, timeline)
+        return _explanation(found, why, cure, (Remedy(threads=found.size + 1), *edits), timeline)
 
 
 _KINDS = {LOCK: "deadlock-over-a-lock", RATE: "deadlock-over-a-rate"}
@@ -104,7 +124,13 @@ _CURES = {
 }
 
 
-def _explanation(found: Finding, why: str, cure: str, remedy: Remedy, timeline: Timeline) -> Explanation:
+def _line_of(entity: EntityId, found: Finding, timeline: Timeline) -> CodeLocation | None:
+    return line_of(entity, Window(found.at, found.until + 1), timeline)
+
+
+def _explanation(
+    found: Finding, why: str, cure: str, remedies: tuple[Remedy, ...], timeline: Timeline
+) -> Explanation:
     subject, lasts = who(found.subject, timeline), found.until >= timeline.end
     waits = (
         f"deadlock: {subject} waits for {found.about} for ever"
@@ -115,9 +141,9 @@ def _explanation(found: Finding, why: str, cure: str, remedy: Remedy, timeline: 
         f"{waits}; {found.detail}{often(found.count)}",
         why,
         cure,
-        line_of(found.subject, Window(found.at, found.until + 1), timeline),
+        _line_of(found.subject, found, timeline),
         for_ever=lasts,
-        remedy=remedy,
+        remedies=remedies,
     )
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_of
+from sim.diagnosis.rules.edits import edits_for_waiting
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import often, who
 from sim.trace.events import Doing, Notice, NoticeKind, Severity
@@ -79,12 +80,13 @@ class StillComputing(Rule):
         where = f" in the loop of line {line}" if file else ""
         return Explanation(
             f"{subject} computes{where} and {how_long}",
-            f"while {subject} runs, no other callback of its group or thread does: if it waits for what one of "
-            "them brings, that never comes",
+            f"while {subject} runs, no other callback of its group or thread does: if it waits for what one "
+            "of them brings, that never comes",
             f"keep the state in self and return: {subject} is called again; or do one step of the loop at "
             "each call of a timer",
             place,
             for_ever=found.until >= timeline.end,
+            remedies=edits_for_waiting(place, found.subject, timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:

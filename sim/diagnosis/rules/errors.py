@@ -2,7 +2,8 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, place_of
+from sim.diagnosis.edits.functions import fit_parameters
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, by_edit, place_of
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of
 from sim.diagnosis.words import often, who
 from sim.trace.model import Nanoseconds, Window
@@ -27,11 +28,15 @@ class ProgramRaised(Rule):
         ended = timeline.ended
         assert ended is not None
         file, line = ended.place
+        place = CodeLocation(file, line, line) if line else None
         return Explanation(
             ended.problem,
             "an exception that no except clause takes ends spin(), and with it the program",
             ended.advice or "mend the line, or catch the exception there",
-            CodeLocation(file, line, line) if line else None,
+            place,
+            remedies=by_edit(
+                place, "give the callback the parameters that it is called with", fit_parameters
+            ),
         )
 
 

@@ -6,7 +6,8 @@ from itertools import groupby
 from operator import attrgetter
 
 from sim.diagnosis.cures import remedy_for_waits
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, entity_of, place_of
+from sim.diagnosis.edits.profiles import match_quality
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, by_edit, entity_of, place_of
 from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import often, who
 from sim.durations import duration
@@ -57,7 +58,7 @@ class DroppedMessages(Rule):
             "what comes into a full queue pushes the oldest out",
             f"{room.words(timeline) or f'let {subject} return sooner'}; a longer queue only delays it",
             place_of(found.subject, timeline),
-            remedy=room,
+            remedies=(room,),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
@@ -93,9 +94,7 @@ class StaleData(Rule):
                     for span in self._uninformed_calls(view, timer, wait):
                         age = span.start - wait.since
                         keeper = max(wait.parts, key=wait.length).holder
-                        yield Finding(
-                            self, span.start, span.start, timer, sensor, due_to=keeper, size=age
-                        )
+                        yield Finding(self, span.start, span.start, timer, sensor, due_to=keeper, size=age)
 
     def _uninformed_calls(self, view: TimelineView, timer: EntityId, wait: LongWait) -> Iterator[Span]:
         spans = view.spans(timer)
@@ -117,7 +116,7 @@ class StaleData(Rule):
             f"the node only knows what {sensor} has taken, and that did not run",
             room.words(timeline) or f"let {sensor} return sooner",
             place_of(found.subject, timeline),
-            remedy=room,
+            remedies=(room,),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
@@ -157,15 +156,18 @@ class QosMismatch(Rule):
             if place
         ]
         cure = f"give both ends of {found.about} the same QoSProfile"
+        place = subscription or publisher
         return Explanation(
             f"{subject} hears nothing from a publisher of {found.about}{outside}: "
             f"{found.detail} does not match",
             _POLICY_RULES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
             f"{cure}: {' and '.join(ends)}" if ends else cure,
-            subscription or publisher or place_of(found.subject, timeline),
+            place or place_of(found.subject, timeline),
+            remedies=by_edit(place, _PROFILE_WORDS[subscription is None], match_quality, found.detail),
         )
 
 
+_PROFILE_WORDS = ("let the subscription request what is offered", "let the publisher offer what is requested")
 _ENDPOINTS = ("publisher", "subscription")
 
 

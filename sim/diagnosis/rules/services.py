@@ -2,7 +2,10 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, line_of, place_of
+from sim.diagnosis.cures import Remedy
+from sim.diagnosis.edits.functions import return_response
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, entity_of, line_of, place_of
+from sim.diagnosis.rules.edits import edits_for_waiting
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, who
 from sim.trace.events import EntityKind
@@ -38,17 +41,21 @@ class UnreturnedResponse(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Say whether it raised or returned nothing."""
         subject, service = who(found.subject, timeline), entity_of(found, timeline).name
+        place = place_of(found.subject, timeline)
+        remedies: tuple[Remedy, ...] = ()
         if found.detail:
             what = f"{subject} raised {found.detail}"
             cure = f"fix what raises, or catch it in {subject} and return a response that says so"
         else:
             what = f"{subject} returned no response"
             cure = f"end {subject} with: return response"
+            remedies = by_edit(place, cure, return_response)
         return Explanation(
             f"{what}, so the caller of {service} waits for ever{often(found.count)}",
             "only what a service's callback returns is sent to the caller",
             cure,
-            place_of(found.subject, timeline),
+            place,
+            remedies=remedies,
         )
 
 
@@ -110,13 +117,15 @@ class ServiceNeverComes(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Say what waits with it."""
         subject = who(found.subject, timeline)
+        place = line_of(found.subject, Window(found.at, found.until + 1), timeline)
         return Explanation(
             f"{subject} waits in wait_for_service() for {found.about}, which nobody offers",
             "while it waits it keeps its thread and its group, and without a timeout it does so for ever",
             f"start the node that offers {found.about}; wait for it in __init__, before spin(), or ask "
             f"service_is_ready() in {subject} and return",
-            line_of(found.subject, Window(found.at, found.until + 1), timeline),
+            place,
             for_ever=found.until >= timeline.end,
+            remedies=edits_for_waiting(place, found.subject, timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:

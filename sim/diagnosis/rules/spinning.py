@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule
+from sim.diagnosis.rules.edits import edits_for_reply
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import often, threads_for, who, with_threads
 from sim.trace.events import SpinClashed
@@ -48,7 +49,9 @@ class NestedSpin(Rule):
             )
             why = "an executor is spun once at a time; rclpy before Jazzy 7.1.9 tells nobody, and may hang"
         place = CodeLocation(clash.file, clash.line, clash.line) if clash.file else None
-        return Explanation(f"{what}{often(found.count)}", why, _cure(clash, subject, timeline), place)
+        remedies = edits_for_reply(place, clash.entity, timeline) if clash.entity else ()
+        cure = _cure(clash, subject, timeline)
+        return Explanation(f"{what}{often(found.count)}", why, cure, place, remedies=remedies)
 
 
 def _cure(clash: SpinClashed, subject: str, timeline: Timeline) -> str:

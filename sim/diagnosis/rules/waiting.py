@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import ClassVar
 
-from sim.diagnosis.cures import NO_REMEDY, Remedy, remedy_for_waits
+from sim.diagnosis.cures import Remedy, remedy_for_waits
 from sim.diagnosis.rule import Explanation, Finding, Rule, line_of, place_of
 from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import group_of, listed, often, threads_for, who
@@ -58,7 +58,7 @@ class _KeptWaiting(Rule):
         ]
 
     def _explained(
-        self, found: Finding, timeline: Timeline, cause: str, why: str, cure: str, remedy: Remedy = NO_REMEDY
+        self, found: Finding, timeline: Timeline, cause: str, why: str, cure: str, *remedies: Remedy
     ) -> Explanation:
         waited = self._waiting(found, timeline)
         names = listed(who(each, timeline) for each in waited)
@@ -69,7 +69,7 @@ class _KeptWaiting(Rule):
             why,
             cure,
             place or place_of(found.subject, timeline),
-            remedy=remedy,
+            remedies=remedies,
         )
 
 

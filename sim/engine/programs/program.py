@@ -3,6 +3,7 @@
 import ast
 import importlib.util
 import inspect
+import linecache
 import sys
 import threading
 import traceback
@@ -33,19 +34,21 @@ _INTERRUPTED = 130
 class ProgramSpec:
     """What to run: the file ``path`` as a script, or ``function`` of the module ``module``.
 
-    ``folder`` is where imports look first. ``arguments`` are those behind the program's own name.
+    ``folder`` is where imports look first. ``arguments`` are those behind the program's own name. ``text`` is
+    run in place of the file's, "" for that.
     """
 
     path: str
     folder: str
     arguments: tuple[str, ...] = ()
+    text: str = ""
     module: str = ""
     function: str = ""
 
 
-def script(path: str, arguments: tuple[str, ...] = ()) -> ProgramSpec:
+def script(path: str, arguments: tuple[str, ...] = (), text: str = "") -> ProgramSpec:
     """The program that a file is, as Python runs it: what a link leads to imports from its own folder."""
-    return ProgramSpec(path, str(Path(path).resolve().parent), arguments)
+    return ProgramSpec(path, str(Path(path).resolve().parent), arguments, text)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +109,7 @@ def _returned() -> str:
 def _load(program: ProgramSpec) -> Callable[[], object]:
     """What has to be called to run the program."""
     if program.function:
-        source = read_source(Path(program.path))
+        source = _source(program)
         names = _namespace(program, program.module)
         exec(_code(program, source), names)
         if not callable(names.get(program.function)):
@@ -116,8 +119,17 @@ def _load(program: ProgramSpec) -> Callable[[], object]:
     return lambda: _run_script(program)
 
 
+def _source(program: ProgramSpec) -> str:
+    """The program's source; tracebacks show its lines, too, if it is another than the file's."""
+    if not program.text:
+        return read_source(Path(program.path))
+    lines = program.text.splitlines(keepends=True)
+    linecache.cache[program.path] = (len(program.text), None, lines, program.path)
+    return program.text
+
+
 def _run_script(program: ProgramSpec) -> object:
-    source = read_source(Path(program.path))
+    source = _source(program)
     names = _namespace(program, "__main__")
     exec(_code(program, source), names)
     if _starts_itself(source):

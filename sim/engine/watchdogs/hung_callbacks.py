@@ -80,6 +80,6 @@ def _hung_call(top: FrameType) -> FrameType | None:
 
 def _sentence(call: FrameType, top: FrameType) -> str:
     return (
-        f"{call.f_code.co_name} {_PROBLEM} ({place_of(top)}): it computes, or waits for something that does not "
-        "come; its thread serves nothing else meanwhile"
+        f"{call.f_code.co_name} {_PROBLEM} ({place_of(top)}): it computes, or waits for something that does "
+        "not come; its thread serves nothing else meanwhile"
     )

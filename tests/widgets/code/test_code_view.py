@@ -193,7 +193,7 @@ async def test_a_file_that_changed_on_disk_says_so_until_it_is_read_anew(talker:
         app.view.over = True
         assert app.view.note == "talker.py · changed; r runs it again"
         assert "# talker 1" in lines_of(app)[0]
-        app.view.read_anew()
+        app.view.read_anew({})
         await pilot.pause()
         assert app.view.note == "talker.py"
         assert "# new" in lines_of(app)[0]

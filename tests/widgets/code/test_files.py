@@ -80,7 +80,7 @@ def test_a_file_that_is_gone_has_not_changed_and_stays_as_it_was(main: Path) -> 
     files = SourceFiles(main)
     main.unlink()
     assert not files.main.has_changed()
-    files.read_anew()
+    files.read_anew({})
     assert files.main.text == "main = 1\n"
 
 
@@ -89,7 +89,7 @@ def test_files_are_read_anew_for_another_run(main: Path, other: Path) -> None:
     files.of(str(other))
     main.write_text("main = 2\n")
     other.write_text("other = 2\n")
-    files.read_anew()
+    files.read_anew({})
     found = files.of(str(other))
     assert found is not None
     assert (files.main.text, found.text) == ("main = 2\n", "other = 2\n")

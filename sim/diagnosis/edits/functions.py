@@ -1,0 +1,64 @@
+"""Edits of a callback's parameters and of what it returns."""
+
+import ast
+from collections.abc import Sequence
+
+from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
+
+_PARAMETERS = {
+    "create_timer": (),
+    "create_subscription": ("message",),
+    "create_service": ("request", "response"),
+}
+
+
+def fit_parameters(source: SourceEditor, line: int) -> None:
+    """Give the callback that is defined at a line as many parameters as it is called with.
+
+    Those that it has keep their names; one is taken away only if nothing uses it.
+    """
+    callback = _defined_at(source, line)
+    wanted = _parameters(source, callback)
+    names = callback.args.args[1:]
+    surplus, missing = names[len(wanted) :], wanted[len(names) :]
+    used = {each.id for each in source.nodes(ast.Name, callback)}
+    is_plain = ast.unparse(callback.args) == ", ".join(map(ast.unparse, callback.args.args))
+    if not is_plain or used & {each.arg for each in surplus} or not (surplus or missing):
+        raise NotSimpleError
+    if missing:
+        source.insert_behind(callback.args.args[-1], "".join(f", {each}" for each in missing))
+    else:
+        source.cut_behind(callback.args.args[len(wanted)], surplus[-1])
+
+
+def _parameters(source: SourceEditor, callback: ast.FunctionDef) -> Sequence[str]:
+    """What a callback is called with, by what the program makes with it."""
+    found = {
+        call.func.attr
+        for call in source.nodes(ast.Call)
+        if isinstance(call.func, ast.Attribute)
+        and call.func.attr in _PARAMETERS
+        and any(isinstance(each, ast.Attribute) and each.attr == callback.name for each in call.args)
+    }
+    if len(found) != 1:
+        raise NotSimpleError
+    return _PARAMETERS[found.pop()]
+
+
+def return_response(source: SourceEditor, line: int) -> None:
+    """End the service's callback that is defined at a line by returning its response."""
+    callback = _defined_at(source, line)
+    returns = source.nodes(ast.Return, callback)
+    if len(callback.args.args) != 3 or returns:
+        raise NotSimpleError
+    last = callback.body[-1]
+    response = callback.args.args[-1].arg
+    kept = source.lines_behind(last.lineno - 1, last)
+    source.replace_lines(last, last, f"{kept}{indentation(last)}return {response}\n")
+
+
+def _defined_at(source: SourceEditor, line: int) -> ast.FunctionDef:
+    callback = source.callback_at(line)
+    if callback.lineno != line:
+        raise NotSimpleError
+    return callback

@@ -1,0 +1,152 @@
+"""Edits of callbacks that wait for a reply: they go on in a done-callback, or await it."""
+
+import ast
+
+from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
+
+_SPIN = "spin_until_future_complete"
+_IDLE = ("sleep", "sleep_for", "spin_once")
+
+
+def go_on_in_done_callback(source: SourceEditor, line: int) -> None:
+    """Move what follows the wait at a line into a method that the future calls when it is done.
+
+    Only where the wait is a statement of its own in the callback's body, and nothing behind it needs a
+    variable from before it.
+    """
+    callback = source.callback_at(line)
+    place = next((place for place, each in enumerate(callback.body) if _is_at(each, line)), None)
+    if place is None:
+        raise NotSimpleError
+    wait, rest = callback.body[place], callback.body[place + 1 :]
+    if rest and rest[0].lineno == wait.end_lineno:
+        raise NotSimpleError
+    future, begin, first = _handed_over(source, wait, callback)
+    _check_rest(callback, callback.body[:place], rest, future)
+    inner, outer = indentation(wait), indentation(callback)
+    comment = source.comment_behind(wait)
+    if not rest and not first:
+        source.replace_lines(wait, wait, f"{inner}{begin.partition(' = ')[2] or 'pass'}{comment}\n")
+        return
+    name = next(each for each in ("on_reply", f"{callback.name}_reply") if each not in source.text)
+    me = callback.args.args[0].arg
+    lines = [
+        *([f"{inner}{begin}{comment}"] if begin else []),
+        f"{inner}{future}.add_done_callback({me}.{name})",
+        "",
+        f"{outer}def {name}({me}, {future}):",
+        *([f"{inner}{first}"] if first else []),
+    ]
+    last = rest[-1] if rest else wait
+    kept = source.lines_behind(wait.end_lineno or 0, last)
+    source.replace_lines(wait, last, "\n".join(lines) + "\n" + kept)
+
+
+def await_reply(source: SourceEditor, line: int) -> None:
+    """Have the callback at a line await the reply, as a coroutine."""
+    callback = source.callback_at(line)
+    statement = _innermost(callback, line)
+    call = _plain_call(statement)
+    if call is not None:
+        source.replace(call, f"await {_asynchronous(source, call)}")
+    else:
+        future = _future_of(statement)
+        awaited = f"await {future}{source.comment_behind(statement)}"
+        source.replace_lines(statement, statement, f"{indentation(statement)}{awaited}\n")
+    source.insert_before(callback, "async ")
+
+
+def _is_at(statement: ast.stmt, line: int) -> bool:
+    return statement.lineno <= line <= (statement.end_lineno or statement.lineno)
+
+
+def _innermost(callback: ast.FunctionDef, line: int) -> ast.stmt:
+    """The innermost statement at a line that waits; a loop, if it is one that waits for a future."""
+    around = [each for each in ast.walk(callback) if isinstance(each, ast.stmt) and _is_at(each, line)]
+    loops = [each for each in around if isinstance(each, ast.While) and _loop_future(each)]
+    found = (loops or around)[-1]
+    if isinstance(found, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
+        raise NotSimpleError
+    return found
+
+
+def _handed_over(source: SourceEditor, wait: ast.stmt, callback: ast.FunctionDef) -> tuple[str, str, str]:
+    """The future of a wait, the statement that makes it, and the one that takes its result; "" for none."""
+    call = _plain_call(wait)
+    if call is None:
+        return _future_of(wait), "", ""
+    names = {each.id for each in source.nodes(ast.Name, callback)}
+    future = "future" if "future" not in names else "reply_future"
+    begin = f"{future} = {_asynchronous(source, call)}"
+    if isinstance(wait, ast.Expr) and wait.value is call:
+        return future, begin, ""
+    if isinstance(wait, ast.Assign) and wait.value is call and len(wait.targets) == 1:
+        return future, begin, f"{source.code_of(wait.targets[0])} = {future}.result()"
+    raise NotSimpleError
+
+
+def _plain_call(statement: ast.stmt) -> ast.Call | None:
+    """The one ``client.call(request)`` in a simple statement; None if there is none."""
+    if isinstance(statement, ast.While | ast.If | ast.For | ast.With | ast.Try):
+        return None
+    calls = [each for each in ast.walk(statement) if isinstance(each, ast.Call)]
+    found = [each for each in calls if isinstance(each.func, ast.Attribute) and each.func.attr == "call"]
+    if len(found) != 1 or len(found[0].args) != 1 or found[0].keywords:
+        return None
+    return found[0]
+
+
+def _asynchronous(source: SourceEditor, call: ast.Call) -> str:
+    assert isinstance(call.func, ast.Attribute)
+    return f"{source.code_of(call.func.value)}.call_async({source.code_of(call.args[0])})"
+
+
+def _future_of(wait: ast.stmt) -> str:
+    """The future that a statement waits for, by spinning or in a loop."""
+    if isinstance(wait, ast.Expr) and isinstance(wait.value, ast.Call):
+        function = wait.value.func
+        if isinstance(function, ast.Attribute) and function.attr == _SPIN:
+            for each in wait.value.args[-1:]:
+                if isinstance(each, ast.Name) and not wait.value.keywords:
+                    return each.id
+    future = _loop_future(wait)
+    if not future:
+        raise NotSimpleError
+    return future
+
+
+def _loop_future(loop: ast.stmt) -> str:
+    """The future of ``while not future.done():``, with nothing in it but pauses; "" for any other."""
+    if not isinstance(loop, ast.While) or loop.orelse or not all(map(is_idle, loop.body)):
+        return ""
+    match loop.test:
+        case ast.UnaryOp(
+            op=ast.Not(), operand=ast.Call(func=ast.Attribute(value=ast.Name(id=future), attr="done"))
+        ):
+            return future
+    return ""
+
+
+def is_idle(statement: ast.stmt) -> bool:
+    """Whether a statement only lets time pass."""
+    match statement:
+        case ast.Pass():
+            return True
+        case ast.Expr(value=ast.Call(func=ast.Attribute(attr=name) | ast.Name(id=name))):
+            return name in _IDLE
+    return False
+
+
+def _check_rest(callback: ast.FunctionDef, before: list[ast.stmt], rest: list[ast.stmt], future: str) -> None:
+    """Raise if what follows the wait cannot stand in a method of its own."""
+    me = callback.args.args[0].arg
+    names = [each for part in before for each in ast.walk(part) if isinstance(each, ast.Name)]
+    local = {each.arg for each in callback.args.args}
+    local |= {each.id for each in names if isinstance(each.ctx, ast.Store)}
+    for each in (node for part in rest for node in ast.walk(part)):
+        if isinstance(each, ast.Return) and each.value is not None:
+            raise NotSimpleError
+        if isinstance(each, ast.Await | ast.Yield | ast.YieldFrom | ast.Nonlocal | ast.Global):
+            raise NotSimpleError
+        if isinstance(each, ast.Name) and each.id in local - {me, future}:
+            raise NotSimpleError

@@ -1,0 +1,179 @@
+"""Edits Python source at the positions of its syntax tree, so that comments and layout stay."""
+
+import ast
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TypeAlias, TypeVar
+
+Function: TypeAlias = ast.FunctionDef | ast.AsyncFunctionDef
+Positioned: TypeAlias = ast.stmt | ast.expr | ast.alias | ast.arg
+Node = TypeVar("Node", bound=ast.AST)
+
+
+class NotSimpleError(Exception):
+    """The source has not the simple shape that an edit is for."""
+
+
+@dataclass
+class SourceEditor:
+    """A source and the edits of it, all at positions of the unedited text.
+
+    Raises:
+        NotSimpleError: it is no Python source, or its lines do not end in plain newlines.
+    """
+
+    text: str
+    _edits: list[tuple[int, int, bytes]] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        try:
+            self.tree = ast.parse(self.text)
+        except (SyntaxError, ValueError, RecursionError):
+            raise NotSimpleError from None
+        if "\r" in self.text or "\f" in self.text:
+            raise NotSimpleError
+        self._lines = self.text.encode().splitlines(keepends=True)
+
+    # finding
+
+    def nodes(self, kind: type[Node], within: ast.AST | None = None) -> list[Node]:
+        """The nodes of a kind, of the whole source or of a part."""
+        return [each for each in ast.walk(within or self.tree) if isinstance(each, kind)]
+
+    def function_at(self, line: int) -> Function:
+        """The innermost function around a line, decorators not included."""
+        functions: list[Function] = [*self.nodes(ast.FunctionDef), *self.nodes(ast.AsyncFunctionDef)]
+        around = [each for each in functions if each.lineno <= line <= (each.end_lineno or each.lineno)]
+        if not around:
+            raise NotSimpleError
+        return max(around, key=lambda each: each.lineno)
+
+    def statement_at(self, line: int) -> ast.stmt:
+        """The innermost statement at a line."""
+        return [each for each in self.nodes(ast.stmt) if each.lineno <= line <= (each.end_lineno or 0)][-1]
+
+    def callback_at(self, line: int) -> ast.FunctionDef:
+        """The method around a line, which executors call and the program itself does not."""
+        function = self.function_at(line)
+        calls = (each.func for each in self.nodes(ast.Call))
+        called = {each.attr for each in calls if isinstance(each, ast.Attribute)}
+        is_method = any(function in each.body for each in self.nodes(ast.ClassDef))
+        is_plain = isinstance(function, ast.FunctionDef) and not function.decorator_list
+        if not (is_plain and is_method and function.args.args) or function.name in called:
+            raise NotSimpleError
+        assert isinstance(function, ast.FunctionDef)
+        return function
+
+    def code_of(self, node: Positioned) -> str:
+        """The text of a node."""
+        start, end = self._span(node)
+        return b"".join(self._lines)[start:end].decode()
+
+    def lines_behind(self, line: int, last: ast.stmt) -> str:
+        """The lines behind one up to the end of a statement, with their comments."""
+        return b"".join(self._lines[line : last.end_lineno]).decode()
+
+    def comment_behind(self, statement: ast.stmt) -> str:
+        """The comment at the end of a statement's last line, with two blanks before it; "" for none."""
+        assert statement.end_lineno is not None
+        text = self._lines[statement.end_lineno - 1][statement.end_col_offset :].decode().strip()
+        return f"  {text}" if text else ""
+
+    # editing
+
+    def replace(self, node: Positioned, new: str) -> None:
+        """Put another text in the place of a node."""
+        self._edits.append((*self._span(node), new.encode()))
+
+    def insert_behind(self, node: Positioned, new: str) -> None:
+        """Insert a text right behind a node."""
+        end = self._span(node)[1]
+        self._edits.append((end, end, new.encode()))
+
+    def insert_before(self, node: Positioned, new: str) -> None:
+        """Insert a text right before a node."""
+        start = self._span(node)[0]
+        self._edits.append((start, start, new.encode()))
+
+    def cut_behind(self, node: Positioned, last: Positioned) -> None:
+        """Take away what is behind a node, up to the end of another."""
+        self._edits.append((self._span(node)[1], self._span(last)[1], b""))
+
+    def replace_lines(self, first: ast.stmt, last: ast.stmt, new: str) -> None:
+        """Put other lines in the place of those from one statement to another.
+
+        Raises:
+            NotSimpleError: they share a line with something else.
+        """
+        assert last.end_lineno is not None
+        before = self._lines[first.lineno - 1][: first.col_offset]
+        behind = self._lines[last.end_lineno - 1][last.end_col_offset :].strip()
+        if before.strip() or not (behind == b"" or behind.startswith(b"#")):
+            raise NotSimpleError
+        self._edits.append(
+            (self._offset(first.lineno, 0), self._offset(last.end_lineno + 1, 0), new.encode())
+        )
+
+    def import_names(self, module: str, names: Iterable[str], instead_of: str = "") -> None:
+        """Import names from a module, as far as the source does not do so.
+
+        They take the place of another name that was used once only.
+        """
+        imports = [each for each in self.tree.body if isinstance(each, ast.ImportFrom)]
+        ours = [each for each in imports if each.module == module]
+        known = {alias.name for each in ours for alias in each.names if alias.asname is None}
+        missing = sorted(set(names) - known)
+        if not missing:
+            return
+        uses = sum(each.id == instead_of for each in self.nodes(ast.Name))
+        gone = [alias for each in ours for alias in each.names if alias.name == instead_of and uses == 1]
+        if gone:
+            self.replace(gone[0], ", ".join(missing))
+        elif ours:
+            self.insert_behind(ours[0].names[-1], "".join(f", {each}" for each in missing))
+        else:
+            self._import_anew(module, missing)
+
+    def _import_anew(self, module: str, names: Iterable[str]) -> None:
+        before = [each for each in self.tree.body if isinstance(each, ast.Import | ast.ImportFrom)]
+        if not before:
+            raise NotSimpleError
+        imports = [each for each in before if isinstance(each, ast.ImportFrom)]
+        root = module.partition(".")[0]
+        related = [each for each in imports if root <= (each.module or "") < module]
+        self.insert_behind((related or before)[-1], f"\nfrom {module} import {', '.join(names)}")
+
+    def result(self) -> str:
+        """The edited text.
+
+        Raises:
+            NotSimpleError: two edits overlap, or the result is no Python source.
+        """
+        data = b"".join(self._lines)
+        upto = len(data)
+        for start, end, new in sorted(self._edits, key=lambda edit: edit[:2], reverse=True):
+            if end > upto:
+                raise NotSimpleError
+            data = data[:start] + new + data[end:]
+            upto = start
+        text = data.decode()
+        SourceEditor(text)
+        return text
+
+    # positions
+
+    def _offset(self, line: int, column: int) -> int:
+        return sum(map(len, self._lines[: line - 1])) + column
+
+    def _span(self, node: Positioned) -> tuple[int, int]:
+        assert node.end_lineno is not None
+        assert node.end_col_offset is not None
+        return (
+            self._offset(node.lineno, node.col_offset),
+            self._offset(node.end_lineno, node.end_col_offset),
+        )
+
+
+def indentation(statement: ast.stmt) -> str:
+    """The blanks before a statement."""
+    return " " * statement.col_offset
