@@ -77,7 +77,7 @@ FIT = "give the callback the parameters that it is called with (diff)"
         ("wait_for_future", [APART, DONE.format("tick"), AWAIT.format("tick")]),
         ("while_true", [LATER]),
         ("qos_mismatch", ["let the subscription request what is offered (diff)"]),
-        ("rate_sleep", ["spin with MultiThreadedExecutor(num_threads=2)"]),
+        ("rate_sleep", [APART, "spin with MultiThreadedExecutor(num_threads=2)"]),
         ("wrong_arity", [FIT]),
         ("wrong_arity_of_timer", [FIT]),
         ("wait_for_service", [LATER]),

@@ -95,11 +95,11 @@ def at_frames(watch: FindingsMonitor, clock: Clock, seconds: Sequence[float]) ->
     return looked
 
 
-def test_the_rules_look_once_a_second_however_often_they_could() -> None:
+def test_the_rules_look_twice_a_second_however_often_they_could() -> None:
     clock = Clock()
     watch, rule = watched(clock)
     at_frames(watch, clock, [100 + frame / 30 for frame in range(300)])
-    assert rule.asked == 10
+    assert rule.asked == 20
 
 
 def test_what_the_engine_reports_is_looked_at_at_once() -> None:
@@ -145,7 +145,7 @@ def test_looking_now_waits_for_nothing_and_puts_off_the_next_look() -> None:
     watch, rule = watched(clock)
     watch.look()
     watch.look()
-    assert at_frames(watch, clock, [100.9, 101.1]) == [False, True]
+    assert at_frames(watch, clock, [100.4, 100.6]) == [False, True]
     assert rule.asked == 3
 
 

@@ -10,8 +10,10 @@ from sim.trace.events import (
     GroupKind,
     MessageDropped,
     NodeAppeared,
+    QosMismatched,
     Reason,
     RobotMoved,
+    RunEnded,
     RunStarted,
     ThreadAppeared,
     VelocityCommanded,
@@ -261,6 +263,17 @@ def test_a_verdict_says_which_run_is_better_and_by_what() -> None:
     assert better == f"run B is better: losses of {ODOM} 0 instead of 2 and 2 more"
     assert worse == f"run B is worse: losses of {ODOM} 2 instead of 0 and 2 more"
     assert verdict(compare(healthy(), healthy(), window)).startswith("Neither run is better")
+
+
+def test_a_run_that_an_error_ends_and_one_that_hears_nothing_are_worse() -> None:
+    window = Window(0, ns(4.0))
+    deaf = QosMismatched(ns(1.0), "/odom", 1, 1, "RELIABILITY")
+    crash = RunEnded(ns(3.0), "the program raised", failed=True)
+    well = run([ODOM], called(1, 1.0, 1.1))
+    told = verdict(compare(run([ODOM], [deaf, *called(1, 1.0, 1.1)]), well, window))
+    assert told == "run B is better: subscriptions that hear nothing 0 instead of 1"
+    told = verdict(compare(run([ODOM], [*called(1, 1.0, 1.1), crash]), well, window))
+    assert told == "run B is better: runs that an error ends 0 instead of 1"
 
 
 def test_runs_first_differ_where_a_call_does_otherwise() -> None:

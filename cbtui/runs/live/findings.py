@@ -9,7 +9,7 @@ from sim.plural import counted
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
-_MIN_INTERVAL = 1.0
+_MIN_INTERVAL = 0.5
 """Least seconds between two updates."""
 _TIME_SHARE = 0.01
 """The share of time that updates may take: the longer one takes, the later the next."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import TypeAlias, TypeVar
 
 import msgspec
@@ -131,7 +130,8 @@ class Changes:
             said.append(self.distro)
         if self.real is not None:
             said.append("on real ROS 2")
-        said += [f"{Path(path).name} edited" for path in self.texts]
+        if self.texts:
+            said.append("an edited copy")
         if self.seed is not None:
             said.append(f"seed {self.seed}")
         return ", ".join(said)

@@ -279,13 +279,12 @@ _DIFF_STYLES = {"+": "$text-success", "-": "$text-error", "@": "$text-muted"}
 
 
 def cure_details(cure: Cure, charset: Charset) -> Content:
-    """Return what a cure changes: in words, and line by line what it edits."""
-    told = [(f"{visible(sentence(cure.words), charset)}", "bold")]
+    """Return what a cure changes: in words, and line by line what it edits, without the names of files."""
+    told = [(visible(sentence(cure.words), charset), "bold")]
     if cure.diff:
         told.append(("\nYour file stays as it is; a copy is run, with these lines:", ""))
-    told += [
-        (f"\n{visible(line, charset)}", _DIFF_STYLES.get(line[:1], "")) for line in cure.diff.splitlines()
-    ]
+    edited = cure.diff.splitlines()[2:]
+    told += [(f"\n{visible(line, charset)}", _DIFF_STYLES.get(line[0], "")) for line in edited]
     return Content.assemble(*told)
 
 

@@ -33,7 +33,7 @@ class CodeEdit:
 
 
 def diff(file: str, before: str, after: str) -> str:
-    """The difference of two texts of a file, as ``diff -u`` writes it."""
+    """The difference of two texts of a file, as ``diff -U1`` writes it."""
     name = Path(file).name
-    lines = unified_diff(before.splitlines(), after.splitlines(), name, f"{name}, the copy", n=2, lineterm="")
+    lines = unified_diff(before.splitlines(), after.splitlines(), name, f"{name}, the copy", n=1, lineterm="")
     return "\n".join(lines)

@@ -26,15 +26,15 @@ def take_together(source: SourceEditor, line: int, other: int) -> None:
 
 def _nested(source: SourceEditor, line: int) -> tuple[ast.With, ast.With]:
     """The ``with`` at a line, and the one around it."""
-    withs = [
+    blocks = [
         each
         for each in source.nodes(ast.With, source.function_at(line))
         if each.lineno <= line <= (each.end_lineno or 0)
     ]
-    withs.sort(key=lambda each: each.lineno)
-    if len(withs) != 2 or withs[1] not in withs[0].body:
+    blocks.sort(key=lambda each: each.lineno)
+    if len(blocks) != 2 or blocks[1] not in blocks[0].body:
         raise NotSimpleError
-    return withs[0], withs[1]
+    return blocks[0], blocks[1]
 
 
 def _lock(source: SourceEditor, with_: ast.With) -> str:
@@ -45,10 +45,10 @@ def _lock(source: SourceEditor, with_: ast.With) -> str:
 
 def make_reentrant(source: SourceEditor, line: int) -> None:
     """Make the lock that is taken at a line one that its holder may take again."""
-    withs = [each for each in source.nodes(ast.With) if each.lineno <= line <= each.body[0].lineno]
-    if not withs:
+    blocks = [each for each in source.nodes(ast.With) if each.lineno <= line <= each.body[0].lineno]
+    if not blocks:
         raise NotSimpleError
-    name = _lock(source, withs[-1])
+    name = _lock(source, blocks[-1])
     made = [
         each.value
         for each in source.nodes(ast.Assign)

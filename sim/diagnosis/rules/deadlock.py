@@ -64,10 +64,10 @@ class SelfMadeDeadlock(Rule):
 
     def _remedies(self, found: Finding, threads: int, timeline: Timeline) -> tuple[Remedy, ...]:
         place = _line_of(found.subject, found, timeline)
+        apart = Remedy((found.subject,), threads)
         if found.about == RATE:
-            return (Remedy(threads=threads),)
+            return apart, Remedy(threads=threads)
         if LOCK not in found.ring:
-            apart = Remedy((found.subject,), threads)
             return apart, *edits_for_reply(place, found.subject, timeline)
         other = _line_of(found.culprit, found, timeline)
         if found.size == 1:

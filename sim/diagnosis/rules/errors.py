@@ -6,6 +6,7 @@ from sim.diagnosis.edits.functions import fit_parameters
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, by_edit, place_of
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of
 from sim.diagnosis.words import often, who
+from sim.trace.events import EntityKind
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -20,8 +21,12 @@ class ProgramRaised(Rule):
         """Yield the exception; one that another rule explains has been found there."""
         ended = view.timeline.ended
         clashes = {(clash.file, clash.line) for clash in view.timeline.spin_clashes}
-        if ended is not None and ended.problem and tuple(ended.place) not in clashes:
-            yield Finding(self, ended.t, ended.t)
+        if ended is None or not ended.problem or tuple(ended.place) in clashes:
+            return
+        last = (view.spans(each.id)[-1:] for each in view.entities(EntityKind.SERVICE))
+        if (ended.error or "").startswith("TypeError") and any(each and each[0].no_response for each in last):
+            return
+        yield Finding(self, ended.t, ended.t)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Repeat what the engine says of it."""

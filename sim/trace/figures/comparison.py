@@ -61,7 +61,8 @@ class RunFigures:
     """A run in the window: threads that ran callbacks, the most at one moment, and the robot's figures.
 
     ``end`` is the end of the whole run; ``collisions`` counts contacts of the robot, including one that began
-    before the window.
+    before the window. ``mismatches`` counts publishers and subscriptions that do not match by its end,
+    ``crashes`` is 1 if an error has ended the run by then.
     """
 
     end: Nanoseconds
@@ -69,6 +70,8 @@ class RunFigures:
     threads_at_once: int
     robot: RobotFigures | None
     collisions: int
+    mismatches: int = 0
+    crashes: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -229,4 +232,7 @@ def _run_figures(timeline: Timeline, window: Window) -> Incremental[RunFigures]:
     touching = yield from collect(pose.touching for pose in trail_in_parts(timeline, window))
     collisions = sum(touches for touches, _ in groupby(touching))
     most = yield from threads_incrementally(timeline, window)
-    return RunFigures(timeline.end, used, most, robot, collisions)
+    mismatches = sum(each.t <= window.end for each in timeline.mismatches)
+    ended = timeline.ended
+    crashes = int(ended is not None and ended.failed and ended.t <= window.end)
+    return RunFigures(timeline.end, used, most, robot, collisions, mismatches, crashes)

@@ -101,7 +101,8 @@ def sections(comparison: Comparison) -> tuple[Section, ...]:
 def verdict(comparison: Comparison) -> str:
     """Return which run is better and by what, in one sentence that also tells what speaks against it.
 
-    Errors weigh most, then losses, collisions, waits, lateness, and the age of data.
+    Errors weigh most, then losses, collisions, subscriptions that do not match, waits, lateness, and the age
+    of data.
     """
     better: list[_Difference] = []
     worse: list[_Difference] = []
@@ -149,13 +150,18 @@ def _differences(comparison: Comparison) -> Iterator[_Difference]:
                 one, other = figure(first), figure(second)
                 if abs(other - one) >= least:
                     yield _Difference(rank, f"{what} of {name}", one, other, wording)
-    one, other = comparison.first.collisions, comparison.second.collisions
-    if one != other:
-        yield _Difference(_RANK_OF_COLLISIONS, "collisions", one, other, _LOSSES)
+    for rank, what, count in _DECIDING_RUNS:
+        one, other = count(comparison.first), count(comparison.second)
+        if one != other:
+            yield _Difference(rank, what, one, other, _LOSSES)
 
 
 _NONE = (math.inf, 0.0)
-_RANK_OF_COLLISIONS = 1
+_DECIDING_RUNS: tuple[tuple[int, str, Callable[[RunFigures], int]], ...] = (
+    (0, "runs that an error ends", lambda run: run.crashes),
+    (1, "subscriptions that hear nothing", lambda run: run.mismatches),
+    (1, "collisions", lambda run: run.collisions),
+)
 _NOTABLE = 10_000_000
 """Nanoseconds by which a wait or an age must differ."""
 

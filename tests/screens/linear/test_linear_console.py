@@ -13,7 +13,7 @@ from cbtui.screens.linear.choosing import ChoosingConsole
 from cbtui.screens.linear.console import LinearConsole, LineTerminal
 from cbtui.screens.linear.lesson import LessonConsole
 from cbtui.screens.linear.replay import ReplayConsole
-from cbtui.screens.parts.cures import CureTrial, CureTrials
+from cbtui.screens.parts.cures import CureTrial
 from lessons.catalogue import find, lessons
 from lessons.progress import Progress
 from sim.engine.commands import CallService, Pause, Resume, RunLine, RunUntil, Step, TerminalInput
@@ -173,7 +173,6 @@ def test_a_cure_is_tried_by_its_number_and_the_run_with_it_is_compared(
 ) -> None:
     predict()
     monkeypatch.setattr(CureTrial, "helps", lambda *_: True)
-    monkeypatch.setattr(CureTrials, "can_try", lambda *_: True)
     script = [
         ("problem: ", "d"),
         ("Type the number of a problem", "1"),

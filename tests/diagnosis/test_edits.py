@@ -1,0 +1,320 @@
+"""Edits of source: the lines that change, layout and comments that stay, and the shapes that are refused."""
+
+from collections.abc import Callable
+from textwrap import dedent, indent
+
+import pytest
+
+from sim.diagnosis.edits.code_edit import CodeEdit, diff
+from sim.diagnosis.edits.functions import fit_parameters, return_response
+from sim.diagnosis.edits.locks import make_reentrant, take_together
+from sim.diagnosis.edits.polling import look_again
+from sim.diagnosis.edits.profiles import match_quality
+from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
+
+MARK = "# here"
+
+
+def node(methods: str, imports: str = "import rclpy") -> str:
+    return f"{imports}\n\n\nclass Robot(Node):\n{indent(dedent(methods).strip(), '    ')}\n"
+
+
+def changed(text: str, change: Callable[..., None], *more: object) -> list[str] | None:
+    """The lines that an edit at the marked line takes away and brings; None if it is refused."""
+    line = next(number for number, each in enumerate(text.splitlines(), 1) if MARK in each)
+    edited = CodeEdit("node.py", "", change, (line, *more)).applied(text)
+    if edited is None:
+        return None
+    return [each for each in diff("node.py", text, edited).splitlines()[2:] if each[0] in "+-"]
+
+
+def test_what_follows_a_call_goes_on_in_a_done_callback_with_its_comments() -> None:
+    text = node(
+        """
+        def tick(self):
+            request = Trigger.Request()
+            # ask
+            reply = self.client.call(request)  # here
+            # and tell
+            if reply.success:
+                self.log(reply)  # well
+        """
+    )
+    assert changed(text, go_on_in_done_callback) == [
+        "-        reply = self.client.call(request)  # here",
+        "+        future = self.client.call_async(request)  # here",
+        "+        future.add_done_callback(self.on_reply)",
+        "+",
+        "+    def on_reply(self, future):",
+        "+        reply = future.result()",
+    ]
+
+
+def test_a_reply_that_nobody_uses_needs_no_done_callback() -> None:
+    text = node("def tick(self):\n    self.client.call(Trigger.Request())  # here")
+    assert changed(text, go_on_in_done_callback) == [
+        "-        self.client.call(Trigger.Request())  # here",
+        "+        self.client.call_async(Trigger.Request())  # here",
+    ]
+
+
+def test_the_names_of_a_done_callback_and_its_future_are_new() -> None:
+    text = node(
+        """
+        def tick(self):
+            future = 1
+            self.reply = self.client.call(Trigger.Request())  # here
+
+        def on_reply(self): pass
+        """
+    )
+    lines = changed(text, go_on_in_done_callback)
+    assert lines is not None
+    assert "+        reply_future.add_done_callback(self.tick_reply)" in lines
+    assert "+        self.reply = reply_future.result()" in lines
+
+
+@pytest.mark.parametrize(
+    "methods",
+    [
+        "def serve(self, request, response):\n    self.client.call(request)  # here\n    return response",
+        "def tick(self):\n    n = 1\n    self.client.call(Trigger.Request())  # here\n    self.log(n)",
+        "def tick(self):\n    if self.on:\n        self.client.call(Trigger.Request())  # here",
+        "def tick(self):\n    self.client.call(Trigger.Request(), timeout_sec=1.0)  # here",
+        "def tick(self):\n    self.client.call(Trigger.Request()); self.log()  # here",
+        "def ask(self):\n    self.client.call(Trigger.Request())  # here\n\ndef tick(self):\n    self.ask()",
+        "@guarded\ndef tick(self):\n    self.client.call(Trigger.Request())  # here",
+        "def tick(self):\n    self.client.send_goal(Fibonacci.Goal())  # here",
+    ],
+)
+def test_what_is_not_simple_is_not_moved(methods: str) -> None:
+    assert changed(node(methods), go_on_in_done_callback) is None
+
+
+def test_a_function_of_no_class_and_what_is_no_python_is_not_edited() -> None:
+    assert changed("def tick(self):\n    self.client.call(1)  # here\n", await_reply) is None
+    assert CodeEdit("a.py", "", await_reply, (1,)).applied("def tick(") is None
+    assert CodeEdit("a.py", "", await_reply, (1,)).applied("") is None
+
+
+def test_a_call_is_awaited_wherever_it_is() -> None:
+    text = node(
+        """
+        def serve(self, request, response):
+            for each in self.clients:
+                if each.call(request).success:  # here
+                    pass
+                reply = each.call(request)
+            return response
+        """
+    )
+    assert changed(text, await_reply) is None
+    assert changed(
+        text.replace(f"  {MARK}", "").replace(
+            "reply = each.call(request)", f"reply = each.call(request)  {MARK}"
+        ),
+        await_reply,
+    ) == [
+        "-    def serve(self, request, response):",
+        "+    async def serve(self, request, response):",
+        "-            reply = each.call(request)  # here",
+        "+            reply = await each.call_async(request)  # here",
+    ]
+
+
+def test_a_loop_that_waits_for_a_future_is_one_await() -> None:
+    text = node(
+        "def tick(self):\n    while not future.done():\n        time.sleep(0.1)  # here\n    self.log()"
+    )
+    assert changed(text, await_reply) == [
+        "-    def tick(self):",
+        "-        while not future.done():",
+        "-            time.sleep(0.1)  # here",
+        "+    async def tick(self):",
+        "+        await future  # here",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("wait", "condition"),
+    [
+        ("while not self.ready:  # here\n    pass", "if not self.ready:"),
+        ("while True:  # here\n    if self.ready:\n        break\n    time.sleep(0.1)", "if not self.ready:"),
+        ("while True:  # here\n    if not self.busy:\n        break", "if self.busy:"),
+        ("while True:  # here\n    if self.n > 3:\n        break", "if not (self.n > 3):"),
+        ("self.client.wait_for_service()  # here", "if not self.client.service_is_ready():"),
+    ],
+)
+def test_a_timer_that_waits_looks_again_at_its_next_tick(wait: str, condition: str) -> None:
+    lines = changed(node(f"def tick(self):\n{indent(wait, '    ')}\n    self.log()"), look_again)
+    assert lines is not None
+    assert [each[9:] for each in lines if each[0] == "+"] == [condition, "    return"]
+
+
+def test_what_a_loop_logs_while_it_waits_is_logged_before_the_return() -> None:
+    wait = "while not self.client.wait_for_service(timeout_sec=1.0):  # here\n        self.log('no')"
+    assert changed(node(f"def tick(self):\n    {wait}\n    self.go()"), look_again) == [
+        "-        while not self.client.wait_for_service(timeout_sec=1.0):  # here",
+        "+        if not self.client.service_is_ready():",
+        "+            return",
+    ]
+
+
+@pytest.mark.parametrize(
+    "wait",
+    [
+        "while True:  # here\n    pass",
+        "while rclpy.ok():  # here\n    time.sleep(1)",
+        "while not self.ready:  # here\n    self.n += 1",
+        "while not done:  # here\n    pass\ndone = 1",
+        "for each in self.all:  # here\n    pass",
+        "self.client.wait_for_service(1.0)  # here",
+    ],
+)
+def test_a_loop_that_does_more_than_to_wait_stays(wait: str) -> None:
+    assert changed(node(f"def tick(self):\n{indent(wait, '    ')}"), look_again) is None
+
+
+@pytest.mark.parametrize(
+    ("definition", "made", "fitted"),
+    [
+        ("def on(self):", "create_subscription(String, 'a', self.on, 10)", "def on(self, message):"),
+        ("def on(self, a, b):", "create_timer(1.0, self.on)", "def on(self):"),
+        (
+            "def on(self, request):",
+            "create_service(Trigger, 'a', self.on)",
+            "def on(self, request, response):",
+        ),
+        ("def on(self, a, used):", "create_timer(1.0, self.on)", None),
+        ("def on(self, *all):", "create_timer(1.0, self.on)", None),
+        ("def on(self):", "create_timer(1.0, self.on)", None),
+        ("def on(self, a):", "create(self.on)", None),
+    ],
+)
+def test_a_callback_gets_the_parameters_it_is_called_with(
+    definition: str, made: str, fitted: str | None
+) -> None:
+    text = node(f"def __init__(self):\n    self.{made}\n\n{definition}  # here\n    print('x', used)\n")
+    expected = None if fitted is None else [f"-    {definition}  # here", f"+    {fitted}  # here"]
+    assert changed(text, fit_parameters) == expected
+
+
+def test_a_service_returns_its_response() -> None:
+    text = node(
+        "def serve(self, request, answer):  # here\n    if request.data:\n        answer.success = True"
+    )
+    assert changed(text, return_response) == ["+        return answer"]
+    assert changed(text.replace("answer.success = True", "return None"), return_response) is None
+
+
+QOS = "from rclpy.node import Node\nfrom rclpy.timer import Timer"
+
+
+@pytest.mark.parametrize(
+    ("made", "policy", "brought"),
+    [
+        (
+            "self.create_subscription(String, 'a', self.on, 5)  # here",
+            "RELIABILITY",
+            [
+                "+from rclpy.qos import QoSProfile, ReliabilityPolicy",
+                "+        requested = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)",
+                "+        self.create_subscription(String, 'a', self.on, requested)  # here",
+            ],
+        ),
+        (
+            "self.create_publisher(String, 'a', qos_profile=QoSProfile(depth=1))  # here",
+            "DURABILITY",
+            [
+                "+from rclpy.qos import DurabilityPolicy",
+                "+        self.create_publisher(String, 'a', qos_profile=QoSProfile(depth=1, "
+                "durability=DurabilityPolicy.TRANSIENT_LOCAL))  # here",
+            ],
+        ),
+        (
+            "mine = QoSProfile(depth=1, reliability=RELIABLE)\n"
+            "    self.create_subscription(String, 'a', self.on, mine)  # here",
+            "RELIABILITY",
+            [
+                "+from rclpy.qos import ReliabilityPolicy",
+                "+        mine = QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)",
+            ],
+        ),
+        (
+            "both = QoSProfile(depth=1)\n    self.create_publisher(String, 'b', both)\n"
+            "    self.create_subscription(String, 'a', self.on, both)  # here",
+            "RELIABILITY",
+            None,
+        ),
+        ("self.create_subscription(String, 'a', self.on, 5)  # here", "DEADLINE", None),
+        (
+            "self.create_subscription(String, 'a', self.on, qos_profile_sensor_data)  # here",
+            "RELIABILITY",
+            None,
+        ),
+    ],
+)
+def test_an_end_of_a_topic_gets_the_profile_that_fits(
+    made: str, policy: str, brought: list[str] | None
+) -> None:
+    text = node(f"def __init__(self):\n    {made}", QOS)
+    lines = changed(text, match_quality, policy)
+    assert (None if lines is None else [each for each in lines if each[0] == "+"]) == brought
+
+
+LOCKS = """
+def move(self):
+    with self.arm:
+        self.a()
+        # then
+        with self.camera:  # here
+            # both
+            self.b()
+            if self.c:
+
+                self.d()
+
+def look(self):
+    with self.camera:
+        with self.arm:
+            self.e()
+"""
+
+
+def test_both_locks_are_taken_at_once_in_the_order_of_the_other_callback() -> None:
+    text = node(LOCKS)
+    other = next(number for number, each in enumerate(text.splitlines(), 1) if "self.e()" in each)
+    assert changed(text, take_together, other) == [
+        "-        with self.arm:",
+        "+        with self.camera, self.arm:",
+        "-            with self.camera:  # here",
+        "-                # both",
+        "-                self.b()",
+        "-                if self.c:",
+        "+            # both",
+        "+            self.b()",
+        "+            if self.c:",
+        "-                    self.d()",
+        "+                self.d()",
+    ]
+    assert changed(text.replace("self.b()", "self.b('''\n''')"), take_together, other + 1) is None
+    assert (
+        changed(
+            text.replace("with self.arm:\n                self.e", "with self.lid:\n                self.e"),
+            take_together,
+            other,
+        )
+        is None
+    )
+
+
+def test_a_lock_that_its_holder_takes_again_becomes_reentrant() -> None:
+    text = node(
+        "def __init__(self):\n    self.lock = threading.Lock()\n\n"
+        "def tick(self):\n    with self.lock:  # here\n        pass"
+    )
+    assert changed(text, make_reentrant) == [
+        "-        self.lock = threading.Lock()",
+        "+        self.lock = threading.RLock()",
+    ]
+    assert changed(text.replace("threading.Lock()", "make()"), make_reentrant) is None
