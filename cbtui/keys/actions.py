@@ -250,6 +250,8 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("next", "down", "choose", "Highlight the one below", "Highlight another"),
         ("go", "enter", "go there", "Go to the moment and the code; on an arrow, do what it says"),
         ("try_cure", "t", "try the cure", "Run again with the cure, and compare with the run before"),
+        ("page_up", "pageup", "scroll", "Scroll the text up"),
+        ("page_down", "pagedown", "scroll", "Scroll the text down"),
         ("close", "escape,q", "close", "Close the window, and stay where you are"),
     ),
     Scope.PREDICTION: (

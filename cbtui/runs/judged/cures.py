@@ -26,7 +26,7 @@ _LIMIT = 15.0
 """Real seconds after which a run is given up."""
 
 Problem: TypeAlias = tuple[str, str, str]
-"""A rule's id, whom it is about, and whom it blames: the same in several runs of a program."""
+"""A rule's id and whom it is about and blames, by name: the same in several runs of a program."""
 
 
 @dataclass(frozen=True)
@@ -52,12 +52,12 @@ class Cure:
 
 
 def problem_of(found: Finding, timeline: Timeline) -> Problem:
-    """Return what identifies a finding in other runs."""
-    subject, culprit = (
+    """Return what identifies a finding in other runs: of a deadlock, either side may be the last to wait."""
+    one, other = sorted(
         known.spoken_name if (known := timeline.entities.get(each)) is not None else ""
         for each in (found.subject, found.culprit)
     )
-    return found.rule.id, subject, culprit
+    return found.rule.id, one, other
 
 
 def cures_of(told: Explanation, setup: RunSetup, before: Changes, timeline: Timeline) -> Iterator[Cure]:

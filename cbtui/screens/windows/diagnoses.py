@@ -177,6 +177,8 @@ class DiagnosesScreen(WindowScreen[Chosen]):
                 )
             case "try_cure":
                 return self._cure_at_hand is not None
+            case "page_up" | "page_down":
+                return any(text.max_scroll_y > 0 for text in self.query(VerticalScroll))
         return True
 
     @property
@@ -203,7 +205,7 @@ class DiagnosesScreen(WindowScreen[Chosen]):
     def _tell(self) -> None:
         self._tell_highlighted()
         self.query_one(VerticalScroll).scroll_home(animate=False)
-        self.query_one(KeyBar).changed()
+        self.call_after_refresh(self.query_one(KeyBar).changed)
 
     def action_previous(self) -> None:
         """Highlight the one above."""
@@ -279,12 +281,16 @@ _DIFF_STYLES = {"+": "$text-success", "-": "$text-error", "@": "$text-muted"}
 
 
 def cure_details(cure: Cure, charset: Charset) -> Content:
-    """Return what a cure changes: in words, and line by line what it edits, without the names of files."""
+    """Return what a cure changes: in words, and the lines that it edits, as far left as they can be."""
     told = [(visible(sentence(cure.words), charset), "bold")]
     if cure.diff:
         told.append(("\nYour file stays as it is; a copy is run, with these lines:", ""))
-    edited = cure.diff.splitlines()[2:]
-    told += [(f"\n{visible(line, charset)}", _DIFF_STYLES.get(line[0], "")) for line in edited]
+    edited = [(line[0], line[1:]) for line in cure.diff.splitlines()[2:]]
+    code = [text for sign, text in edited if sign != "@" and text.strip()]
+    indent = min((len(text) - len(text.lstrip()) for text in code), default=0)
+    for sign, text in edited:
+        shown = visible(sign + (text if sign == "@" else text[indent:]), charset)
+        told.append((f"\n{shown}", _DIFF_STYLES.get(sign, "")))
     return Content.assemble(*told)
 
 

@@ -112,14 +112,6 @@ class PredictionScreen(WindowScreen[PredictionExit]):
         """Highlight the answer below."""
         self.query_one(Answers).action_cursor_down()
 
-    def action_page_up(self) -> None:
-        """Scroll what the lesson is about."""
-        self.query_one(VerticalScroll).scroll_page_up(animate=False)
-
-    def action_page_down(self) -> None:
-        """Scroll what the lesson is about."""
-        self.query_one(VerticalScroll).scroll_page_down(animate=False)
-
     def action_take(self) -> None:
         """Take the highlighted answer, for good, and ask the next question."""
         chosen = self.query_one(Answers).highlighted

@@ -3,7 +3,7 @@
 from typing import Any, ClassVar
 
 from textual.app import ComposeResult
-from textual.containers import Container
+from textual.containers import Container, VerticalScroll
 from textual.content import Content
 from textual.screen import ModalScreen
 from textual.types import CSSPathType
@@ -49,6 +49,14 @@ class WindowScreen(ModalScreen[Result], SizedScreen[Result]):
         """Return an option of a list: the key of the action that chooses it, and a text with styles."""
         key = keymap_of(self.app).sign(self.SCOPE, f"choose({choice!r})", self._charset)
         return Option(Content.assemble((key, "bold $text-accent"), *text))
+
+    def action_page_up(self) -> None:
+        """Scroll the text up."""
+        self.query_one(VerticalScroll).scroll_page_up(animate=False)
+
+    def action_page_down(self) -> None:
+        """Scroll the text down."""
+        self.query_one(VerticalScroll).scroll_page_down(animate=False)
 
     def action_close(self) -> None:
         """Close the window without a result."""

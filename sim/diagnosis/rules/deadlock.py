@@ -74,9 +74,7 @@ class SelfMadeDeadlock(Rule):
             return by_edit(place, "make the lock a threading.RLock", make_reentrant)
         if other is None or any(step.startswith("/") for step in found.ring):
             return ()
-        order = (
-            f"let {who(found.subject, timeline)} take both locks at once, in the order of the other callback"
-        )
+        order = f"take both locks at once, in the order of {who(found.culprit, timeline)}"
         return by_edit(place, order, take_together, other.first_line)
 
 

@@ -13,9 +13,7 @@ def edits_for_reply(place: CodeLocation | None, entity: EntityId, timeline: Time
     """Edits of a callback that waits for a reply at a place."""
     subject = who(entity, timeline)
     return (
-        *by_edit(
-            place, f"let {subject} return and go on in a done-callback of the future", go_on_in_done_callback
-        ),
+        *by_edit(place, "go on in a done-callback of the future", go_on_in_done_callback),
         *by_edit(place, f"await the reply in an async def {subject}", await_reply, own_groups=(entity,)),
     )
 
@@ -24,6 +22,4 @@ def edits_for_waiting(place: CodeLocation | None, entity: EntityId, timeline: Ti
     """Edits of a timer's callback that waits at a place for something to come true."""
     if timeline.entities[entity].kind is not EntityKind.TIMER:
         return ()
-    return by_edit(
-        place, f"let {who(entity, timeline)} return, and look again when it is next called", look_again
-    )
+    return by_edit(place, f"return from {who(entity, timeline)}, and look again at its next call", look_again)

@@ -39,9 +39,7 @@ class ProgramRaised(Rule):
             "an exception that no except clause takes ends spin(), and with it the program",
             ended.advice or "mend the line, or catch the exception there",
             place,
-            remedies=by_edit(
-                place, "give the callback the parameters that it is called with", fit_parameters
-            ),
+            remedies=by_edit(place, "define it with the parameters it is called with", fit_parameters),
         )
 
 

@@ -167,7 +167,7 @@ class QosMismatch(Rule):
         )
 
 
-_PROFILE_WORDS = ("let the subscription request what is offered", "let the publisher offer what is requested")
+_PROFILE_WORDS = ("request no more than is offered", "offer what is requested")
 _ENDPOINTS = ("publisher", "subscription")
 
 
