@@ -37,3 +37,11 @@ def read_text(path: Path, most: int = MOST, errors: str = "strict") -> str:
         UnicodeDecodeError: it is not UTF-8.
     """
     return TextIOWrapper(BytesIO(read_bytes(path, most)), encoding="utf-8", errors=errors).read()
+
+
+def text_of_program(path: Path) -> str | None:
+    """The text of a program, with replacements for what is not text; None if it cannot be read."""
+    try:
+        return read_text(path, MOST_OF_A_PROGRAM, "replace")
+    except OSError:
+        return None

@@ -7,6 +7,7 @@ from pathlib import Path
 from lessons.lesson import Lesson
 from sim.atomic_file import write_atomically
 from sim.foreign_file import read_bytes
+from sim.plural import counted
 
 
 class StarterPlacement(Enum):
@@ -51,6 +52,14 @@ def own_file(lesson: Lesson, folder: Path) -> ExerciseFile:
     if not path.is_file():
         raise CannotPlaceError(f"{path} is there already, and is not a file")
     return ExerciseFile(path, _SENTENCES[placed].format(name=path.name, folder=folder))
+
+
+def before_the_solution(hints_left: int) -> str:
+    """Return what is said to a learner who asks for the solution."""
+    said = "What you find out yourself, you remember longer."
+    if hints_left:
+        said += f" {counted(hints_left, 'hint')} {'is' if hints_left == 1 else 'are'} left."
+    return said
 
 
 def place_starter(lesson: Lesson, folder: Path) -> StarterPlacement:

@@ -1,14 +1,15 @@
-"""What a console in lines asks for before it follows a chain, exports the run or changes a group."""
+"""What a console in lines asks for before it follows a chain, exports, records or changes the run."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from dataclasses import dataclass
 from threading import Thread
 from typing import Protocol
 
 from cbtui.runs.live.live_export import LiveExport
+from cbtui.runs.live.live_recording import FinishFile
 from cbtui.runs.live.live_run import LiveRun, ShownRun
-from cbtui.runs.setup.changeable import changeable
+from cbtui.runs.setup.changeable import ChangeableSetup, changeable
 from cbtui.runs.setup.changes import GROUP_CHOICES
 from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.linear.dialogue import Dialogue, LineHost
@@ -18,7 +19,7 @@ from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.windows.chain import names_in
 from cbtui.screens.windows.export import CHOICES
-from cbtui.screens.windows.setup_rows import GroupRow
+from cbtui.screens.windows.setup_rows import GroupRow, ValueRow, rows_of
 from sim.durations import duration, timestamp
 from sim.trace.figures.chains import ChainError, chain
 
@@ -30,9 +31,14 @@ class PostingHost(LineHost, Protocol):
         """Have something done on the console's thread; from any thread."""
 
 
-def numbered(names: list[str]) -> str:
-    """Return names with numbers to choose them by: ``1: odom_callback, 2: scan_callback``."""
-    return ", ".join(f"{number}: {name}" for number, name in enumerate(names, start=1))
+def choose(host: LineHost, what: str, question: str, names: list[str]) -> Generator[str, str, int | None]:
+    """Ask for one of some names by its number; returns its place, None if no ``what`` has that number."""
+    numbered = ", ".join(f"{number}: {name}" for number, name in enumerate(names, start=1))
+    line = yield f"{question} {numbered}. Type its number, or nothing:"
+    if line.isdecimal() and 0 < int(line) <= len(names):
+        return int(line) - 1
+    host.tell(f"There is no {what} {line}." if line else None)
+    return None
 
 
 @dataclass
@@ -91,28 +97,38 @@ class AskedExport(ScreenPart):
     def _ask(self) -> Dialogue:
         choices = [choice for choice in CHOICES.values() if not choice[0].on_screen]
         texts = [f"{title}, {meaning}" for _, title, meaning in choices]
-        line = yield f"Export the run so far as what? {numbered(texts)}. Type its number, or nothing:"
-        if not line:
-            return
-        if not (line.isdecimal() and 0 < int(line) <= len(choices)):
-            self.host.tell(f"There is no format {line}.")
+        place = yield from choose(self.host, "format", "Export the run so far as what?", texts)
+        if place is None:
             return
         try:
-            export = LiveExport(self.runs.run.material(), choices[int(line) - 1][0].form, None)
+            export = LiveExport(self.runs.run.material(), choices[place][0].form, None)
         except FileNotFoundError:
             self.host.tell("The current folder is gone; start the console in another one.")
             return
 
-        def write() -> None:
-            said = export.write()
-            self.host.post(lambda: self.host.tell(said))
-
-        Thread(target=write, name="export", daemon=True).start()
+        FinishInLines(self.host).finish(export.write)
 
 
 @dataclass
-class AskedGroup(ScreenPart):
-    """Gives a callback another group, and runs again."""
+class FinishInLines:
+    """Finishes files in the background."""
+
+    host: PostingHost
+
+    def finish(self, finish: FinishFile | None) -> None:
+        """Finish a file, and tell of it; does nothing for None."""
+
+        def write(finish: FinishFile) -> None:
+            said = finish()
+            self.host.post(lambda: self.host.tell(said))
+
+        if finish is not None:
+            Thread(target=write, args=(finish,), name="file", daemon=True).start()
+
+
+@dataclass
+class AskedSetUp(ScreenPart):
+    """Gives a callback another group, or a value of the set-up another one, and runs again."""
 
     host: LineHost
     runs: RunController[LiveRun]
@@ -125,17 +141,39 @@ class AskedGroup(ScreenPart):
 
     def action_group(self) -> None:
         """Ask for the callback and its group."""
-        self.host.ask(self._ask())
+        self.host.ask(self._ask_group())
 
-    def _ask(self) -> Dialogue:
+    def action_set_up(self) -> None:
+        """Ask for the setting and its value."""
+        self.host.ask(self._ask_value())
+
+    @property
+    def _changeable(self) -> ChangeableSetup:
         run = self.runs.run
-        callbacks = changeable(self.subject, run.setup, run.timeline).callbacks
-        names = [f"{each.name}, now in group {each.group}" for each in callbacks]
-        line = yield f"Which callback? {numbered(names)}. Type its number, or nothing:"
-        if not (line.isdecimal() and 0 < int(line) <= len(callbacks)):
-            self.host.tell(f"There is no callback {line}." if line else None)
+        return changeable(self.subject, run.setup, run.timeline)
+
+    def _ask_value(self) -> Dialogue:
+        rows = [row for row in rows_of(self._changeable) if isinstance(row, ValueRow) and not row.is_fixed]
+        names = [f"{row.what} {row.aspect}, now {row.now}" for row in rows]
+        place = yield from choose(self.host, "setting", "Which setting?", names)
+        if place is None:
             return
-        row = GroupRow(callbacks[int(line) - 1])
+        row = rows[place]
+        line = yield f"Which {row.kind.name}? Give {row.kind.bounds}, or nothing for the program's own:"
+        try:
+            value = row.kind.read(line) if line else None
+        except ValueError as error:
+            self.host.tell(f"{error}.")
+        else:
+            asyncio.run(self.restarts.again(row.take(self.restarts.changes, (value,))))
+
+    def _ask_group(self) -> Dialogue:
+        callbacks = self._changeable.callbacks
+        names = [f"{each.name}, now in group {each.group}" for each in callbacks]
+        place = yield from choose(self.host, "callback", "Which callback?", names)
+        if place is None:
+            return
+        row = GroupRow(callbacks[place])
         group = yield f"Which group: {', '.join(GROUP_CHOICES)}? Nothing for the program's own:"
         if group and group not in GROUP_CHOICES:
             self.host.tell(f"There is no group {group}.")

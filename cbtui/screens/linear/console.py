@@ -44,12 +44,15 @@ _OWN_WORDS = {
     "earlier": "Go a second back, and tell that moment",
     "later": "Go a second on, and tell that moment",
     "show_pane('guide')": "Read the guide",
+    "show_pane('code')": "Read the code of the program",
     "show_pane('log')": "Tell every line of the log, or each text only once",
     "prompt": "Type a ros2 line, or the label of a key",
     "exercise": "Tell the exercise and make its file; once you have changed that, check it",
     "chain": "Tell how long messages took from one topic or service to another, and where",
     "export": "Write the run so far to a file: a picture, report, table or trace",
     "group": "Give a callback another group, and run again",
+    "set_up": "Change a timer's period, a number, the sensors' rate or the release of rclpy, and run again",
+    "solution": "Tell how your file becomes the solution",
     "help": "Tell the keys that do something now",
 }
 """What actions do here, where that is not what they do on a screen."""
@@ -144,7 +147,7 @@ class LinearConsole(Generic[RunT_co]):
                         self.turn()
                     turn = monotonic() + _TURN
         finally:
-            self.runs.run.stop()
+            self.tell(self.runs.run.stop())
         return self._next
 
     @property
@@ -245,7 +248,8 @@ class LinearConsole(Generic[RunT_co]):
     def carry_out(self, typed: str) -> None:
         """Carry out a key, the label of one, or a ros2 line."""
         key, words = _TYPED.get(typed, typed), typed.strip()
-        found = [each for each in self._actions if key in keys_of(each) or words in (each.label, each.name)]
+        called = [each for each in self._actions if words and words in (each.label, each.name)]
+        found = [each for each in self._actions if key in keys_of(each)] or called
         chosen = next(filter(self._offers, found), None)
         live = self.navigation.run_that_goes_on
         if chosen is not None:

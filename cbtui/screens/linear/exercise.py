@@ -1,17 +1,27 @@
 """A lesson's exercise in lines: the file is made, and checked as often as is asked."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from difflib import SequenceMatcher
 from pathlib import Path
 from threading import Thread
 
-from cbtui.learning.exercise_files import CannotPlaceError, StarterPlacement, own_file, place_starter
+from cbtui.learning.exercise_files import (
+    CannotPlaceError,
+    StarterPlacement,
+    before_the_solution,
+    own_file,
+    place_starter,
+)
 from cbtui.runs.judged.check_text import checked_text
 from cbtui.runs.judged.checking import CheckedFile, check
 from cbtui.screens.linear.asking import PostingHost
+from cbtui.screens.linear.dialogue import Dialogue
 from cbtui.screens.parts.part import ScreenPart
 from lessons.judge import Judge
 from lessons.lesson import BadLesson, Lesson
 from lessons.progress import Progress
+from sim.foreign_file import text_of_program
 
 
 @dataclass
@@ -62,9 +72,39 @@ class ExerciseInLines(ScreenPart):
             self.progress.passes(self.lesson.id)
             self.host.tell("The exercise is solved.")
 
+    def action_solution(self) -> None:
+        """Tell the solution, after a confirmation the first time."""
+        self.host.ask(self._ask_solution())
+
+    def _ask_solution(self) -> Dialogue:
+        lesson, known = self.lesson, self.progress.of(self.lesson.id)
+        assert lesson.exercise is not None
+        assert lesson.solution_path is not None
+        if not known.solution:
+            asked = before_the_solution(len(lesson.exercise.hints) - known.hints)
+            if (yield f"{asked} Type yes to look at the solution, or nothing:") != "yes":
+                return
+        self.progress.look_at_solution(lesson.id)
+        file = Path(lesson.file_name)
+        begun = file if file.is_file() else lesson.starter_path
+        self.host.tell(f"So {file.name} becomes the solution; {lesson.solution_path} has all of it.")
+        texts = [text_of_program(path) or "" for path in (begun, lesson.solution_path) if path is not None]
+        lines = list(told_difference(*texts))
+        for line in lines or ["It is the solution, word for word."]:
+            self.host.tell(line)
+
     def action_hint(self) -> None:
         """Tell the next hint."""
         assert self.lesson.exercise is not None
         number = self.progress.of(self.lesson.id).hints + 1
         self.progress.take_hint(self.lesson.id, number)
         self.host.tell_page(self.lesson.exercise.hints[number - 1])
+
+
+def told_difference(begun: str, solution: str) -> Iterator[str]:
+    """Tell which lines of a file go, and which of the solution come in their place, each with its number."""
+    old, new = begun.splitlines(), solution.splitlines()
+    for _, first, last, begins, ends in SequenceMatcher(None, old, new, autojunk=False).get_opcodes():
+        if old[first:last] != new[begins:ends]:
+            yield from (f"line {number + 1} goes: {old[number]}" for number in range(first, last))
+            yield from (f"line {number + 1} comes: {new[number]}" for number in range(begins, ends))

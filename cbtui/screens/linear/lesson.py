@@ -17,7 +17,7 @@ from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram
-from cbtui.screens.linear.asking import AskedGroup
+from cbtui.screens.linear.asking import AskedSetUp, FinishInLines
 from cbtui.screens.linear.choosing import ChoosingConsole
 from cbtui.screens.linear.console import LinearConsole, LineTerminal
 from cbtui.screens.linear.dialogue import Dialogue
@@ -25,7 +25,8 @@ from cbtui.screens.linear.exercise import ExerciseInLines
 from cbtui.screens.linear.teaching import Teaching
 from cbtui.screens.parts.choices import TakeOver
 from cbtui.screens.parts.cures import CureTrial, CureTrials
-from cbtui.screens.parts.engine_keys import PaceKeys, WorldKeys
+from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, WorldKeys
+from cbtui.screens.parts.keys import Refusals
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.parts.restarts import Restarts
 from lessons.lesson import Lesson
@@ -66,8 +67,11 @@ class LessonConsole(LinearConsole[LiveRun]):
         take_over = TakeOver(runs, subject, self._open_choosing)
         keys = (PaceKeys(self, runs), WorldKeys(runs), TypedLines(self), self.restarts, take_over)
         exercise = None if lesson is None else ExerciseInLines(self, lesson, self.progress)
-        group = AskedGroup(self, runs, self.restarts, subject)
-        more = filter(None, (self._comparison, self._cures, self._teaching, exercise, group))
+        recording = RecordingKey(self, runs, FinishInLines(self))
+        refusals = Refusals(self, lesson, lambda action: self._parts.offer(action, ()))
+        set_up = AskedSetUp(self, runs, self.restarts, subject)
+        told = (self._comparison, self._cures, self._teaching, exercise, set_up, recording, refusals)
+        more = filter(None, told)
         on = {} if following is None else {"next_lesson": partial(self.open_lesson, following)}
         self.add_parts(*keys, *more, **on)
         runs.begin(1.0)

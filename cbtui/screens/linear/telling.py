@@ -15,6 +15,7 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.diagnosis import diagnosis_on_screen
 from cbtui.widgets.narrator import narration
 from sim.durations import duration, timestamp
+from sim.foreign_file import text_of_program
 from sim.trace.events import AnyEvent, KeyboardAsked, TimeHalted
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -139,10 +140,20 @@ class Telling(ScreenPart):
         self.narrative.least = LEAST[LEAST.index(self.narrative.least) + step]
         self.host.tell(f"calls and waits are told from {duration(self.narrative.least)} on")
 
+    @property
+    def _source(self) -> str:
+        subject = self.subject
+        return subject.source or text_of_program(subject.node_path) or "# There is no code to be read."
+
     def action_show_pane(self, name: str) -> None:
-        """Read the guide, or tell the whole log."""
-        if name == "guide":
-            self.host.tell_page(self.subject.guide)
-            return
+        """Read the guide or the code, or tell the whole log."""
+        match name:
+            case "guide":
+                self.host.tell_page(self.subject.guide)
+                return
+            case "code":
+                for number, line in enumerate(self._source.splitlines(), start=1):
+                    self.host.tell(f"{number}: {line}" if line.strip() else None)
+                return
         whole = self.narrative.whole = not self.narrative.whole
         self.host.tell("every line of the log is told" if whole else "each text of the log is told once")

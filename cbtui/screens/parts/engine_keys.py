@@ -2,12 +2,13 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Protocol
 
+from cbtui.runs.live.live_recording import FinishFile
 from cbtui.runs.live.live_run import LiveRun, RunState, ShownRun, has_robot
 from cbtui.runs.recorded.recording_file import CannotRecordError
-from cbtui.screens.parts.finishing import FileFinisher
 from cbtui.screens.parts.panes import PaneLayout
-from cbtui.screens.parts.part import DrawnHost, ScreenHost, ScreenPart
+from cbtui.screens.parts.part import DrawnHost, RunHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.shell import ShellView
 
@@ -51,13 +52,20 @@ class PaceKeys(ScreenPart):
         self.host.redraw()
 
 
+class Finisher(Protocol):
+    """Finishes files in the background."""
+
+    def finish(self, finish: FinishFile | None) -> None:
+        """Finish a file, and tell of it; does nothing for None."""
+
+
 @dataclass
 class RecordingKey(ScreenPart):
     """Records periods of a run to files in the current folder."""
 
-    host: ScreenHost
+    host: RunHost
     runs: RunController[LiveRun]
-    finisher: FileFinisher
+    finisher: Finisher
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer it while the engine lives."""

@@ -9,7 +9,7 @@ from textual.widget import Widget
 from cbtui.keys.action import KeyAction, Scope
 from cbtui.looks.theme import Charset
 from cbtui.screens.layout import Layout
-from cbtui.screens.parts.part import ScreenHost, ScreenPart, ScreenParts
+from cbtui.screens.parts.part import RunHost, ScreenPart, ScreenParts
 from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.choice import ChoiceOptions
@@ -110,7 +110,7 @@ class Refusals(ScreenPart):
     ``lesson`` is None for a program that belongs to no lesson.
     """
 
-    host: ScreenHost
+    host: RunHost
     lesson: Lesson | None
     is_available: Callable[[str], bool]
 

@@ -9,12 +9,12 @@ from textual.content import Content
 from textual.widgets import Static
 
 from cbtui.keys.action import Scope
+from cbtui.learning.exercise_files import before_the_solution
 from cbtui.looks.theme import Charset
 from cbtui.screens.windows.window import WindowScreen
 from cbtui.text.cells import visible
 from cbtui.widgets.code.highlight import TokenKind, highlight
 from cbtui.widgets.key_bar import KeyBar
-from sim.plural import counted
 
 _STYLES = {
     TokenKind.PLAIN: "$text",
@@ -89,9 +89,7 @@ class ConfirmSolutionScreen(WindowScreen[bool]):
 
     def content(self) -> ComposeResult:
         """Lay out the question."""
-        left = self._hints_left
-        there_are = f"{counted(left, 'hint')} {'is' if left == 1 else 'are'} left." if left else ""
-        yield Static(f"What you find out yourself, you remember longer. {there_are}".rstrip(), markup=False)
+        yield Static(before_the_solution(self._hints_left), markup=False)
 
     def action_take(self) -> None:
         """Look."""

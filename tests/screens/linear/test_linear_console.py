@@ -11,6 +11,7 @@ from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import of_lesson, of_puzzle
 from cbtui.screens.linear.choosing import ChoosingConsole
 from cbtui.screens.linear.console import LinearConsole, LineTerminal
+from cbtui.screens.linear.exercise import told_difference
 from cbtui.screens.linear.lesson import LessonConsole
 from cbtui.screens.linear.replay import ReplayConsole
 from cbtui.screens.parts.cures import CureTrial
@@ -293,10 +294,65 @@ def test_an_exercise_is_made_and_a_changed_file_checked(
     assert Progress().of(EXERCISE).passed
 
 
+def test_the_solution_is_told_line_by_line_after_a_warning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    predict(EXERCISE)
+    monkeypatch.chdir(tmp_path)
+    script = [
+        ("problem: ", "H"),
+        ("once the lesson is explained: press a", "a"),
+        ("Checked against", "H"),
+        ("3 hints are left. Type yes", "yes"),
+        ("split_groups.py becomes the solution", "H"),
+        ("split_groups.py becomes the solution", "q"),
+    ]
+    lines = Lesson(script, lesson=EXERCISE).run()
+    assert Progress().of(EXERCISE).solution
+    assert any(" comes: " in line and "CallbackGroup" in line for line in lines)
+
+
+def test_what_goes_and_comes_has_the_number_of_its_line() -> None:
+    assert list(told_difference("a\nb\nc\n", "a\nB\nc\nd\n")) == [
+        "line 2 goes: b",
+        "line 2 comes: B",
+        "line 4 comes: d",
+    ]
+
+
+def test_a_value_of_the_set_up_is_changed() -> None:
+    predict()
+    script = [
+        ("problem: ", "p"),
+        ("1: timer_callback period, now 0.5 s, 2: robot's sensors rate, now 20 Hz, 3: rclpy release", "1"),
+        ("Which period? Give 0.001 to 3600 s", "0"),
+        ("0 is not a period", "p"),
+        ("Which setting?", "3"),
+        ("Which release? Give humble", "kilted"),
+        ("it runs again", "q"),
+    ]
+    typist = Lesson(script)
+    typist.run()
+    assert typist.engines.latest.setup.distro == "kilted@9.1.2"
+
+
+def test_a_run_is_recorded_to_the_current_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    predict()
+    monkeypatch.chdir(tmp_path)
+    lines = Lesson([("problem: ", "R"), ("Recording to", "R"), ("Recorded", "q")]).run()
+    assert [path.suffix for path in tmp_path.iterdir()] == [".mcap"], lines
+
+
+def test_the_code_is_read_with_the_numbers_of_its_lines() -> None:
+    predict()
+    lines = Lesson([("problem: ", "2"), ("rclpy.init", "q")]).run()
+    assert any(line.startswith("120: def main") for line in lines)
+
+
 def test_hints_come_one_by_one_once_the_lesson_is_explained() -> None:
     predict(EXERCISE)
     exercise = find(EXERCISE).exercise
     assert exercise is not None
-    script = [("problem: ", "h"), ("hint is not possible", "a"), ("Checked against", "h|q")]
+    script = [("problem: ", "h"), ("once the lesson is explained", "a"), ("Checked against", "h|q")]
     Lesson(script, lesson=EXERCISE).run()
     assert Progress().of(EXERCISE).hints == 1
