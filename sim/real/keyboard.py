@@ -7,7 +7,6 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from sim.engine.commands import END_OF_INPUT
 from sim.engine.setup import Keyboard
 from sim.engine.stdio.pseudo_terminal import PseudoTerminal
 from sim.trace.events import AnyEvent, KeyboardAsked, Reading, Typed
@@ -79,7 +78,7 @@ class RealKeyboard:
             fed = self._pair.feed(is_last=self._is_last)
             self._fed = (reader, reads) if fed else None
             if self._is_last and not fed and not mode.takes_keys:
-                self._pair.send(END_OF_INPUT)
+                self._pair.end()
         return 0
 
     def _note(self, asked: Reading, reader: int, programs: Mapping[int, str]) -> bool:

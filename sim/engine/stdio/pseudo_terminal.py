@@ -27,13 +27,21 @@ _LONGEST = 4000
 
 
 class PseudoTerminal:
-    """``near`` is the descriptor that programs read from. Not thread-safe."""
+    """``near`` is the descriptor that programs read from. Not thread-safe.
+
+    Where the system gives none, as without ``/dev/pts``, it is a pipe that hands on lines.
+    """
 
     def __init__(self) -> None:
-        self._far, self.near = os.openpty()
+        try:
+            self._far: int | None
+            self._far, self.near = os.openpty()
+            fcntl.ioctl(self.near, termios.TIOCSWINSZ, struct.pack("HHHH", _ROWS, _COLUMNS, 0, 0))
+        except OSError:
+            self.near, self._far = os.pipe()
+        self._is_terminal = os.isatty(self.near)
         os.set_blocking(self._far, False)
-        fcntl.ioctl(self.near, termios.TIOCSWINSZ, struct.pack("HHHH", _ROWS, _COLUMNS, 0, 0))
-        self.device = os.fstat(self.near).st_rdev
+        self._identity = self._identified(os.fstat(self.near))
         self._text = ""
         self._place = 0
         self._line_begun = False
@@ -46,6 +54,8 @@ class PseudoTerminal:
 
     def interrupts(self, text: str) -> bool:
         """Whether text, typed now, would interrupt the program that has the terminal."""
+        if not self._is_terminal:
+            return INTERRUPT in text
         return INTERRUPT in text and bool(termios.tcgetattr(self.near)[3] & termios.ISIG)
 
     @property
@@ -72,7 +82,8 @@ class PseudoTerminal:
             self.send(found[0])
         if self._line_begun and not readable and is_last:
             self._line_begun = False
-            self.send(END_OF_INPUT)
+            if self._is_terminal:  # what lies in a pipe can be read as it is
+                self.end()
             readable = self.has_unread
         return readable
 
@@ -81,21 +92,39 @@ class PseudoTerminal:
         """Whether something has been handed on that has not been read."""
         return bool(_select([self.near], [], [], 0)[0])
 
+    def is_meant_by(self, found: os.stat_result) -> bool:
+        """Whether an open file, by its status, is this terminal."""
+        return self._identified(found) == self._identity
+
+    def _identified(self, found: os.stat_result) -> tuple[int, int]:
+        return (0, found.st_rdev) if self._is_terminal else (found.st_dev, found.st_ino)
+
+    def end(self) -> None:
+        """Hand on what is typed so far, or the end of the input."""
+        if self._is_terminal:
+            self.send(END_OF_INPUT)
+        elif self._far is not None:
+            os.close(self._far)
+            self._far = None
+
     def send(self, text: str) -> None:
         """Hand text on at once."""
-        os.write(self._far, text.encode(errors="replace"))
+        if self._far is not None:
+            os.write(self._far, text.encode(errors="replace"))
         self.drop_echo()
 
     def drop_echo(self) -> None:
         """Keep the far end from filling up: what it echoes, the trace tells as ``Typed``."""
         try:
-            while _read(self._far, _LONGEST):
+            while self._is_terminal and self._far is not None and _read(self._far, _LONGEST):
                 pass
         except BlockingIOError:
             return
 
     def mode(self) -> Reading:
         """How a program reads by the modes of the terminal."""
+        if not self._is_terminal:
+            return Reading.LINES
         local = termios.tcgetattr(self.near)[3]
         if local & termios.ICANON:
             return Reading.LINES if local & termios.ECHO else Reading.SECRET

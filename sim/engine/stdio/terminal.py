@@ -161,9 +161,10 @@ class Terminal:
         """How long a read waits by the modes of the terminal."""
         if not os.get_blocking(self._pair.near):
             return self._clock.now()
-        modes: list[Any] = termios.tcgetattr(self._pair.near)
-        local, control = modes[3], modes[6]
-        if local & termios.ICANON or control[termios.VMIN]:
+        if not self._pair.mode().takes_keys:
+            return None
+        control: list[Any] = termios.tcgetattr(self._pair.near)[6]
+        if control[termios.VMIN]:
             return None
         tenths: int = control[termios.VTIME]
         return self._clock.now() + tenths * 100_000_000
@@ -268,7 +269,7 @@ class Terminal:
         if isinstance(self._clock, VirtualClock) and not self._clock.owns_current_thread():
             return False
         try:
-            return os.fstat(file if isinstance(file, int) else file.fileno()).st_rdev == self._pair.device
+            return self._pair.is_meant_by(os.fstat(file if isinstance(file, int) else file.fileno()))
         except (AttributeError, OSError, ValueError):
             return False  # Python's own function says what is wrong with it
 
