@@ -122,4 +122,4 @@ def silence() -> str:
     process = current_process()
     if process.callbacks == 0 or process.spins > 0:
         return ""
-    return "the program returned without spinning, so none of its callbacks ran; call rclpy.spin(node) before"
+    return "the program returned without spinning, so none of its callbacks ran; end it with rclpy.spin(node)"

@@ -135,7 +135,7 @@ def _run_script(program: ProgramSpec) -> object:
     if _starts_itself(source):
         return None
     if not callable(names.get("main")):
-        missing = "defines no main() and runs nothing at its top level; add a main(), and call it or not"
+        missing = "defines no main() and runs nothing at its top level; add a main() that spins a node"
         raise NothingToRunError(_on_no_entry(program, source, "main", missing))
     return _entry(program, names["main"])()
 

@@ -356,7 +356,7 @@ def test_a_file_that_runs_alone_is_told_of_the_same_way_and_fails(
         (
             HEAD + "rclpy.init()\nNode('n').create_timer(1.0, print)",
             "the program returned without spinning, so none of its callbacks ran; "
-            "call rclpy.spin(node) before",
+            "end it with rclpy.spin(node)",
         ),
         (b"\xef\xbb\xbfprint('byte order mark')", "the program returned"),
         ("# -*- coding: latin-1 -*-\nprint('caf\xe9')".encode("latin-1"), "the program returned"),

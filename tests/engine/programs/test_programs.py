@@ -201,7 +201,7 @@ def test_a_program_that_never_spins_its_callbacks_is_told_so(tmp_path: Path) -> 
 def test_a_file_with_neither_main_nor_a_deed_is_told_so(tmp_path: Path) -> None:
     run = run_files(tmp_path, "import rclpy\n\nclass A:\n    pass\n")
     assert getattr(run.events[-1], "reason", "") == (
-        "program0.py defines no main() and runs nothing at its top level; add a main(), and call it or not"
+        "program0.py defines no main() and runs nothing at its top level; add a main() that spins a node"
     )
 
 
