@@ -108,7 +108,7 @@ def _reads(process: int, near: int, mode: Reading) -> bool:
 
     A program that sets the terminal anew for each key loses those that are typed in between.
     """
-    terminal = os.ttyname(near)
+    terminal = os.ttyname(near) if os.isatty(near) else str(Path(f"/proc/self/fd/{near}").readlink())
     for call in Path(f"/proc/{process}/task").glob("*/syscall"):
         with suppress(OSError):
             number, *arguments = call.read_text().split()

@@ -257,7 +257,8 @@ def place_of(uncaught: Uncaught) -> str:
 
 
 def _own_terminal() -> None:
-    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+    if os.isatty(0):  # else the machine has no pseudo-terminals
+        fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 
 
 def _lines(text: str) -> list[str]:
