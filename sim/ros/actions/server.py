@@ -291,6 +291,8 @@ class ActionServer(ActionWaitable):
     def notify_goal_done(self) -> None:
         """A goal has ended: forget it once its result was kept long enough. With the host's lock held."""
         if self._result_timeout >= 0:
+            if self._node.executor is not None:
+                self._node.executor._expiry_set(self._node.get_clock())
             self._host.clock.call_at(self._host.clock.now() + self._result_timeout, self._look_for_expired)
 
     def _look_for_expired(self) -> None:

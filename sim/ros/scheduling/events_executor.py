@@ -58,6 +58,7 @@ class EventsExecutor(Executor):
     """
 
     already_spinning = "Attempt to spin an already-spinning Executor"
+    asks_in_next_cycle = False
 
     def __init__(self, *, context: Context | None = None) -> None:
         chosen = get_default_context() if context is None else context
@@ -233,6 +234,10 @@ class EventsExecutor(Executor):
             self._timers[cast("ClockTimer", timer).clock].look_soon()
         else:
             self._queue.at(timer.due, partial(_come_due, timer, timer.due))
+
+    def _expiry_set(self, clock: Clock) -> None:
+        if clock in self._timers:
+            self._timers[clock].look_soon()
 
     def _wake(self) -> None:
         """Nothing is looked for: what is ready is in the queue."""

@@ -30,6 +30,7 @@ from sim.ros.scheduling.waiting_ends import (
 )
 
 if TYPE_CHECKING:
+    from sim.ros.clocks.clock import Clock
     from sim.ros.scheduling.entity import OwnerNode
 
 FoundT = TypeVar("FoundT")
@@ -43,6 +44,9 @@ class Executor:
 
     already_spinning = "Executor is already spinning"
     """What is raised when it is spun while it spins."""
+
+    asks_in_next_cycle = True
+    """Whether what has just begun to await is asked in the next cycle, even if nothing wakes the executor."""
 
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = get_default_context() if context is None else context
@@ -303,6 +307,9 @@ class Executor:
             self._entity_ready(timer)
         elif self._waits_until is None or timer.due < self._waits_until:
             self._signal.set()
+
+    def _expiry_set(self, clock: Clock) -> None:
+        """An action server has set the timer of a clock by which it forgets goals."""
 
     def _wake(self) -> None:
         self._cycle.recall_foreign_awaits()

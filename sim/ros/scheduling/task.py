@@ -201,7 +201,8 @@ class Task(Future[T]):
     def _arm(self, awaited: object | None) -> None:
         """Have the task go on once ``awaited`` is done.
 
-        Releases that do not resume it ask it in the next cycle, and then at each wake-up of the executor.
+        Releases that do not resume it ask it in the next cycle, and then at each wake-up of the executor; an
+        EventsExecutor asks after each callback.
 
         Raises:
             RuntimeError: the future belongs to another executor.
@@ -214,7 +215,8 @@ class Task(Future[T]):
             return
         profile = executor._profile
         if not profile.resumes_at_once:
-            (executor._resume_at_wake_up if was_suspended else executor._resume)(self)
+            asks_now = executor.asks_in_next_cycle and not was_suspended
+            (executor._resume if asks_now else executor._resume_at_wake_up)(self)
         elif isinstance(awaited, Future):
             awaited._belong_to(executor)
             awaited._wake_when_done(self._go_on if profile.loses_errors_after_await else self)

@@ -555,6 +555,56 @@ def test_an_action_is_a_task_behind_what_its_message_found_queued() -> None:
     assert on_bench(program)[0] == [0, "goal", 1, "execute", 2, 3, "accepted", 4]
 
 
+def test_the_end_of_a_goal_has_timers_looked_at_once_more() -> None:
+    # Measured on Jazzy 7.1.5 and Kilted 9.1.2: the timer by which rcl forgets goals is among them.
+    def program(bench: Bench) -> None:
+        def execute(goal: Any) -> Any:
+            bench.simulation.sleep(0.3)
+            goal.succeed()
+            return Fibonacci.Result()
+
+        def send() -> None:
+            timer.cancel()
+            client.send_goal_async(Fibonacci.Goal())
+
+        ActionServer(bench.node, Fibonacci, "f", execute)
+        client = ActionClient(bench.node, Fibonacci, "f")
+        timer = bench.node.create_timer(0.5, send)
+        bench.node.create_timer(0.6, lambda: bench.said.append(round(bench.simulation.now, 3)))
+        bench.spin_for(2.0)
+
+    assert on_bench(program)[0] == [0.8, 0.8, 1.8]
+
+
+@pytest.mark.parametrize("distro", ["jazzy@7.1.5", "kilted"])
+def test_what_awaits_is_asked_behind_what_the_next_callback_sends(distro: str) -> None:
+    # Measured on both.
+    def program(bench: Bench) -> None:
+        future: Future[None] = Future()
+
+        async def wait() -> None:
+            await future
+            bench.said.append("goes on")
+
+        def first(_: Any) -> None:
+            second.publish(Int32())
+
+        def give(_: Any) -> None:
+            future.set_result(None)
+            third.publish(Int32(data=3))
+
+        bench.node.create_subscription(Int32, "first", first, 10)
+        bench.node.create_subscription(Int32, "second", give, 10)
+        third = bench.hear("third")
+        second = bench.node.create_publisher(Int32, "second", 10)
+        bench.register()
+        bench.executor.create_task(wait)
+        bench.node.create_publisher(Int32, "first", 10).publish(Int32())
+        bench.spin_for(0.5)
+
+    assert on_bench(program, distro=distro)[0] == ["goes on", "third3"]
+
+
 def test_a_programs_waitable_may_have_no_guard_condition() -> None:
     def program(bench: Bench) -> None:
         with bench.node.context.handle:
