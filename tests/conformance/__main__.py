@@ -9,6 +9,7 @@ from cbtui.commands.options.changes import release_of
 from tests.conformance.comparing import DIFFERENT, Outcome, Result, cases, compared
 from tests.conformance.programs import program
 from tests.conformance.recorded import record
+from tests.conformance.searching import searched
 from tests.conformance.shrinking import shrunk
 
 
@@ -25,7 +26,7 @@ def main() -> None:
     parser.add_argument("--shrink", action="store_true", help="find the smallest system that still differs")
     parser.add_argument("--repeats", type=int, default=4, help="real runs before a difference is believed")
     parser.add_argument(
-        "--orders", type=int, default=40, help="other orders of the model's threads to look in"
+        "--runs", type=int, default=240, help="runs of the model in search of what a real one said"
     )
     parser.add_argument("--record", type=int, default=0, help="keep so many for the daily suite")
     parser.add_argument("--keep", type=Path, help="a folder for the programs that differ")
@@ -39,7 +40,8 @@ def main() -> None:
             f"{distro}: {len(given)} systems, {sum(len(case.model.words) for case in given)} lines",
             flush=True,
         )
-        results = compared(given, python, distro, options.at_once, options.repeats, options.orders)
+        results = compared(given, python, distro, options.at_once, options.repeats)
+        results = searched(results, distro, options.runs)
         for outcome, number in Counter(result.outcome for result in results).most_common():
             print(f"{number:5} {outcome.value}", flush=True)
         if options.record:
@@ -50,7 +52,7 @@ def main() -> None:
                 wrong += 1
                 result = each
                 if options.shrink and each.outcome in DIFFERENT:
-                    result = shrunk(each, python, distro, options.at_once, options.repeats, options.orders)
+                    result = shrunk(each, python, distro, options.at_once, options.repeats, options.runs)
                 _tell(result)
                 if options.keep:
                     options.keep.mkdir(parents=True, exist_ok=True)

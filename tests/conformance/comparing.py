@@ -1,11 +1,12 @@
 """Whether real ROS 2 goes as the model: systems that are decided, run on both as often as it takes."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import replace
 from enum import Enum
-from itertools import product, repeat
+from itertools import repeat
 from typing import NamedTuple
 
+from sim.clock.played import Moves
 from tests.conformance.drawing import drawn
 from tests.conformance.programs import program
 from tests.conformance.running import Said, run_all
@@ -21,7 +22,6 @@ LATE = 0.02
 On a busy machine all three, and all times of the systems, are longer by a factor, the ``pace``.
 """
 FEWEST_LINES = 8
-_ORDERS_AT_ONCE = 10
 
 
 class Outcome(Enum):
@@ -29,7 +29,7 @@ class Outcome(Enum):
 
     SAME = "the same"
     REACHED = "the same, in another order of threads"
-    """The model reaches it, though not with the order that it takes unless it is asked for others."""
+    """The model reaches it (``searching``), though not with the order that it takes by itself."""
     ORDER = "other lines, or in another order"
     TIMES = "at other times"
     BUSY = "not known, for the machine was too busy"
@@ -88,10 +88,10 @@ def _until(said: Said, end: float) -> Said:
 
 
 def on_model(
-    systems: Iterable[System], distro: str, orders: Iterable[int | None] = repeat(None)
+    systems: Iterable[System], distro: str, moves: Iterable[Moves | None] = repeat(None)
 ) -> list[Said | None]:
-    """What the model says of systems, with its usual order of threads, or with that of a seed for each."""
-    return list(run_all(map(program, systems), None, 12, distro, orders))
+    """What the model says of systems, with its usual order of threads, or with moves for each."""
+    return list(run_all(map(program, systems), None, 12, distro, moves))
 
 
 def _decided_until(said: Said, end: float, gap: float) -> float:
@@ -102,13 +102,10 @@ def _decided_until(said: Said, end: float, gap: float) -> float:
     return end
 
 
-def compared(
-    given: Iterable[Case], python: str, distro: str, at_once: int, repeats: int, orders: int
-) -> list[Result]:
+def compared(given: Iterable[Case], python: str, distro: str, at_once: int, repeats: int) -> list[Result]:
     """Run each until it goes as on the model, or ``repeats`` runs that the machine had time for did not.
 
-    Where the machine is too busy, three times as many runs are made at most. What differs is looked for
-    among ``orders`` other orders of the model's threads.
+    Where the machine is too busy, three times as many runs are made at most.
     """
     left = list(given)
     real: dict[Case, list[Said | None]] = {case: [] for case in left}
@@ -119,28 +116,10 @@ def compared(
         left = [case for case in left if not _is_settled(case, real[case], repeats)]
         if not left:
             break
-    outcomes = {case: outcome(case, runs) for case, runs in real.items()}
-    outcomes |= dict.fromkeys(_reached(real, outcomes, distro, orders), Outcome.REACHED)
     return [
-        Result(case, outcomes[case], tuple(said for said in runs if said is not None))
+        Result(case, outcome(case, runs), tuple(said for said in runs if said is not None))
         for case, runs in real.items()
     ]
-
-
-def _reached(
-    real: Mapping[Case, list[Said | None]], outcomes: Mapping[Case, Outcome], distro: str, orders: int
-) -> list[Case]:
-    """The cases that differ, unless the model's threads run in one of so many other orders."""
-    left = [case for case, came in outcomes.items() if came in DIFFERENT]
-    reached: list[Case] = []
-    for seeds in zip(*[iter(range(orders))] * _ORDERS_AT_ONCE, strict=False):
-        tried = list(product(left, seeds))
-        said = on_model([case.system for case, _ in tried], distro, [seed for _, seed in tried])
-        for (case, _), model in zip(tried, said, strict=True):
-            if model is not None and outcome(case._replace(model=model), real[case]) is Outcome.SAME:
-                reached.append(case)
-        left = [case for case in left if case not in reached]
-    return reached
 
 
 def _is_settled(case: Case, runs: list[Said | None], repeats: int) -> bool:
@@ -164,27 +143,34 @@ def outcome(case: Case, runs: list[Said | None]) -> Outcome:
 
 
 def _has_same_order(case: Case, said: Said) -> bool:
-    return _lines_of(case.system, said) == _lines_of(case.system, case.model)
+    return words_of(case.system, said) == words_of(case.system, case.model)
 
 
-def _lines_of(system: System, said: Said) -> dict[int, list[str]]:
-    """What each executor's callbacks said, in its order; between executors only time gives an order."""
-    return {place: [word for word, _ in lines] for place, lines in _timed_lines_of(system, said).items()}
+def place_of(system: System, line: str) -> int:
+    """Whose line it is: the place of an executor."""
+    name = line.split(maxsplit=1)[0]
+    if "_" not in name:
+        return int(name[1:])
+    number = int(name.split("_")[1])
+    return next(system.nodes[each.node] for each in system.callbacks if each.place == number)
 
 
-def _timed_lines_of(system: System, said: Said) -> dict[int, list[tuple[str, float]]]:
-    executor_of = {each.place: system.nodes[each.node] for each in system.callbacks}
+def _lines_of(system: System, said: Said) -> dict[int, list[tuple[str, float]]]:
+    """What each executor's callbacks said, and when; between executors only time gives an order."""
     lines: dict[int, list[tuple[str, float]]] = {place: [] for place in range(len(system.executors))}
     for word, at in zip(said.words, said.times, strict=True):
-        name = word.split()[0]
-        place = int(name[1:]) if "_" not in name else executor_of[int(name.split("_")[1])]
-        lines[place].append((word, at))
+        lines[place_of(system, word)].append((word, at))
     return lines
+
+
+def words_of(system: System, said: Said) -> dict[int, list[str]]:
+    """The lines of each executor's callbacks, in its order."""
+    return {place: [word for word, _ in lines] for place, lines in _lines_of(system, said).items()}
 
 
 def _is_in_time(case: Case, said: Said) -> bool:
     """Whether it said the same lines as the model at the same times, within the tolerance."""
-    one, other = _timed_lines_of(case.system, said), _timed_lines_of(case.system, case.model)
+    one, other = _lines_of(case.system, said), _lines_of(case.system, case.model)
     return all(
         abs(at - due) <= TOLERANCE * case.pace
         for place in one

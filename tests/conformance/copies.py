@@ -1,10 +1,11 @@
 """Runs programs in copies of a process that has imported rclpy; a script, in any Python that has one.
 
-Standard input has a line of JSON for each program: its file, one for its output, and the seed of the order of
-its threads, or null. The output is printed when the program has ended. With the arguments ``model DISTRO``
-rclpy is the model on virtual time. A program finds ``moments`` among its globals, at which anything fell due
-on the model (nanoseconds), or ``late``: when, and by how much, the machine was late to wake a thread of it
-(seconds).
+Standard input has a line of JSON for each program: its file, one for its output, and what its threads choose
+otherwise than first come, first served, as numbers of choices and options in turn, or null. The output is
+printed when the program has ended. With the arguments ``model DISTRO`` rclpy is the model on virtual time. A
+program finds among its globals ``moments``, at which anything fell due on the model (nanoseconds), and
+``choices``, as ``Steered.options``; or ``late``: when, and by how much, the machine was late to wake a thread
+of it (seconds).
 """
 
 import json
@@ -21,21 +22,23 @@ LONGEST = 60
 """Real seconds after which a program is ended."""
 
 
-def on_model(source: str, distro: str, order: int | None = None) -> None:
+def on_model(source: str, distro: str, moves: list[int] | None) -> None:
     """Run a program on the model, on virtual time, as a distribution of ROS 2 behaves."""
     from sim.clock import VirtualClock
-    from sim.clock.schedule import Seeded
     from sim.clock.stdlib import live_on
     from sim.probes.probe import SilentProbe
     from sim.profiles import Profile
     from sim.ros.middleware.host import Host, install
+    from tests.conformance.steered import Steered
 
-    clock = VirtualClock(schedule=None if order is None else Seeded(order))
+    program: dict[str, Any] = {"__name__": "__main__", "moments": (moments := {0})}
+    chosen = dict(zip(moves[::2], moves[1::2], strict=True)) if moves else {}
+    steered = Steered(chosen, lambda: len(program.get("said", ())))
+    program["choices"] = steered.options
+    clock = VirtualClock(schedule=None if moves is None else steered)
     probe = SilentProbe(clock)
     probe.visible = True  # so that time stops over where a timer falls due that nobody waits for
     host = Host(clock, probe, profile=Profile.named(distro))
-    moments = {0}
-    program: dict[str, Any] = {"__name__": "__main__", "moments": moments}
 
     def look() -> int | None:
         due = host.explain_waits()
@@ -67,7 +70,7 @@ def _oversleep(late: list[tuple[float, float]]) -> None:
         late.append((due, time.monotonic() - due))
 
 
-def run(source: str, output: str, order: int | None, model_of: str | None) -> None:
+def run(source: str, output: str, moves: list[int] | None, model_of: str | None) -> None:
     """Run a program in this process, which ends with it."""
     signal.signal(signal.SIGALRM, signal.SIG_DFL)  # whoever started this may ignore it
     signal.alarm(LONGEST)
@@ -76,7 +79,7 @@ def run(source: str, output: str, order: int | None, model_of: str | None) -> No
         if model_of is None:
             on_ros(source)
         else:
-            on_model(source, model_of, order)
+            on_model(source, model_of, moves)
     finally:
         os._exit(1)
 
@@ -100,10 +103,10 @@ def main() -> None:
                 line += os.read(0, 1)
             ended = not line
             if line:
-                program, output, order = json.loads(line)
+                program, output, moves = json.loads(line)
                 child = os.fork()
                 if child == 0:
-                    run(Path(program).read_text(), output, order, model_of)
+                    run(Path(program).read_text(), output, moves, model_of)
                 running[child] = output
         child = os.waitpid(-1, 0 if ended else os.WNOHANG)[0] if running else 0
         if child:

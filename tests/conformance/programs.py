@@ -175,10 +175,12 @@ for name, executor in executors.items():
     threading.Thread(target=spin, args=(executor, name), daemon=True).start()
 time.sleep({end:.6f})
 lines = [f"{{at:.6f}} {{what}}" for at, what in said]
+chosen_among = globals().get("choices", ())
 falls_due = [at / 1e9 - began for at in globals().get("moments", ())]
 moments = sorted(at for at in falls_due if at > 1e-4)
+choices = [f"choice {{place}} {{number}} {{preempts:d}}" for place, number, preempts in chosen_among]
 late = max((late for at, late in globals().get("late", ()) if at > began), default=0)
-print(*lines, "moments", *moments, f"late {{late:.6f}}", sep="\\n", flush=True)
+print(*lines, "moments", *moments, *choices, f"late {{late:.6f}}", sep="\\n", flush=True)
 os._exit(0)
 """
 _EXECUTORS = {0: "SingleThreadedExecutor()", EVENTS: "EventsExecutor()"}

@@ -5,10 +5,11 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator
-from itertools import repeat
+from itertools import chain, repeat
 from pathlib import Path
 from typing import NamedTuple
 
+from sim.clock.played import Moves
 from sim.real.programs import claimed_domain, unbootstrapped
 from tests.conformance import copies
 
@@ -22,6 +23,9 @@ class Said(NamedTuple):
     """On the model: when anything fell due."""
     late: float = 0.0
     """On real ROS 2: how late the machine was at most to wake a thread of the program."""
+    choices: tuple[tuple[int, int, bool], ...] = ()
+    """On the model: the choices of what goes on next, each behind how many words, among how many, and whether
+    one of them is that the running thread goes on."""
 
 
 def run_all(
@@ -29,12 +33,12 @@ def run_all(
     python: str | None,
     at_once: int,
     model_of: str = "",
-    orders: Iterable[int | None] = repeat(None),
+    moves: Iterable[Moves | None] = repeat(None),
 ) -> Iterator[Said | None]:
     """Run programs on the ROS 2 of an interpreter, or on the model (None); None for one that said nothing.
 
-    ``model_of`` is the distro whose named behaviours the model has, ``orders`` has a seed for each program
-    that the model runs with its threads in another order than first come, first served.
+    ``model_of`` is the distro whose named behaviours the model has; ``moves`` has, for each program, what the
+    model's threads choose otherwise than first come, first served; of None no choices are told.
     """
     sources = list(programs)
     domain, claim = claimed_domain()
@@ -61,12 +65,14 @@ def run_all(
         with process as running:
             assert running.stdin is not None
             assert running.stdout is not None
-            for place, (source, order) in enumerate(zip(sources, orders, strict=False)):
+            for place, (source, chosen) in enumerate(zip(sources, moves, strict=False)):
                 file = Path(folder, f"{place}.py")
                 file.write_text(source)
                 if place >= at_once:
                     running.stdout.readline()
-                running.stdin.write(json.dumps([str(file), str(file.with_suffix(".out")), order]) + "\n")
+                flat = None if chosen is None else [*chain(*chosen.items())]
+                told = [str(file), str(file.with_suffix(".out")), flat]
+                running.stdin.write(json.dumps(told) + "\n")
                 running.stdin.flush()
             running.stdin.close()
             running.stdout.read()
@@ -79,10 +85,12 @@ def _read(path: Path) -> Said | None:
     if not measured:
         return None
     told = [line.split(" ", 1) for line in said.splitlines() if line]
-    *moments, late = measured.splitlines()
+    *lines, late = measured.splitlines()
+    chosen = [line.split()[1:] for line in lines if line.startswith("choice")]
     return Said(
         tuple(what for _, what in told),
         tuple(float(at) for at, _ in told),
-        tuple(map(float, moments)),
+        tuple(float(line) for line in lines if not line.startswith("choice")),
         float(late.removeprefix("late ")),
+        tuple((int(place), int(number), preempts == "1") for place, number, preempts in chosen),
     )

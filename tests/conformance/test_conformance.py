@@ -4,12 +4,15 @@ import sys
 
 import pytest
 
-from tests.conformance.comparing import Outcome, cases, on_model
+from tests.conformance.comparing import Outcome, Result, cases, on_model, outcome
 from tests.conformance.drawing import drawn
 from tests.conformance.programs import program
 from tests.conformance.recorded import against_recorded
 from tests.conformance.running import run_all
+from tests.conformance.searching import Search
 from tests.real.programs import needs_ros
+
+JAZZY = "jazzy@7.1.5"
 
 
 def test_the_model_gives_what_real_ros_2_gave() -> None:
@@ -21,9 +24,25 @@ def test_the_model_gives_what_real_ros_2_gave() -> None:
 
 @pytest.mark.slow
 def test_a_system_that_is_decided_says_the_same_on_the_model_each_time() -> None:
-    given = cases(2, seed=3, distro="jazzy@7.1.5")
-    again = on_model([each.system for each in given], "jazzy@7.1.5")
+    given = cases(2, seed=3, distro=JAZZY)
+    again = on_model([each.system for each in given], JAZZY)
     assert [case.model.words for case in given] == [said and said.words for said in again]
+
+
+@pytest.mark.slow
+def test_an_order_that_threads_can_come_to_is_found_and_another_one_is_not() -> None:
+    case = next(each for each in cases(12, seed=5, distro=JAZZY) if each.system.executors == (4,))
+    for number in range(60):
+        moved = on_model([case.system], JAZZY, [{number: 1}])[0]
+        assert moved is not None
+        found = Result(case, outcome(case, [moved]), (moved,))
+        if found.outcome is Outcome.ORDER:
+            break
+    assert found.outcome is Outcome.ORDER
+    assert Search(found, JAZZY).finds(240)
+    first, second, *rest = case.model.words
+    backwards = case.model._replace(words=(second, first, *rest))
+    assert not Search(Result(case, Outcome.ORDER, (backwards,)), JAZZY).finds(48)
 
 
 @needs_ros

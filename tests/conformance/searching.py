@@ -1,0 +1,73 @@
+"""Looks for choices of the model's threads with which it goes as a real run did."""
+
+from collections import deque
+from collections.abc import Iterable
+from functools import partial
+from heapq import heappop, heappush
+from random import Random
+
+from sim.clock.played import Moves
+from tests.conformance.comparing import Outcome, Result, on_model, outcome, place_of, words_of
+from tests.conformance.running import Said
+
+_RUNS_AT_ONCE = 12
+
+
+def searched(results: Iterable[Result], distro: str, runs: int) -> list[Result]:
+    """The same results, but REACHED where at most so many runs of the model find what a real run said."""
+    return [
+        each._replace(outcome=Outcome.REACHED)
+        if each.outcome is Outcome.ORDER and Search(each, distro).finds(runs)
+        else each
+        for each in results
+    ]
+
+
+class Search:
+    """Best first: what goes longest as a real run is tried with one choice more, before it goes otherwise."""
+
+    def __init__(self, result: Result, distro: str) -> None:
+        self._case = result.case
+        self._real = result.real
+        self._distro = distro
+        self._untried: list[tuple[int, float, float, Moves]] = [(0, 0.0, 0.0, {})]
+        self._random = Random(1)
+
+    def finds(self, runs: int) -> bool:
+        """Whether one of so many runs of the model goes as a real one."""
+        for _ in range(0, runs, _RUNS_AT_ONCE):
+            tried = [heappop(self._untried)[-1] for _ in range(min(_RUNS_AT_ONCE, len(self._untried)))]
+            said = on_model([self._case.system] * len(tried), self._distro, tried)
+            for moves, model in zip(tried, said, strict=True):
+                if model is not None and self._is_it(moves, model):
+                    return True
+        return False
+
+    def _is_it(self, moves: Moves, model: Said) -> bool:
+        if outcome(self._case._replace(model=model), list(self._real)) is Outcome.SAME:
+            return True
+        alike, place = max(self._alike(model, real) for real in self._real)
+        last = max(moves, default=-1)
+        for number, (said, options, preempts) in enumerate(model.choices):
+            if number > last and said <= place:
+                preemptions = sum(model.choices[each][2] for each in moves) + preempts
+                cost = len(moves) + 2 * preemptions + 0.1 * (place - said)
+                for option in range(1, options):
+                    rank = (-alike, cost, self._random.random())
+                    heappush(self._untried, (*rank, {**moves, number: option}))
+        return False
+
+    def _alike(self, model: Said, real: Said) -> tuple[int, int]:
+        """How many lines are alike up to the first of each executor that is not, and where the first is."""
+        executor_of = partial(place_of, self._case.system)
+        left = {place: deque(words) for place, words in words_of(self._case.system, real).items()}
+        alike, first = 0, len(model.words)
+        for place, word in enumerate(model.words):
+            words = left[executor_of(word)]
+            if words and words[0] == word:
+                words.popleft()
+                alike += 1
+            else:
+                words.clear()
+                first = min(first, place)
+        return alike, first
