@@ -1,12 +1,18 @@
-"""Measures the figures and prints them against goal and record: ``python -m tests.benchmarks [--record]``."""
+"""Measures the figures and prints them against goal and record: ``python -m tests.benchmarks [--record]``.
+
+``--real PYTHON`` sets the executors of an interpreter's rclpy beside the model's.
+"""
 
 import argparse
 import os
 import platform
+import sys
 import warnings
 from dataclasses import replace
 
+from cbtui.commands.options.changes import release_of
 from tests.benchmarks import records
+from tests.benchmarks.beside import ratios
 from tests.benchmarks.figures import FIGURES, Figure, unit
 
 _COLUMNS = "{:<42}{:>12}{:>8}{:>12}{:>9}{:>9}{:>9}{:>9}"
@@ -15,6 +21,12 @@ _COLUMNS = "{:<42}{:>12}{:>8}{:>12}{:>9}{:>9}{:>9}{:>9}"
 def main() -> None:
     """Measure what was asked for."""
     options = _parse()
+    if options.real is not None:
+        for python in options.real or [sys.executable]:
+            print(f"{release_of(python)}: times what the model takes, load {os.getloadavg()[0]:.1f}")
+            for name, ratio in ratios(python, options.rounds):
+                print(f"{name:<42}{ratio:>8.1f}", flush=True)
+        return
     known = records.read()
     machine = f"Python {platform.python_version()}, {platform.machine()}, {os.cpu_count()} cores"
     print(f"{machine}, load {os.getloadavg()[0]:.1f}, u = {unit() * 1e9:.0f} ns")
@@ -63,6 +75,12 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("words", nargs="*", help="measure only figures whose name has all these words")
     parser.add_argument("--rounds", type=int, default=5, help="how often each is measured; the median counts")
     parser.add_argument("--record", action="store_true", help="keep what was measured as the last record")
+    parser.add_argument(
+        "--real",
+        nargs="*",
+        metavar="PYTHON",
+        help="the executors of interpreters with ROS 2 (this one's) instead",
+    )
     return parser.parse_args()
 
 

@@ -1,6 +1,7 @@
 """The table of figures: every one can be measured, has a record, and is told against its goal."""
 
 import os
+import sys
 from dataclasses import replace
 from math import isfinite
 from pathlib import Path
@@ -9,7 +10,9 @@ import pytest
 
 from tests.benchmarks import records
 from tests.benchmarks.__main__ import row
+from tests.benchmarks.beside import ratios
 from tests.benchmarks.figures import FIGURES, DearFigure, Figure
+from tests.real.programs import needs_ros
 from tests.support.daily import first_daily
 
 DEAR = "CBTUI_DEAR_FIGURES" in os.environ
@@ -50,3 +53,9 @@ def test_a_row_tells_the_change_since_the_last_record_and_a_missed_goal() -> Non
 def test_a_row_of_a_figure_without_record_has_gaps() -> None:
     figure = replace(FIGURES[0], name="timer", rclpy="")
     assert row(figure, records.Records({}, {}), 0.25).split() == ["timer", "u", "120", "0.25"]
+
+
+@needs_ros
+@pytest.mark.slow
+def test_real_executors_are_measured_beside_the_models() -> None:
+    assert len([ratio for _, ratio in ratios(sys.executable, rounds=1) if ratio > 0]) == 6
