@@ -83,13 +83,17 @@ class ClockTimers:
     def _look(self) -> None:
         now = self._time.now()
         next_due = NEVER
+        due = []
         for timer in self.timers:
             if timer.still_ready(now):
-                self._queued.add(timer)
-                self._queue.put(partial(self._call_event, timer))
+                due.append(timer)
             elif timer.falls_due(timer.due):
                 next_due = min(next_due, timer.due)
             timer.node._agenda.next_due()  # lets go of the due times that are past
+        while due:  # rclpy's C++ code keeps them in an unordered map
+            timer = due.pop(self._time.choose(len(due)))
+            self._queued.add(timer)
+            self._queue.put(partial(self._call_event, timer))
         self._call_off_look()
         if not self._queued and next_due < NEVER:
             self._next_look = self._queue.at(next_due, self.look_soon)

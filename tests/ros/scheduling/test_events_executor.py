@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 import sim.ros.rclpy as rclpy
+from sim.clock.schedule import RandomWalk, Schedule
 from sim.interfaces import action, message, service
 from sim.ros.actions import ActionClient, ActionServer, GoalResponse
 from sim.ros.entities.event_handler import SubscriptionEventCallbacks
@@ -67,7 +68,10 @@ class Bench:
 
 
 def on_bench(
-    program: Callable[[Bench], None], until: float = 10.0, distro: str = "jazzy"
+    program: Callable[[Bench], None],
+    until: float = 10.0,
+    distro: str = "jazzy",
+    schedule: Schedule | None = None,
 ) -> tuple[list[Any], Trace]:
     """Run a program with a bench on virtual time: what was said, and the trace."""
     benches: list[Bench] = []
@@ -76,7 +80,7 @@ def on_bench(
         benches.append(Bench(simulation))
         program(benches[0])
 
-    trace = simulate(run, until, distro=distro)
+    trace = simulate(run, until, schedule, distro)
     return benches[0].said, trace
 
 
@@ -553,6 +557,18 @@ def test_an_action_is_a_task_behind_what_its_message_found_queued() -> None:
         bench.spin_for(1.0)
 
     assert on_bench(program)[0] == [0, "goal", 1, "execute", 2, 3, "accepted", 4]
+
+
+def test_timers_that_fell_due_while_something_ran_come_in_any_order() -> None:
+    def program(bench: Bench) -> None:
+        bench.node.create_timer(0.5, lambda: bench.simulation.sleep(0.4))
+        bench.node.create_timer(0.7, lambda: bench.said.append("first"))
+        bench.node.create_timer(0.8, lambda: bench.said.append("second"))
+        bench.spin_for(0.95)
+
+    assert on_bench(program)[0] == ["first", "second"]
+    orders = {tuple(on_bench(program, schedule=RandomWalk(seed))[0]) for seed in range(8)}
+    assert orders == {("first", "second"), ("second", "first")}
 
 
 def test_the_end_of_a_goal_has_timers_looked_at_once_more() -> None:
