@@ -58,14 +58,13 @@ class EventsExecutor(Executor):
     """
 
     already_spinning = "Attempt to spin an already-spinning Executor"
-    asks_in_next_cycle = False
 
     def __init__(self, *, context: Context | None = None) -> None:
         chosen = get_default_context() if context is None else context
         self._queue = EventQueue(chosen.host.clock, chosen.host.lock)
         self._update_queued = False
         super().__init__(context=chosen)
-        self._runner.asks_groups = False
+        self._runner.asks_groups = self._runner.asks_in_next_cycle = False
         self._registered: dict[Entity, None] = {}
         self._timers: dict[Clock, ClockTimers] = {}
         self._stops_after_one = False

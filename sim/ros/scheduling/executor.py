@@ -30,7 +30,6 @@ from sim.ros.scheduling.waiting_ends import (
 )
 
 if TYPE_CHECKING:
-    from sim.ros.clocks.clock import Clock
     from sim.ros.scheduling.entity import OwnerNode
 
 FoundT = TypeVar("FoundT")
@@ -41,12 +40,8 @@ class Executor:
 
     threads = 1
     """How many callbacks can run at once."""
-
     already_spinning = "Executor is already spinning"
     """What is raised when it is spun while it spins."""
-
-    asks_in_next_cycle = True
-    """Whether what has just begun to await is asked in the next cycle, even if nothing wakes the executor."""
 
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = get_default_context() if context is None else context
@@ -74,8 +69,6 @@ class Executor:
         self._is_shutdown = False
         self._context.wake_at_end(self.wake)
         self.trace_id = self._probe.executor_made(type(self).__name__, self.threads)
-
-    # Public
 
     @property
     def context(self) -> Context:
@@ -308,7 +301,7 @@ class Executor:
         elif self._waits_until is None or timer.due < self._waits_until:
             self._signal.set()
 
-    def _expiry_set(self, clock: Clock) -> None:
+    def _expiry_set(self, _clock: Any) -> None:
         """An action server has set the timer of a clock by which it forgets goals."""
 
     def _wake(self) -> None:

@@ -42,6 +42,8 @@ class Runner:
         """Whether nothing may begin any more."""
         self.asks_groups = True
         """Whether groups have a say in what may run."""
+        self.asks_in_next_cycle = True
+        """Whether what has just begun to await is asked in the next cycle, even if nothing wakes it."""
 
     @property
     def executor(self) -> Executor:

@@ -215,7 +215,7 @@ class Task(Future[T]):
             return
         profile = executor._profile
         if not profile.resumes_at_once:
-            asks_now = executor.asks_in_next_cycle and not was_suspended
+            asks_now = executor._runner.asks_in_next_cycle and not was_suspended
             (executor._resume if asks_now else executor._resume_at_wake_up)(self)
         elif isinstance(awaited, Future):
             awaited._belong_to(executor)
