@@ -11,15 +11,15 @@ from cbtui.runs.live.live_run import ShownRun
 from cbtui.screens.parts.runs import RunController
 from cbtui.terminal.processor import cpu_wait, time_off_cpu
 
-FRAMES_A_SECOND = 24
+FRAMES_A_SECOND = 20
 
 _SOONEST = 0.01
 """Seconds from one frame with all panes to the next, if keys ask for it."""
 
-_LANES_A_PANE = 5
+_LANES_A_PANE = 4
 """Lane frames per frame of the other panes: their words and figures are read slower than lanes move."""
 
-_LANES_A_TEXT = 10
+_LANES_A_TEXT = 8
 """Lane frames per frame of log and code, whose scrolling lines are read slower still."""
 
 _REST_FACTOR = 2.0
@@ -72,9 +72,11 @@ class FrameSchedule:
             return FrameContent.NOTHING
         return FrameContent.ALL_BUT_TEXTS if self._frames % _LANES_A_PANE == 0 else FrameContent.LANES
 
-    def is_due_before_next(self) -> bool:
-        """Tell whether to draw at once: not if all was drawn just now."""
-        return self._stale and self._clock() - self._drawn_at >= _SOONEST
+    def due_in(self) -> float | None:
+        """Return the seconds until everything is to be drawn, frame or no frame; None if that need not be."""
+        if not self._stale or self._drawn_at == inf:
+            return None
+        return max(0.0, self._drawn_at + _SOONEST - self._clock())
 
     def drawn(self, extent: FrameContent) -> None:
         """Note what is being drawn: everything, or all but the texts."""
@@ -115,7 +117,7 @@ class FrameLoop:
         self._schedule.grow()
 
     def redraw(self) -> None:
-        """Draw everything in the next frame, or at once if none was just drawn."""
+        """Draw everything at once, or soon if it was just drawn."""
         self._schedule.invalidate()
         if self._screen.is_running:
             self._screen.call_next(self._draw_at_once)
@@ -127,8 +129,11 @@ class FrameLoop:
         self._draw(content)
 
     def _draw_at_once(self) -> None:
-        if self._schedule.is_due_before_next():
+        due_in = self._schedule.due_in()
+        if due_in == 0:
             self.draw(FrameContent.ALL)
+        elif due_in is not None:
+            self._screen.set_timer(due_in, self._draw_at_once)
 
     def _draw_if_due(self) -> None:
         if self._holds():

@@ -27,12 +27,12 @@ def test_the_first_frame_draws_everything_and_then_nothing_is_drawn_while_nothin
 
 
 def test_a_run_that_grows_is_drawn_on_the_lanes_in_each_frame_and_elsewhere_less_often() -> None:
-    extents = drawing(FrameSchedule(), 21, grows=True)[1:]
+    extents = drawing(FrameSchedule(), 17, grows=True)[1:]
     assert FrameContent.NOTHING not in extents
     assert [
         extents.count(extent) for extent in (FrameContent.LANES, FrameContent.ALL_BUT_TEXTS, FrameContent.ALL)
     ] == [
-        16,
+        12,
         2,
         2,
     ]
@@ -46,19 +46,22 @@ def test_texts_that_were_left_out_are_drawn_although_nothing_more_comes() -> Non
     assert set(extents) == {FrameContent.ALL, FrameContent.NOTHING}
 
 
-def test_what_the_person_did_is_drawn_at_once_unless_all_was_drawn_just_now() -> None:
+def test_what_the_person_did_is_drawn_at_once_or_soon_after_all_was_drawn() -> None:
     clock = Clock()
     schedule = FrameSchedule(clock)
     schedule.invalidate()
-    assert not schedule.is_due_before_next()  # the first time is a frame's
+    assert schedule.due_in() is None, "the first time is a frame's"
     schedule.drawn(FrameContent.ALL)
+    assert schedule.due_in() is None
     schedule.invalidate()
-    assert not schedule.is_due_before_next()
-    clock.now += 0.02
-    assert schedule.is_due_before_next()
+    due_in = schedule.due_in()
+    assert due_in is not None
+    assert 0 < due_in < 0.05, "sooner than the next frame"
+    clock.now += due_in
+    assert schedule.due_in() == 0
     schedule.drawn(FrameContent.ALL)
-    clock.now += 0.02
-    assert not schedule.is_due_before_next()
+    clock.now += due_in
+    assert schedule.due_in() is None
 
 
 def test_after_a_frame_that_waited_for_a_processor_nothing_is_drawn_unasked_for_a_while() -> None:
