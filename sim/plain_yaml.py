@@ -140,4 +140,5 @@ def _check(text: str, loader_class: Any) -> None:
         elif isinstance(event, yaml.CollectionEndEvent):
             depth -= 1
         if depth > _DEEPEST:
-            raise YamlError("it is nested too deeply", line)
+            # libyaml refuses what is nested far deeper in the same words.
+            raise YamlError("exceeded maximum nesting depth", line)

@@ -108,7 +108,7 @@ def test_yaml_values_get_the_types_that_ros_gives_them(text: str, value: PlainVa
         ("", "there is no value"),
         ("a: b: c", "mapping values are not allowed in this context at line 1"),
         ("[&a 1, *a]", "the alias *a is not supported at line 1"),
-        ("[" * 5000, "it is nested too deeply at line 1"),
+        ("[" * 5000, "exceeded maximum nesting depth at line 1"),
         ("[1", "at line 1"),
     ],
 )
