@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cbtui.commands.console import run_console
 from cbtui.commands.options import appearance, changes, inputs, values
 from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, refuse
 from cbtui.commands.run import DEFAULT_SECONDS
@@ -69,7 +70,7 @@ def compare(options: argparse.Namespace) -> int:
         from cbtui.runs.compared_runs import compare_runs
 
         return compare_runs(first, second, terms, in_lines=look.screen_reader and not options.text)
-    return appearance.run_console(look, start_comparison=(first, second, terms))
+    return run_console(look, start_comparison=(first, second, terms))
 
 
 def _check(options: argparse.Namespace) -> None:

@@ -2,10 +2,12 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from cbtui.commands.check import exercise_of
+from cbtui.commands.in_lines import open_in_lines
 from cbtui.commands.options import changes
-from cbtui.commands.options.appearance import add_options, appearance, run_console
+from cbtui.commands.options.appearance import Appearance, add_options, appearance
 from cbtui.commands.options.seeds import add_seed, check_seed
 from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, need_terminal, puzzle_of, refuse
 
@@ -96,3 +98,19 @@ def replay(options: argparse.Namespace) -> int:
     if not look.screen_reader:
         need_terminal("cbtui info")
     return run_console(look, start_recording=recording)
+
+
+def run_console(look: Appearance, **begins_with: Any) -> int:
+    """Run the console with those looks, or tell it in lines; returns the exit code.
+
+    The other arguments are ``CbtuiApp``'s own.
+    """
+    if look.screen_reader:
+        return open_in_lines(look, **begins_with)
+    from cbtui.app import CbtuiApp
+
+    app = CbtuiApp(
+        charset=look.charset, theme=look.theme, keys=look.keys, complaints=look.complaints, **begins_with
+    )
+    app.run()
+    return app.return_code or 0

@@ -5,7 +5,8 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands.options.appearance import add_options, appearance, run_console
+from cbtui.commands.console import run_console
+from cbtui.commands.options.appearance import add_options, appearance
 from cbtui.commands.options.targets import need_terminal, refuse
 from cbtui.commands.options.values import duration, port, process_or_address
 from cbtui.text.output import complain, say

@@ -9,9 +9,10 @@ import time
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
+from cbtui.commands.console import run_console
 from cbtui.commands.options import changes, values
 from cbtui.commands.options.appearance import add_options as add_appearance
-from cbtui.commands.options.appearance import appearance, run_console
+from cbtui.commands.options.appearance import appearance
 from cbtui.commands.options.targets import need_terminal, refuse
 from cbtui.commands.probe import probes_folder
 from cbtui.text.installing import install_command

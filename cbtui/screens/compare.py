@@ -1,6 +1,7 @@
 """Two runs on screen, one above the other on a common time axis, and a table of what differs."""
 
 import asyncio
+from dataclasses import dataclass
 from time import monotonic
 from typing import ClassVar
 
@@ -20,7 +21,8 @@ from cbtui.screens.parts.bars import BarSelection
 from cbtui.screens.parts.frames import FRAMES_A_SECOND
 from cbtui.screens.parts.jumps import Jumps
 from cbtui.screens.parts.navigation import MomentKey, TimeNavigation
-from cbtui.screens.parts.part import ScreenParts
+from cbtui.screens.parts.part import ScreenPart, ScreenParts, WindowHost
+from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.sized import SizedScreen
 from cbtui.screens.windows.jump import JumpScreen
 from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, HeadingLine
@@ -328,3 +330,20 @@ def _at_the_end_of(bounds: Window, end: Nanoseconds) -> Playhead:
     """The playhead that shows the bounds, in runs that go to ``end``."""
     span = next((span for span in SPANS if span >= bounds.length), SPANS[-1])
     return Playhead(span, start=bounds.start).moved_to(bounds.end, end)
+
+
+@dataclass
+class CompareKey(ScreenPart):
+    """Compares the run with the previous one."""
+
+    host: WindowHost
+    restarts: Restarts
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer it from the second run on."""
+        return self.restarts.both is not None
+
+    def action_compare(self) -> None:
+        """Open the comparison."""
+        if self.restarts.both is not None:
+            self.host.ask(CompareScreen(*self.restarts.both, self.host.charset), None)

@@ -21,9 +21,10 @@ from cbtui.runs.judged.run_budget import RunBudget
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import of_exercise
+from cbtui.screens.compare import CompareKey
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey
 from cbtui.screens.parts.own_file import FileRead, read_when_saved
-from cbtui.screens.parts.restarts import CompareKey, Restarts
+from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.run import RunScreen
 from cbtui.screens.teaching.exercise_help import ExerciseHelp

@@ -15,13 +15,14 @@ from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.choosing import ChoosingScreen
+from cbtui.screens.compare import CompareKey
 from cbtui.screens.parts.choices import TakeOver
 from cbtui.screens.parts.cures import CureTrials
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TypingKeys, WorldKeys
 from cbtui.screens.parts.keys import Refusals
 from cbtui.screens.parts.own_file import FileRead, OwnFile, read_when_saved
 from cbtui.screens.parts.part import ScreenPart
-from cbtui.screens.parts.restarts import CompareKey, Restarts, SetUpKeys
+from cbtui.screens.parts.restarts import Restarts, SetUpKeys
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.run import RunScreen
 from cbtui.screens.teaching.exercise_help import ExerciseHelp

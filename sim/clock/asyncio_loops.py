@@ -7,8 +7,7 @@ from typing import Any
 
 from sim.clock.interface import RunClock
 from sim.clock.paced import PacedClock
-from sim.clock.virtual import VirtualClock
-from sim.clock.virtual_threads import VirtualAutoResetEvent
+from sim.clock.virtual import VirtualAutoResetEvent, VirtualClock
 from sim.units import wait_ns
 
 _Ready = list[tuple[selectors.SelectorKey, int]]

@@ -1,20 +1,6 @@
 """Cycles in the wait-for graph of threads: each waits for a lock that the next one holds, or for its end."""
 
-from types import CodeType
-from typing import Protocol
-
-from sim.clock.virtual_threads import VirtualThread
-
-
-class HeldResource(Protocol):
-    """A lock, or a thread's end, with its holder."""
-
-    holder: VirtualThread | None
-    """The thread of the clock that has it; the one that is to end."""
-    guards: bool
-    """Whether only its holder can end the wait: it was taken in such a way, or is a thread's end."""
-    taken_at: tuple[CodeType, int] | None
-    """Where in the program a lock was taken last: the code, and how far in; None for a thread's end."""
+from sim.clock.virtual_threads import HeldResource, VirtualThread
 
 
 def cycle_of(thread: VirtualThread) -> list[VirtualThread]:

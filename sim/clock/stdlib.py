@@ -26,8 +26,8 @@ from sim.clock.outside import start_outside
 from sim.clock.outside_work import OutsideWork
 from sim.clock.played import NO_ACCESSES
 from sim.clock.replacing import Replacements
-from sim.clock.virtual import VirtualClock
-from sim.clock.virtual_threads import VirtualAutoResetEvent, VirtualThread
+from sim.clock.virtual import VirtualAutoResetEvent, VirtualClock
+from sim.clock.virtual_threads import VirtualThread
 from sim.units import wait_ns
 
 _allocate_lock = threading.Lock

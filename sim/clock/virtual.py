@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from sim.clock.outside import start_outside
 from sim.clock.played import NO_ACCESSES, Accesses
 from sim.clock.schedule import FirstCome, Schedule
-from sim.clock.virtual_threads import VirtualAutoResetEvent, VirtualThread
+from sim.clock.virtual_threads import VirtualThread
 from sim.clock.virtual_time import VirtualTime
 from sim.units import SECOND
 
@@ -88,7 +88,7 @@ class VirtualClock:
         while self.park(deadline) and self.time.now < deadline:
             continue  # it handled a signal
 
-    def auto_reset_event(self) -> VirtualAutoResetEvent:
+    def auto_reset_event(self) -> "VirtualAutoResetEvent":
         """A new signal, not set."""
         return VirtualAutoResetEvent(self)
 
@@ -276,3 +276,34 @@ class VirtualClock:
 
 def _ignore(*_what: object) -> None:
     """Stand in for a listener that nobody set."""
+
+
+class VirtualAutoResetEvent:
+    """A signal between threads on virtual time; others may set it through ``VirtualTime.inject``."""
+
+    __slots__ = ("_clock", "_set", "_waiter")
+
+    def __init__(self, clock: VirtualClock) -> None:
+        self._clock = clock
+        self._set = False
+        self._waiter: VirtualThread | None = None
+
+    def wait(self, deadline: int | None) -> bool:
+        """Wait until set, or until virtual time reaches ``deadline``; True if it was set."""
+        if deadline is not None and deadline <= self._clock.now():
+            self._clock.poll()
+        while not self._set and (deadline is None or deadline > self._clock.now()):
+            self._waiter = self._clock.current
+            try:
+                if not self._clock.park(deadline):
+                    break
+            finally:
+                self._waiter = None
+        was_set, self._set = self._set, False
+        return was_set
+
+    def set(self) -> None:
+        """Set the flag; the waiting thread becomes able to run."""
+        self._set = True
+        if self._waiter is not None:
+            self._clock.unpark(self._waiter)

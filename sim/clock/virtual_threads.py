@@ -1,13 +1,10 @@
-"""Threads that live on virtual time, and the signals between them."""
+"""Threads that live on virtual time, and what they wait for."""
 
 from __future__ import annotations
 
 import threading
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from sim.clock.lock_cycles import HeldResource
-    from sim.clock.virtual import VirtualClock
+from types import CodeType
+from typing import Protocol
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _allocate_lock = threading.Lock
@@ -45,32 +42,12 @@ class VirtualThread:
         self.current_wait = 0
 
 
-class VirtualAutoResetEvent:
-    """A signal between threads on virtual time; others may set it through ``VirtualTime.inject``."""
+class HeldResource(Protocol):
+    """A lock, or a thread's end, with its holder."""
 
-    __slots__ = ("_clock", "_set", "_waiter")
-
-    def __init__(self, clock: VirtualClock) -> None:
-        self._clock = clock
-        self._set = False
-        self._waiter: VirtualThread | None = None
-
-    def wait(self, deadline: int | None) -> bool:
-        """Wait until set, or until virtual time reaches ``deadline``; True if it was set."""
-        if deadline is not None and deadline <= self._clock.now():
-            self._clock.poll()
-        while not self._set and (deadline is None or deadline > self._clock.now()):
-            self._waiter = self._clock.current
-            try:
-                if not self._clock.park(deadline):
-                    break
-            finally:
-                self._waiter = None
-        was_set, self._set = self._set, False
-        return was_set
-
-    def set(self) -> None:
-        """Set the flag; the waiting thread becomes able to run."""
-        self._set = True
-        if self._waiter is not None:
-            self._clock.unpark(self._waiter)
+    holder: VirtualThread | None
+    """The thread of the clock that has it; the one that is to end."""
+    guards: bool
+    """Whether only its holder can end the wait: it was taken in such a way, or is a thread's end."""
+    taken_at: tuple[CodeType, int] | None
+    """Where in the program a lock was taken last: the code, and how far in; None for a thread's end."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection
 from functools import cache
 from math import inf
 from struct import Struct
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from attrs import frozen
 
@@ -18,9 +18,6 @@ from sim.interfaces.field_types import (
     BoundedWString,
     StringType,
 )
-
-if TYPE_CHECKING:
-    from sim.interfaces.base import Message
 
 Check: TypeAlias = Callable[[Any], Any]
 """Takes an assigned value, returns the value to store, raises `AssertionError` with rosidl's text."""
@@ -86,7 +83,7 @@ def plain_element(of: BasicType | StringType) -> Element:
     return Element(bool, "bool", "of type 'bool'", bool, bool) if of.typename == "boolean" else _octet()
 
 
-def message_element(cls: type[Message]) -> Element:
+def message_element(cls: type[Any]) -> Element:
     """Return the rules of a message inside a message."""
     return Element(cls, cls.__name__, f"a sub message of type '{cls.__name__}'", cls, cls.__interface__.copy)
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from sim.launch.arguments import read_arguments
 from sim.launch.errors import LaunchError, explained
+from sim.launch.launch._processes import Processes
 from sim.launch.launch.action import Action, LaunchDescriptionEntity
 from sim.launch.launch.event import Event
 from sim.launch.launch.events import Shutdown
@@ -14,7 +15,6 @@ from sim.launch.launch.events.process import ShutdownProcess
 from sim.launch.launch.launch_context import LaunchContext
 from sim.launch.loading import load_description
 from sim.launch.machine import Machine
-from sim.launch.processes import Processes
 from sim.packages import Packages, find_packages, use_packages
 
 

@@ -1,4 +1,10 @@
-"""The programs that a run starts on real rclpy: from their start until all have ended."""
+"""The programs that a run starts on real rclpy: from their start until all have ended.
+
+A launch file is carried out by cbtui's model of ROS's launch where no ``ros2`` is found: what it starts are
+processes here.
+"""
+
+from __future__ import annotations
 
 import heapq
 import os
@@ -9,7 +15,7 @@ from functools import cached_property
 from itertools import count
 from pathlib import Path
 from selectors import BaseSelector
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from sim.engine.setup import ProgramSetup, RealRos
 from sim.real.keyboard import RealKeyboard
@@ -18,8 +24,17 @@ from sim.real.watched import WatchedProcesses
 from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
 
 if TYPE_CHECKING:
+    from sim.launch import OnOutput, ProcessSpec, RunningProcess
     from sim.packages import Executable, Packages
-    from sim.real.launching import Launching, RunLaunchedLine
+
+
+class RunLaunchedLine(Protocol):
+    """Carries out a ``ros2`` line; ``show`` gets what it prints."""
+
+    def __call__(
+        self, words: Sequence[str], show: Callable[[str, bool], None], on_exit: OnExit
+    ) -> Callable[[], None]:
+        """Begin; returns what interrupts the line."""
 
 
 class LaunchedPrograms:
@@ -41,7 +56,7 @@ class LaunchedPrograms:
         take: Callable[..., None],
         record: Callable[[AnyEvent], None],
         show: Callable[[str, bool, int], None],
-        run_line: "RunLaunchedLine",
+        run_line: RunLaunchedLine,
     ) -> None:
         self._selector = selector
         self._folder = folder
@@ -119,7 +134,7 @@ class LaunchedPrograms:
     # What launch files and ros2 lines start
 
     @cached_property
-    def packages(self) -> "Packages":
+    def packages(self) -> Packages:
         """The packages around the programs."""
         from sim.packages import find_packages, use_packages
 
@@ -138,7 +153,7 @@ class LaunchedPrograms:
         path = [str(ON_PATH), *map(str, folders), *filter(None, [changed.get("PYTHONPATH")])]
         return {**changed, "PYTHONPATH": os.pathsep.join(path)}
 
-    def command_of(self, executable: "Executable", arguments: Sequence[str]) -> list[str]:
+    def command_of(self, executable: Executable, arguments: Sequence[str]) -> list[str]:
         """How an executable of a package is run, without being installed."""
         if not executable.module:
             return [self._python, str(executable.path), *arguments]
@@ -160,7 +175,7 @@ class LaunchedPrograms:
         start = Start(self.command_of(found, arguments), environment, terminal=self._keyboard.near)
         return self.begin(start, f"{executable}-{next(self._order) + 1}", on_exit)
 
-    def launch(self, path: Path, arguments: Sequence[str], on_exit: OnExit) -> "Program | Launching":
+    def launch(self, path: Path, arguments: Sequence[str], on_exit: OnExit) -> Program | Launching:
         """Start a launch file: with ROS's own launch where a ``ros2`` can be found, else with cbtui's.
 
         Raises:
@@ -171,7 +186,6 @@ class LaunchedPrograms:
             start = Start([ros2, "launch", str(path), *arguments], self.environment())
             return self.begin(start, path.name, on_exit)
         from sim.launch import LaunchError
-        from sim.real.launching import Launching
 
         launching = Launching(self, path, arguments, self.packages, on_exit)
         self._launches.append(launching)
@@ -184,7 +198,7 @@ class LaunchedPrograms:
 
     def launch_of(
         self, package: str, launch_file: str, arguments: Sequence[str], on_exit: OnExit
-    ) -> "Program | Launching":
+    ) -> Program | Launching:
         """Start a launch file of a package, or by its path; raises LaunchError and PackageError."""
         known = self.packages
         path = known.package(package).launch_file(launch_file) if package else Path(launch_file)
@@ -275,3 +289,93 @@ def ros2_command(environment: Mapping[str, str]) -> str | None:
 
 def _ignore(_status: int) -> None:
     """Take an end that nobody waits for."""
+
+
+class Launching:
+    """Carries out one launch file. All of it happens on the run's thread."""
+
+    def __init__(
+        self,
+        programs: LaunchedPrograms,
+        path: Path,
+        arguments: Sequence[str],
+        packages: Packages,
+        on_exit: OnExit,
+    ) -> None:
+        from sim.launch import LaunchRun
+
+        self._programs = programs
+        self._run = LaunchRun(path, arguments, self, packages=packages, on_finish=on_exit)
+
+    def start(self) -> None:
+        """Begin; raises LaunchError if the launch file cannot be carried out."""
+        self._run.start()
+
+    def interrupt(self) -> None:
+        """End it as Ctrl-C would; does not wait."""
+        self._run.interrupt()
+
+    @property
+    def is_over(self) -> bool:
+        """Whether nothing runs, and nothing is to come."""
+        return self._run.finished
+
+    @property
+    def error(self) -> str:
+        """What went wrong with the launch itself."""
+        return "" if self._run.error is None else str(self._run.error)
+
+    # What a launch needs of the machine
+
+    def start_process(self, spec: ProcessSpec, on_exit: OnExit, on_output: OnOutput) -> RunningProcess:
+        """Start a program."""
+        from sim.packages import Executable
+
+        programs = self._programs
+        executable = Executable(spec.executable, spec.path, spec.folder, spec.module, spec.function)
+        start = Start(
+            programs.command_of(executable, spec.arguments),
+            programs.environment(spec.environment, spec.folder),
+            spec.working_folder,
+        )
+        return programs.begin(
+            start, spec.label, on_exit, shows_stdout=spec.output != "log", hear_output=on_output
+        )
+
+    def run_line(
+        self, label: str, words: Sequence[str], on_exit: OnExit, on_output: OnOutput
+    ) -> RunningProcess:
+        """Start a ``ros2 …`` line."""
+        return _LaunchedLine(self._programs, label, words, on_exit, on_output)
+
+    def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:
+        """Call ``action`` that many seconds from now."""
+        self._programs.call_at(seconds_from_now, action)
+
+    def say(self, text: str, severity: str = "INFO", logger: str = "launch") -> None:
+        """Print a line of the launch's own log."""
+        self._programs.show(f"[{severity}] [{logger}]: {text}", False, 0)
+
+
+class _LaunchedLine:
+    """A ``ros2`` line of a launch file: one more process of the launch."""
+
+    def __init__(
+        self,
+        programs: LaunchedPrograms,
+        label: str,
+        words: Sequence[str],
+        on_exit: OnExit,
+        on_output: OnOutput,
+    ) -> None:
+        self.number = programs.announce(label)
+
+        def show(text: str, error: bool) -> None:
+            programs.show(text, error, self.number)
+            on_output(text, error)
+
+        def end(status: int) -> None:
+            programs.record(ProcessEnded(0, self.number, "the line is done", status))
+            on_exit(status)
+
+        self.interrupt = self.terminate = self.kill = programs.run_line(words, show, end)

@@ -5,7 +5,7 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from cbtui.commands.options.targets import refuse
 
@@ -105,21 +105,3 @@ def _may_be_there(path: Path) -> bool:
         return path.is_file()
     except OSError:  # reading the file reports it
         return True
-
-
-def run_console(look: Appearance, **begins_with: Any) -> int:
-    """Run the console with those looks, or tell it in lines; returns the exit code.
-
-    The other arguments are ``CbtuiApp``'s own.
-    """
-    if look.screen_reader:
-        from cbtui.commands.in_lines import open_in_lines
-
-        return open_in_lines(look, **begins_with)
-    from cbtui.app import CbtuiApp
-
-    app = CbtuiApp(
-        charset=look.charset, theme=look.theme, keys=look.keys, complaints=look.complaints, **begins_with
-    )
-    app.run()
-    return app.return_code or 0

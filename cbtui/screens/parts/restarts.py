@@ -1,4 +1,4 @@
-"""Keys that restart a program, perhaps with changes, and compare both runs."""
+"""Keys that restart a program, perhaps with changes."""
 
 import asyncio
 from collections.abc import Callable
@@ -19,8 +19,7 @@ from cbtui.runs.setup.changeable import (
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.equivalent_code import code_of
 from cbtui.runs.setup.shown_program import ShownProgram
-from cbtui.screens.compare import CompareScreen
-from cbtui.screens.parts.part import RunHost, ScreenHost, ScreenPart, WindowHost
+from cbtui.screens.parts.part import RunHost, ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.windows.setup import SetupScreen
@@ -84,23 +83,6 @@ class Restarts(ScreenPart):
     def both(self) -> tuple[ComparedSide, ComparedSide] | None:
         """The previous run and this one; None if this is the first."""
         return None if self.before is None else (self.before, compared_side(self.runs.run, self.changes))
-
-
-@dataclass
-class CompareKey(ScreenPart):
-    """Compares the run with the previous one."""
-
-    host: WindowHost
-    restarts: Restarts
-
-    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer it from the second run on."""
-        return self.restarts.both is not None
-
-    def action_compare(self) -> None:
-        """Open the comparison."""
-        if self.restarts.both is not None:
-            self.host.ask(CompareScreen(*self.restarts.both, self.host.charset), None)
 
 
 @dataclass

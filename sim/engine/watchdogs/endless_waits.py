@@ -5,8 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from sim.clock import VirtualClock
-from sim.clock.lock_cycles import HeldResource, cycle_of, lasts
-from sim.clock.virtual_threads import VirtualThread
+from sim.clock.lock_cycles import cycle_of, lasts
+from sim.clock.virtual_threads import HeldResource, VirtualThread
 from sim.engine.watchdogs.wait_descriptions import deadlock_of_circle, deadlock_of_last, long_wait
 from sim.ros.middleware.host import Host
 from sim.ros.middleware.process import Process, current_process, process_of

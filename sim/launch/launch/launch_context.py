@@ -13,9 +13,9 @@ from sim.launch.launch.event import Event
 from sim.packages import Packages
 
 if TYPE_CHECKING:
+    from sim.launch.launch._processes import Processes
     from sim.launch.launch.event_handler import EventHandler
     from sim.launch.machine import Machine
-    from sim.launch.processes import Processes
 
 
 @dataclass(frozen=True, slots=True)

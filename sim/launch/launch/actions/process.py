@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from sim.launch.errors import LaunchFailure
+from sim.launch.launch._processes import LaunchLine, Upkeep
 from sim.launch.launch.action import Action, LaunchDescriptionEntity
 from sim.launch.launch.actions.flow import seconds
 from sim.launch.launch.conditions import is_true
@@ -19,7 +20,6 @@ from sim.launch.launch.events.process import ShutdownProcess as ShutdownProcessE
 from sim.launch.launch.launch_context import LaunchContext
 from sim.launch.launch.substitution import normalize_to_list_of_substitutions, performed
 from sim.launch.machine import ProcessSpec
-from sim.launch.processes import LaunchLine, Upkeep
 
 _PYTHON = re.compile(r"python(3(\.\d+)?)?")
 _OUTPUTS = {"screen": "screen", "log": "log", "both": "both", "full": "both", "own_log": "log"}
