@@ -9,7 +9,7 @@ import signal
 from multiprocessing.connection import Connection
 from typing import NoReturn
 
-from cbtui.engines.process_tree import MARK, ProcessTree
+from cbtui.engines.process_tree import ProcessTree
 
 _MOST_FILES = 1 << 16
 """More descriptors than a starting engine has open."""
@@ -17,7 +17,7 @@ ENDED_NORMALLY = b"."
 """What the console writes after a normal end of the engine."""
 
 
-def start_orphan_guard(engine: int, console: Connection) -> None:
+def start_orphan_guard(tree: ProcessTree, console: Connection) -> None:
     """Start the process that waits until ``console``, a pipe that only the console writes to, is closed.
 
     Called first of all in an engine, before it has threads. The process is forked twice, so that no program
@@ -32,16 +32,16 @@ def start_orphan_guard(engine: int, console: Connection) -> None:
     elif os.fork():
         os._exit(0)
     else:
-        _wait(engine, console.fileno())
+        _wait(tree, console.fileno())
 
 
-def _wait(engine: int, console: int) -> NoReturn:
+def _wait(tree: ProcessTree, console: int) -> NoReturn:
     try:
         os.setsid()
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         _close_all_but(console)
         if os.read(console, 1) != ENDED_NORMALLY:
-            ProcessTree(engine, os.environ.get(MARK, "")).end()
+            tree.end()
     finally:
         os._exit(0)
 

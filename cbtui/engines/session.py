@@ -109,6 +109,7 @@ class ProcessSession:
         stack_dump = Connection(os.dup(self._stack_dump.fileno()), readable=False)
         ours, self._alive = multiprocessing.Pipe(duplex=False)
         engine: Any = self._context
+        mark = uuid4().hex
         self._process: BaseProcess = engine.Process(
             target=_engine,
             args=(
@@ -117,11 +118,11 @@ class ProcessSession:
                 self._far_end,
                 stack_dump,
                 ours,
+                mark,
             ),
             name="cbtui-engine",
             daemon=True,
         )
-        mark = uuid4().hex
         # A child inherits standard error, and Textual's replacement of it has no descriptor.
         with _stderr_lock, redirect_stderr(sys.__stderr__):
             with without_current_folder():
@@ -244,11 +245,18 @@ class ProcessSession:
 
 
 def _engine(
-    is_real: bool, packed_setup: bytes, pipe: Connection, stack_dump: Connection, console: Connection
+    is_real: bool,
+    packed_setup: bytes,
+    pipe: Connection,
+    stack_dump: Connection,
+    console: Connection,
+    mark: str,
 ) -> None:
     """Run the engine; its modules are imported only in this process, to keep the console light."""
-    start_orphan_guard(os.getpid(), console)
-    ProcessTree(os.getpid(), os.environ.get(MARK, "")).end_tree_on_exit()
+    os.environ[MARK] = mark  # a copy of a prepared process has the environment of that one
+    tree = ProcessTree(os.getpid(), mark)
+    start_orphan_guard(tree, console)
+    tree.end_tree_on_exit()
     if is_real:
         from sim.real.engine import run
     else:

@@ -23,7 +23,7 @@ from sim.recording import read
 from sim.trace.events import AnyEvent, Logged, Notice, NoticeKind, Printed, RunStarted, Severity
 from tests.faults.support import ANSWERED, PATIENCE, console_on, node_with, nothing_left, still_here
 from tests.support.daily import first_daily
-from tests.support.processes import engines_of, is_stopped
+from tests.support.processes import alive, engines_of, is_stopped, wait_until_gone
 
 pytestmark = [
     pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc"),
@@ -39,6 +39,22 @@ subprocess.Popen(['sleep', '300'], start_new_session=True)
 subprocess.Popen(['sh', '-c', 'setsid sleep 300 & exit'])
 open('reached', 'w')
 """
+SLEEPS = "import os, time\nopen(f'reached-{os.getpid()}', 'w').close()\ntime.sleep(300)\n"
+COPIES = """\
+import sys
+from cbtui.engines.forking import forking_context
+from cbtui.engines.session import ProcessSession
+from sim.engine.setup import ProgramSetup, RunSetup
+
+ended = []
+setup = RunSetup(title="", programs=(ProgramSetup("node.py"),), clock="real")
+session = ProcessSession(setup, len, ended.append, context=forking_context(["sim.engine.process"]))
+session.start()
+sys.stdin.read()
+print(ended)
+session.stop()
+"""
+"""A console whose engine is a copy of a prepared process; it ends when its input does."""
 AN_HOUR = 3_600_000_000_000
 """In nanoseconds."""
 SET_AGAIN = f"""\
@@ -175,6 +191,26 @@ def test_a_console_that_is_killed_takes_its_engine_and_what_it_started_along(
     assert list(recording.batches()) or recording.damage
     assert recording.damage is not None
     assert "breaks off" in recording.damage
+
+
+def test_a_console_that_is_killed_leaves_what_others_run(folder: Path) -> None:
+    (folder / "node.py").write_text(SLEEPS)
+    consoles: list[subprocess.Popen[str]] = []
+    engines: list[int] = []
+    for _ in range(2):
+        command = [sys.executable, "-c", COPIES]
+        pipe = subprocess.PIPE
+        consoles.append(subprocess.Popen(command, cwd=folder, stdin=pipe, stdout=pipe, text=True))
+        assert comes_true(lambda: len(list(folder.glob("reached-*"))) == len(consoles))
+        (appeared,) = {int(each.name.split("-")[1]) for each in folder.glob("reached-*")} - {*engines}
+        engines.append(appeared)
+    (killed, other), (gone, left) = consoles, engines
+    killed.kill()
+    killed.communicate()
+    wait_until_gone([gone])
+    assert alive(left)
+    assert not is_stopped(left)
+    assert other.communicate("")[0] == "[]\n"
 
 
 @pytest.mark.slow
