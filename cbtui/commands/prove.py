@@ -51,7 +51,7 @@ def prove(options: argparse.Namespace) -> int:
     request = _request(options)
     assert request.seconds is not None
     inputs.check(options, request.seconds)
-    ground = changes.real_ros(options.python)
+    ground = changes.chosen_ros(options.python)
     release = request.changes.distro or changes.release_of(ground.python)
     request = replace(request, changes=replace(request.changes, distro=release))
     terms = ComparisonTerms(end=request.seconds, calls=tuple(request.calls), lines=tuple(request.lines))

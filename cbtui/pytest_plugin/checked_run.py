@@ -1,18 +1,25 @@
 """A run, in one or many orders of its threads, and what a test can ask of it, in the words of the checks."""
 
+import argparse
 import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NoReturn, Self
 
-from cbtui.pytest_plugin.failure_report import Recordings, lanes_text
+import pytest
+
+from cbtui.commands.options import values
+from cbtui.pytest_plugin.failure_report import Recordings, lanes_text, print_log
 from cbtui.runs.judged.check_text import verdict_line
 from cbtui.runs.judged.checking import ObservedRun
+from cbtui.runs.judged.schedule_text import conflict_text
 from lessons import checks
 from lessons.checks import Check, Stretch
+from lessons.checks.reading import entities_named
 from lessons.judge import Judge, JudgedCheck
 from lessons.lesson import Lesson
+from sim.clock.schedule import Seed
 from sim.diagnosis import findings_text
 from sim.engine.setup import RunSetup
 from sim.plural import counted
@@ -27,7 +34,7 @@ __tracebackhide__ = True
 class Outcome:
     """What came of one schedule; ``events`` are empty if they were not kept."""
 
-    seed: int
+    seed: Seed
     observed: ObservedRun
     events: Sequence[AnyEvent] = field(default=(), repr=False)
 
@@ -43,7 +50,7 @@ class CheckedRun:
         outcomes: Sequence[Outcome],
         setup: RunSetup,
         lesson: Lesson | None,
-        again: Callable[[int], Outcome],
+        again: Callable[[Seed], Outcome],
         recordings: Recordings,
     ) -> None:
         self._outcomes = outcomes
@@ -79,15 +86,18 @@ class CheckedRun:
 
     def callback(self, name: str) -> "AskedCallback":
         """A callback by its function's name, its topic or its service: ``odom_callback``, ``/odom``."""
-        return AskedCallback(self, name)
+        return AskedCallback(self.has_callbacks(name), name)
 
     def service(self, name: str) -> "AskedService":
         """A service by its name: ``/motor_power``."""
-        return AskedService(self, name)
+        return AskedService(self.has_callbacks(name), name)
 
     def chain(self, *names: str) -> "AskedChain":
         """Messages from a first topic to a last one; what lies between may be named, too."""
-        return AskedChain(self, names)
+        try:
+            return AskedChain(self, values.chain(":".join(names)))
+        except argparse.ArgumentTypeError as error:
+            raise pytest.UsageError(str(error)) from None
 
     def passes(self, *asked: Check) -> Self:
         """Any checks, such as those of ``lessons.checks``."""
@@ -110,6 +120,16 @@ class CheckedRun:
             self._fail(each, str(each.observed.trouble), each.observed.timeline.end, len(failed))
         return self
 
+    def has_callbacks(self, *names: str) -> Self:
+        """There are callbacks, topics or services of these names, called or not, in one schedule at least."""
+        for name in names:
+            if not any(entities_named(timeline, name) for timeline in self.timelines):
+                there = {each.spoken_name: None for each in self.timeline.entities.values()}
+                known = f"callbacks: {', '.join(there)}" if there else "the run has no callback at all"
+                sentence = f"no callback, topic or service is named {name}; {known}"
+                self._fail(self._outcomes[0], sentence, None, len(self._outcomes))
+        return self
+
     def has_no_deadlock(self) -> Self:
         """No callback waits for what can never come, and no threads for each other's locks."""
         return self.passes(checks.never_stuck())
@@ -124,11 +144,11 @@ class CheckedRun:
 
     def begins_in_order(self, *callbacks: str) -> Self:
         """All of these callbacks are called, for the first time in this order."""
-        return self.passes(checks.begin_in_order(*callbacks))
+        return self.has_callbacks(*callbacks).passes(checks.begin_in_order(*callbacks))
 
     def never_overlaps(self, *callbacks: str) -> Self:
         """No two calls of these callbacks run at the same time."""
-        return self.passes(checks.never_overlap(*callbacks))
+        return self.has_callbacks(*callbacks).passes(checks.never_overlap(*callbacks))
 
     def keeps_its_groups(self) -> Self:
         """No two callbacks of one mutually exclusive group run at the same time."""
@@ -160,11 +180,16 @@ class CheckedRun:
     def _fail(self, outcome: Outcome, said: str, at: Nanoseconds | None, failed: int) -> NoReturn:
         kept = outcome if outcome.events else self._again(outcome.seed)
         lines = [said]
-        if len(self._outcomes) > 1 or outcome.seed:
+        if self._setup.clock == "virtual":
             of = len(self._outcomes)
-            lines.append(f"in {failed} of {counted(of, 'schedule')}, this one is --cbtui-seed {outcome.seed}")
+            which = f"in {failed} of {counted(of, 'schedule')}, this one is"
+            if of == 1:
+                which = "order of threads:" if outcome.seed else "the usual order of threads,"
+            lines.append(f"{which} --cbtui-seed {outcome.seed}")
         lines.append(self._recordings.keep(self._setup, outcome.seed, kept.events))
+        print_log(kept.events, at)
         timeline = outcome.observed.timeline
+        lines += (f"conflict: {conflict_text(each, timeline)}" for each in timeline.conflicts)
         lines += ["", *lanes_text(timeline, at)]
         lines += ["", *findings_text(checks.problems(timeline), timeline).splitlines()]
         raise AssertionError("\n".join(lines).rstrip())
@@ -201,12 +226,12 @@ class AskedCallback:
         return self.run.passes(checks.never_runs_longer_than(self.name, seconds))
 
     def never_takes_older_than(self, seconds: float) -> CheckedRun:
-        """None of the messages that it gets is older then."""
+        """None of the messages that it gets is older."""
         return self.run.passes(checks.never_takes_older_than(self.name, seconds))
 
     def never_decides_on_older_than(self, seconds: float, *, of: str) -> CheckedRun:
         """When this timer's callback begins, the last message of a subscription is not older."""
-        return self.run.passes(checks.data_never_older(of, self.name, seconds))
+        return self.run.has_callbacks(of).passes(checks.data_never_older(of, self.name, seconds))
 
     def never_loses_messages(self) -> CheckedRun:
         """Its queue never overflows."""
@@ -214,15 +239,15 @@ class AskedCallback:
 
     def never_overlaps(self, *others: str) -> CheckedRun:
         """It never runs beside others, or beside itself if none is named."""
-        return self.run.passes(checks.never_overlap(self.name, *others))
+        return self.run.has_callbacks(*others).passes(checks.never_overlap(self.name, *others))
 
     def overlaps(self, other: str) -> CheckedRun:
         """It runs at the same time as another one at least once."""
-        return self.run.passes(checks.overlap(self.name, other))
+        return self.run.has_callbacks(other).passes(checks.overlap(self.name, other))
 
     def never_gets_ahead_of(self, other: str) -> CheckedRun:
         """Each of its calls comes after one more call of another callback."""
-        return self.run.passes(checks.never_gets_ahead_of(self.name, other))
+        return self.run.has_callbacks(other).passes(checks.never_gets_ahead_of(self.name, other))
 
     def ticks_on_time(self, within: float) -> CheckedRun:
         """No call of this timer is later than so many seconds."""

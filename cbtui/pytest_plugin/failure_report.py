@@ -6,9 +6,11 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from cbtui.runs.headless.program_log import ProgramLog
 from cbtui.runs.recorded.recording_file import CannotRecordError, start_recording
+from sim.clock.schedule import Seed
 from sim.engine.setup import RunSetup
-from sim.trace.events import AnyEvent
+from sim.trace.events import AnyEvent, Logged, Printed
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
@@ -17,6 +19,7 @@ _WIDTH = 100
 _MOST_LANES = 24
 _AROUND: Nanoseconds = 5 * SECOND
 """How far before and after its moment a failure shows the lanes."""
+_MOST_LINES = 200
 
 
 class Recordings:
@@ -26,9 +29,10 @@ class Recordings:
         self._folder = folder
         self._name = re.sub(r"[^\w.-]+", "-", test.replace(".py::", "-")).strip("-")[:150]
 
-    def keep(self, setup: RunSetup, seed: int, events: Sequence[AnyEvent]) -> str:
+    def keep(self, setup: RunSetup, seed: Seed, events: Sequence[AnyEvent]) -> str:
         """Write a run to a file; returns a clause that says where it is and what to do with it."""
-        path = self._folder / f"{self._name}{f'-seed{seed}' if seed else ''}.mcap"
+        order = f"-seed{seed}" if seed else ""
+        path = self._folder / f"{self._name}{re.sub('[:,=]+', '-', order)}.mcap"
         try:
             self._folder.mkdir(parents=True, exist_ok=True)
             recorder = start_recording(path, setup, replace=True)
@@ -40,6 +44,16 @@ class Recordings:
         if recorder.failure is not None:
             return f"recording: {shown} is not whole: {recorder.failure}"
         return f"recording: cbtui replay {shown}"
+
+
+def print_log(events: Sequence[AnyEvent], at: Nanoseconds | None) -> None:
+    """Print the last lines of the log before a moment, None for the run's end, for pytest to capture."""
+    before = [each for each in events if at is None or each.t <= at]
+    written = [each for each in before if isinstance(each, Logged | Printed)]
+    left_out = set(map(id, written[:-_MOST_LINES]))
+    log = ProgramLog()
+    log.print([each for each in before if id(each) not in left_out])
+    log.finish()
 
 
 def lanes_text(timeline: Timeline, at: Nanoseconds | None) -> Iterator[str]:

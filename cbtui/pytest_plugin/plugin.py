@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
@@ -11,9 +12,11 @@ if TYPE_CHECKING:
 
 _MARK = (
     "cbtui(seconds=10, calls=(), lines=(), arguments=(), threads=None, groups={}, periods={}, "
-    "sensor_rate=None, schedules=1, seed=None, on='model', python=None, robot=True, limit=60): "
+    "sensor_rate=None, distro=None, schedules=1, seed=None, on='model', python=None, robot=True, limit=60): "
     "how the fixture cbtui runs programs"
 )
+
+_OWN_PACKAGES = {"cbtui", "lessons", "sim"}
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -25,8 +28,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     group.addoption(
         "--cbtui-seed",
         metavar="S",
-        type=int,
-        help="run in this order of threads alone, as a failure names it",
+        help="run in this order of threads alone, as a failure or cbtui explore names it",
     )
     parser.addini(
         "cbtui_recordings", "folder for the recordings of runs that failed a test", default="cbtui-recordings"
@@ -41,6 +43,19 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.fixture
 def cbtui(request: pytest.FixtureRequest) -> Runner:
     """Runs a node file, a launch file or a lesson, and returns the run to be asked: ``cbtui("node.py")``."""
-    from cbtui.pytest_plugin.runner import Runner
+    try:
+        from cbtui.pytest_plugin.runner import Runner
 
-    return Runner(request)
+        return Runner(request)
+    except pytest.UsageError as error:
+        pytest.fail(str(error), pytrace=False)
+    except ImportError as error:
+        hidden = (error.name or "").partition(".")[0]
+        if hidden not in _OWN_PACKAGES:
+            raise
+        there = getattr(sys.modules.get(hidden), "__file__", None) or f"a folder {hidden}"
+        pytest.fail(
+            f"cbtui's own package {hidden} is hidden by {there}; rename that, or keep it off sys.path: start "
+            "pytest rather than python -m pytest, with --import-mode=importlib",
+            pytrace=False,
+        )

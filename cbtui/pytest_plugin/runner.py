@@ -1,6 +1,7 @@
 """The fixture's value: runs programs for a test, once or in many orders of their threads."""
 
 import os
+import warnings
 from collections.abc import Mapping
 from contextlib import closing
 from functools import cache, partial
@@ -20,8 +21,9 @@ from cbtui.runs.judged.checking import observe
 from cbtui.runs.judged.exploring import PRELOADED, each_schedule
 from lessons.catalogue import UnknownLesson, find
 from lessons.lesson import Lesson
+from sim.clock.schedule import Seed
 from sim.engine.setup import RunSetup
-from sim.trace.events import AnyEvent
+from sim.trace.events import AnyEvent, Severity
 
 __tracebackhide__ = True
 
@@ -54,7 +56,7 @@ class Runner:
         try:
             setup = asked.setup(lesson, files)
         except BadTermsError as error:
-            pytest.fail(str(error), pytrace=False)
+            raise pytest.UsageError(str(error)) from None
         name = setup.title if lesson is None or not files else files[0].name
         seeds = asked.seeds
         if len(seeds) == 1:
@@ -64,10 +66,14 @@ class Runner:
             with closing(found):
                 outcomes = [Outcome(seed, observed) for seed, observed in found]
         again = partial(_single, setup, name, asked.limit)
-        run = CheckedRun(sorted(outcomes, key=lambda each: each.seed), setup, lesson, again, self._recordings)
+        outcomes.sort(key=lambda each: seeds.index(each.seed))
+        run = CheckedRun(outcomes, setup, lesson, again, self._recordings)
+        for notice in run.timeline.notices:
+            if notice.severity is Severity.WARN:
+                warnings.warn(notice.text, stacklevel=2)
         if not may_fail:
             run.ends_well()
-        return run
+        return run.has_callbacks(*asked.callbacks)
 
     def _changed(self, terms: RunTerms, given: Mapping[str, Any]) -> RunTerms:
         options = {"on": self._config.getoption("cbtui_on"), "seed": self._config.getoption("cbtui_seed")}
@@ -100,7 +106,7 @@ class Runner:
         return found
 
 
-def _single(setup: RunSetup, name: str, limit: float, seed: int) -> Outcome:
+def _single(setup: RunSetup, name: str, limit: float, seed: Seed) -> Outcome:
     """Run one schedule, with all its events kept, and what its messages hold."""
     kept: list[AnyEvent] = []
     asked = msgspec.structs.replace(setup, contents=True, seed=seed or None)

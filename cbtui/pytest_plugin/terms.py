@@ -1,17 +1,18 @@
 """The terms of a test's run: what the mark says, what the call says, and the set-up that comes of them."""
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from cbtui.commands.options import values
-from cbtui.commands.options.changes import real_ros
+from cbtui.commands.options import inputs, values
+from cbtui.commands.options.changes import NoRealRosError, real_ros
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import RunRequest, request_to_judge
 from lessons.lesson import Lesson
-from sim.engine.setup import RealRos, RunSetup
+from sim.clock.schedule import Seed
+from sim.engine.setup import RunSetup
 
 DEFAULT_SECONDS = 10.0
 
@@ -26,7 +27,7 @@ class RunTerms:
 
     ``seconds`` None is 10, for a lesson as long as it says. ``groups`` and ``periods`` (seconds) are by
     callback, or by ``node:callback``. ``schedules`` are so many orders of threads, the usual one first;
-    ``seed`` is a single one.
+    ``seed`` is a single one. Values are those of the options of ``cbtui run`` that bear their names.
     """
 
     seconds: float | None = None
@@ -37,27 +38,36 @@ class RunTerms:
     groups: Mapping[str, str] = field(default_factory=dict)
     periods: Mapping[str, float] = field(default_factory=dict)
     sensor_rate: float | None = None
+    distro: str | None = None
     schedules: int = 1
-    seed: int | None = None
+    seed: Seed | None = None
     on: str = "model"
     python: str | None = None
     robot: bool = True
     limit: float = 60.0
 
     def __post_init__(self) -> None:
-        if self.on not in {"model", "ros2"}:
-            raise BadTermsError(f"on={self.on!r} is neither 'model' nor 'ros2'")
-        if self.schedules < 1:
-            raise BadTermsError(f"schedules={self.schedules} are too few; give 1 or more")
+        for name, read in _READERS.items():
+            value = getattr(self, name)
+            try:
+                if value is not None:
+                    read(value)
+            except argparse.ArgumentTypeError as error:
+                raise BadTermsError(f"{name}={value!r}: {error}") from None
         if self.python is not None and self.on == "model":
             raise BadTermsError("python= names the Python of a real ROS 2: give on='ros2' with it")
 
     @property
-    def seeds(self) -> Sequence[int]:
+    def seeds(self) -> Sequence[Seed]:
         """The orders of threads that are run, by their seeds."""
         if self.on == "ros2":
             return (0,)
-        return range(self.schedules) if self.seed is None else (self.seed,)
+        return range(self.schedules) if self.seed is None else (values.schedule(str(self.seed)),)
+
+    @property
+    def callbacks(self) -> Sequence[str]:
+        """The callbacks that are changed, without their nodes."""
+        return [place.rpartition(":")[2] for place in (*self.groups, *self.periods)]
 
     def changed(self, given: Mapping[str, Any]) -> "RunTerms":
         """The same with other values.
@@ -82,12 +92,19 @@ class RunTerms:
             request = request_to_judge(lesson, *files)
         if self.seconds is not None:
             request = replace(request, seconds=self.seconds)
+        try:
+            real = None if self.on == "model" else real_ros(self.python)
+        except NoRealRosError as error:
+            raise BadTermsError(f"on='ros2': {error}") from None
+        if request.seconds is not None and (late := inputs.late(request.seconds, self.calls, self.lines)):
+            raise BadTermsError(late)
         changes = Changes(
             request.changes.threads if self.threads is None else self.threads,
-            dict(_read(values.group_change, self.groups)),
-            dict(_read(values.period_change, self.periods)),
+            dict(map(values.group_change, _assigned(self.groups))),
+            dict(map(values.period_change, _assigned(self.periods))),
             sensor_rate=self.sensor_rate,
-            real=self._real(),
+            real=real,
+            distro=self.distro,
         )
         return replace(
             request,
@@ -97,20 +114,79 @@ class RunTerms:
             lines=self.lines or request.lines,
         ).setup()
 
-    def _real(self) -> RealRos | None:
-        if self.on == "model":
-            return None
-        try:
-            return real_ros(self.python)
-        except SystemExit:
-            sentence = (
-                "on='ros2' needs a Python with rclpy: pip install 'cbtui[ros]', or name it with python="
-            )
-            raise BadTermsError(sentence) from None
+
+def _assigned(given: Mapping[str, Any]) -> list[str]:
+    """Callbacks and their values as the command line has them."""
+    return [f"{place}={value}" for place, value in given.items()]
 
 
-def _read(parse: Any, given: Mapping[str, Any]) -> list[Any]:
-    try:
-        return [parse(f"{place}={value}") for place, value in given.items()]
-    except argparse.ArgumentTypeError as error:
-        raise BadTermsError(str(error)) from None
+def _ground(on: object) -> None:
+    if on not in {"model", "ros2"}:
+        raise argparse.ArgumentTypeError("give 'model' or 'ros2'")
+
+
+def _number(read: Callable[[str], object]) -> Callable[[object], None]:
+    """A reader of numbers; text is none, as it would have to be read wherever it is used."""
+
+    def check(value: object) -> None:
+        if isinstance(value, str | bool):
+            raise argparse.ArgumentTypeError("give a number, without quotation marks")
+        read(str(value))
+
+    return check
+
+
+def _each(read: Callable[[Any], object], such_as: str) -> Callable[[object], None]:
+    """A reader of lists."""
+
+    def check(value: object) -> None:
+        if isinstance(value, str) or not isinstance(value, Sequence):
+            raise argparse.ArgumentTypeError(f"give a list, such as {such_as}")
+        for each in value:
+            read(each)
+
+    return check
+
+
+def _by_callback(read: Callable[[str], object], such_as: str) -> Callable[[object], None]:
+    """A reader of values by callback."""
+
+    def check(value: object) -> None:
+        if not isinstance(value, Mapping):
+            raise argparse.ArgumentTypeError(f"give a dict, such as {such_as}")
+        for each in _assigned(value):
+            read(each)
+
+    return check
+
+
+def _line(value: object) -> None:
+    match value:
+        case (at, str()):
+            _number(values.moment)(at)
+        case _:
+            raise argparse.ArgumentTypeError(f"give each line its moment, such as {_LINE}")
+
+
+def _word(value: object) -> None:
+    if not isinstance(value, str):
+        raise argparse.ArgumentTypeError(f"{value!r} is no text")
+
+
+_LINE = "(2.0, 'ros2 topic list')"
+_READERS: Mapping[str, Callable[[Any], object]] = {
+    "seconds": _number(values.duration),
+    "calls": _each(_number(values.moment), "[2.5]"),
+    "lines": _each(_line, f"[{_LINE}]"),
+    "arguments": _each(_word, "['-speed', '0.5']"),
+    "threads": _number(values.threads),
+    "groups": _by_callback(values.group_change, "{'odom_callback': 'own'}"),
+    "periods": _by_callback(values.period_change, "{'timer_callback': 0.2}"),
+    "sensor_rate": _number(values.sensor_rate),
+    "distro": values.distro,
+    "schedules": _number(values.count),
+    "seed": lambda value: values.schedule(str(value)),
+    "on": _ground,
+    "limit": _number(values.duration),
+}
+"""What refuses a value of a term, in the words of the command line."""

@@ -138,6 +138,82 @@ def test_what_cannot_be_run_is_told_in_a_sentence(project: Path) -> None:
 
 
 @pytest.mark.slow
+def test_a_failure_tells_the_log_the_order_of_threads_and_names_that_exist(project: Path) -> None:
+    (project / "test_line.py").write_text(
+        "def test_log(cbtui):\n"
+        "    cbtui('line.py', seconds=0.5, seed='moves:1=1').logs('took two')\n"
+        "def test_name(cbtui):\n"
+        "    cbtui('line.py', seconds=0.5).callback('tack').is_never_called()\n"
+    )
+    run = pytest_in(project, "-q")
+    assert "2 failed" in run.stdout
+    assert "order of threads: --cbtui-seed moves:1=1" in run.stdout
+    assert re.search(r"^\[INFO\] \[1700000000\.\d+\] \[line\]: took one$", run.stdout, re.MULTILINE)
+    assert "no callback, topic or service is named tack; callbacks: send, press, take" in run.stdout
+    assert "the usual order of threads, --cbtui-seed 0" in run.stdout
+    again = pytest_in(project, "-q", "--cbtui-seed", "moves:1=1", "-k", "test_name")
+    assert "order of threads: --cbtui-seed moves:1=1" in again.stdout
+
+
+LOST_UPDATE = """
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+
+class Counter(Node):
+    def __init__(self):
+        super().__init__("counter")
+        self.count = 0
+        group = ReentrantCallbackGroup()
+        self.create_timer(0.01, self.one, callback_group=group)
+        self.create_timer(0.01, self.other, callback_group=group)
+
+    def one(self):
+        self.add()
+
+    def other(self):
+        self.add()
+
+    def add(self):
+        before = self.count
+        self.count = before + 1
+        self.get_logger().info(f"counted {self.count}")
+
+def main():
+    rclpy.init()
+    executor = MultiThreadedExecutor(2)
+    executor.add_node(Counter())
+    executor.spin()
+"""
+
+
+@pytest.mark.slow
+def test_a_lost_update_is_told_with_its_accesses(project: Path) -> None:
+    (project / "counter.py").write_text(LOST_UPDATE)
+    (project / "test_line.py").write_text(
+        "def test_count(cbtui):\n    cbtui('counter.py', seconds=0.305, schedules=4).logs('counted 60')\n"
+    )
+    run = pytest_in(project, "-q")
+    assert "1 failed" in run.stdout, run.stdout
+    assert re.search(r"in \d+ of 4 schedules, this one is --cbtui-seed \d+", run.stdout)
+    assert re.search(r"conflict: count: counter\.py:\d+ \(\w+\) reads it, then ", run.stdout)
+
+
+@pytest.mark.slow
+def test_a_package_of_the_project_that_hides_one_of_cbtuis_is_named(project: Path) -> None:
+    (project / "sim").mkdir()
+    (project / "sim" / "__init__.py").touch()
+    (project / "sim" / "world.py").touch()
+    (project / "test_line.py").write_text(
+        "import sim.world\ndef test_own(): pass\ndef test_line(cbtui): cbtui('line.py')\n"
+    )
+    run = pytest_in(project, "-q", "-p", "no:xdist")
+    assert "1 passed, 1 error" in run.stdout, run.stdout
+    assert f"cbtui's own package sim is hidden by {project / 'sim' / '__init__.py'}; rename" in run.stdout
+
+
+@pytest.mark.slow
 def test_a_lesson_and_a_file_in_its_place_are_judged_by_its_checks(project: Path) -> None:
     (project / "test_line.py").write_text(
         "from lessons.catalogue import find\n"

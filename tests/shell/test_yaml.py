@@ -70,7 +70,10 @@ def test_reading_raises_nothing_but_its_own_error(text: str) -> None:
         ("&a [*a]", "the alias *a is not supported (line 1)"),
         ("[" * 101 + "]" * 101, "exceeded maximum nesting depth (line 1)"),
         ("[" * 200_000, "exceeded maximum nesting depth (line 1)"),
-        ("a:\n" + "".join(f"{' ' * depth}-\n" for depth in range(200)), "exceeded maximum nesting depth (line 101)"),
+        (
+            "a:\n" + "".join(f"{' ' * depth}-\n" for depth in range(200)),
+            "exceeded maximum nesting depth (line 101)",
+        ),
         ("a: 1\n--- b", "but found another document (line 2)"),
         ("a: 1\nb: \x01", "control characters are not allowed (line 2)"),
         ("a: 1\nb: [", "(line 2)"),

@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from sim.engine.setup import PhysicsChoice, RealRos
 
 
+class NoRealRosError(Exception):
+    """There is no real ROS 2 where one was asked for; the text is a sentence."""
+
+
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options to a command."""
     parser.add_argument(
@@ -145,11 +149,23 @@ def real_ros_of(options: argparse.Namespace, side: str = "") -> "RealRos | None"
             f"a real ROS 2 is the release it is: leave out --distro{side}; "
             f"--python{side} names a Python with another"
         )
-    return real_ros(chosen, side)
+    return chosen_ros(chosen, side)
 
 
-def real_ros(chosen: str | None, side: str = "") -> "RealRos":
-    """The ROS 2 of a Python, None for cbtui's own; ends the program with one line and 2 if it has none."""
+def chosen_ros(chosen: str | None, side: str = "") -> "RealRos":
+    """The ROS 2 that ``--python`` names; ends the program with one line and 2 if there is none."""
+    try:
+        return real_ros(chosen, f"--python{side}")
+    except NoRealRosError as error:
+        refuse(str(error))
+
+
+def real_ros(chosen: str | None, option: str = "python") -> "RealRos":
+    """The ROS 2 of a Python, None for cbtui's own; ``option`` is how one is named.
+
+    Raises:
+        NoRealRosError: there is none.
+    """
     import shutil
 
     from sim.engine.setup import RealRos
@@ -157,10 +173,10 @@ def real_ros(chosen: str | None, side: str = "") -> "RealRos":
     python = chosen or sys.executable
     found = shutil.which(python)
     if found is None:
-        refuse(f"--python{side} {python}: there is no such program")
+        raise NoRealRosError(f"{option} {python}: there is no such program")
     if not _has_rclpy(found):
-        refuse(
-            f"{python} has no rclpy; name a Python that has it with --python{side}, where ROS is sourced, or "
+        raise NoRealRosError(
+            f"{python} has no rclpy; name a Python that has it with {option}, where ROS is sourced, or "
             f"give cbtui's own one: {install_command('cbtui[ros]')}"
         )
     return RealRos(chosen or "")

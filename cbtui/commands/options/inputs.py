@@ -51,11 +51,23 @@ def add_typing(parser: argparse.ArgumentParser) -> None:
 
 def check(options: argparse.Namespace, seconds: float) -> None:
     """Refuse inputs that come after a run's end, in seconds."""
-    moments = [("call", at) for at in options.calls] + [("line", at) for at, _ in options.lines]
-    moments += [("key", at) for at, _ in getattr(options, "typed", ())]
+    if sentence := late(seconds, options.calls, options.lines, getattr(options, "typed", ())):
+        refuse(f"{sentence}; see --for")
+
+
+def late(
+    seconds: float,
+    calls: Iterable[float],
+    lines: Iterable[tuple[float, str]],
+    typed: Iterable[tuple[float, str]] = (),
+) -> str | None:
+    """Return a sentence on the first input that comes after a run's end, None if none does."""
+    moments = [("call", at) for at in calls] + [("line", at) for at, _ in lines]
+    moments += [("key", at) for at, _ in typed]
     for what, at in moments:
         if at >= seconds:
-            refuse(f"a {what} at {at:g} s comes when the run of {seconds:g} s is over; see --for")
+            return f"a {what} at {at:g} s comes when the run of {seconds:g} s is over"
+    return None
 
 
 def words(calls: Iterable[float], lines: Iterable[tuple[float, str]]) -> list[str]:

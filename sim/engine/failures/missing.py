@@ -128,9 +128,14 @@ _KNOWN = {
 }
 
 
+_OURS = {"cbtui", "lessons", "sim"}
+
+
 def on_missing(module: str) -> str:
     """What to do about a module that cannot be imported, in half a sentence."""
     package = module.partition(".")[0]
+    if package in _OURS:
+        return f"{package} is a package of cbtui's own, which hides yours; rename yours"
     if package in packages():
         return kinds_sentence(package)
     if package in sys.modules:

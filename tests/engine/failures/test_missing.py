@@ -31,6 +31,7 @@ PIP = "pip install {}, into the Python that runs cbtui"
         ),
         ("ros2topic.api", "ros2topic belongs to a ROS 2 machine and is not modelled here; the lines of ros2"),
         ("tf2_roos", "did you mean 'tf2_ros'?"),
+        ("sim.world", "sim is a package of cbtui's own, which hides yours; rename yours"),
         (
             "moveit_msgs",
             "moveit_msgs is a package of interfaces that is not here; copy its definitions into ",
