@@ -67,6 +67,8 @@ class Diagnoses:
         found = tuple(found)
         stuck = frozenset[EntityId]().union(*(each.stuck for each in found if each.until >= timeline.end))
         left = [each for each in found if not (each.rule.is_effect and _is_due_to(stuck, each))]
+        left.sort(key=self._rank, reverse=True)
+        # Of several findings with one culprit the first by rank is the cause.
         causes = {each.culprit: each for each in left if each.rule.by_culprit}
         parted = [each if each.due_to in causes else replace(each, due_to=0) for each in left]
         weights = {each.key: each.rule.weigh(each, timeline) for each in parted}
@@ -77,8 +79,8 @@ class Diagnoses:
 
         return tuple(sorted((each for each in parted if weights[each.key] is not None), key=rank))
 
-    def _rank(self, found: Finding) -> tuple[int, Nanoseconds, EntityId, str]:
-        return self._rules.index(found.rule), found.at, found.subject, found.about
+    def _rank(self, found: Finding) -> tuple[int, Nanoseconds, EntityId, str, EntityId]:
+        return self._rules.index(found.rule), found.at, found.subject, found.about, found.culprit
 
 
 def _is_due_to(stuck: frozenset[EntityId], found: Finding) -> bool:

@@ -27,6 +27,10 @@ class LongWait:
         """The length of a part, in nanoseconds."""
         return part.end_at(self.until) - part.start
 
+    def longest_part(self, before: Nanoseconds) -> Wait:
+        """The part that had lasted longest at a time; the first of equal ones."""
+        return max(self.parts, key=lambda part: min(part.end_at(self.until), before) - part.start)
+
     def because(self, reason: Reason) -> tuple[Wait, ...]:
         """The parts with a reason that another callback caused."""
         return tuple(part for part in self.parts if part.reason is reason and part.holder != part.entity)

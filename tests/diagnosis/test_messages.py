@@ -191,3 +191,26 @@ def test_a_subscription_of_another_program_that_does_not_match_is_told() -> None
     run = diagnosed(program)
     assert run.told() == {("qos-mismatch", "")}
     assert run.explained("qos-mismatch").what.startswith("a subscription outside the program hears nothing")
+
+
+def test_old_data_is_laid_to_what_kept_the_messages_until_then() -> None:
+    def program(simulation: Simulation) -> None:
+        simulation.publisher_at_rate("t", 0.1, offset=0.05)
+        node = Node("n")
+
+        def hear(_: object) -> None: ...
+
+        def early() -> None:
+            simulation.sleep(1.0)
+
+        def late() -> None:
+            simulation.sleep(5.0)
+
+        once(node, 1.0, early)
+        once(node, 1.5, late)
+        node.create_subscription(Int32, "t", hear, 10)
+        spin(node, None)
+
+    run = diagnosed(program)
+    assert run.one("stale-data").subject == run.trace.entity("late")
+    assert run.one("stale-data").due_to == run.trace.entity("early")

@@ -92,8 +92,7 @@ class StaleData(Rule):
             if is_long and view.timeline.calls_of(sensor, Window(0, wait.since + 1)):
                 for timer in timers:
                     for span in self._uninformed_calls(view, timer, wait):
-                        age = span.start - wait.since
-                        keeper = max(wait.parts, key=wait.length).holder
+                        age, keeper = span.start - wait.since, wait.longest_part(span.start).holder
                         yield Finding(self, span.start, span.start, timer, sensor, due_to=keeper, size=age)
 
     def _uninformed_calls(self, view: TimelineView, timer: EntityId, wait: LongWait) -> Iterator[Span]:
