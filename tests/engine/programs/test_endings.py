@@ -160,8 +160,9 @@ finally:
     run = run_program(tmp_path, source, seconds=3.0, clock=clock)
     assert monotonic() - began < GRACE + 60
     assert run.ending.reason == "its time was up"
-    (notice,) = (event.text for event in run.events if isinstance(event, Notice))
-    assert "node.py had not ended" in notice
+    # What keeps virtual time is told before, if the machine leaves it no time to end.
+    notices = [event.text for event in run.events if isinstance(event, Notice)]
+    (notice,) = (each for each in notices if "node.py had not ended" in each)
     assert "(MainThread: node.py:8, in <module>)" in notice
     assert (tmp_path / "log.csv").read_text() == "1"
 
