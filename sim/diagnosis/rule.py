@@ -4,7 +4,7 @@ from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from enum import Enum
+from enum import Enum, StrEnum
 from pathlib import Path
 from typing import ClassVar
 
@@ -36,6 +36,14 @@ class CodeLocation:
         return f"{Path(self.file).name}:{self.first_line}"
 
 
+class WaitedFor(StrEnum):
+    """What a callback can wait for without end."""
+
+    REPLY = "a reply"
+    RATE = "the rate's timer"
+    LOCK = "a lock"
+
+
 @dataclass(frozen=True, slots=True)
 class Finding:
     """What a rule found: one occurrence, or ``count`` of them with the times of the worst.
@@ -60,6 +68,8 @@ class Finding:
     thread: ThreadId = 0
     stuck: frozenset[EntityId] = frozenset()
     """The callbacks that can never go on."""
+    waited_for: frozenset[WaitedFor] = frozenset()
+    """What those of them wait for who wait for each other."""
     ring: tuple[str, ...] = ()
     """Who waits for what, which waits for whom, back to the first: ``tick``, ``/add``, ``tick``."""
 

@@ -17,15 +17,13 @@ from operator import attrgetter
 from pathlib import Path
 from typing import TypeAlias
 
-from sim.diagnosis.rule import is_models
+from sim.diagnosis.rule import WaitedFor, is_models
 from sim.diagnosis.timeline_view import pool_of
 from sim.diagnosis.words import group_of, who
 from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, Reason, ThreadId
 from sim.trace.model import Call, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.timeline import Timeline
 
-RATE = "the rate's timer"
-LOCK = "a lock"
 _SETTLES: Nanoseconds = 100_000_000
 """How long a callback must have been at its line until that counts as a wait."""
 
@@ -51,8 +49,8 @@ Waiter: TypeAlias = OnThread | Suspended
 class Obstacle:
     """What a callback waits for, as a clause: one of ``by`` would have to go on.
 
-    ``wanted`` is the service, ``RATE`` or ``LOCK``; ``needs_worker``: a thread is missing; ``group`` is the
-    one that has to let it in, "" for none.
+    ``wanted`` is the service, or a ``WaitedFor``; ``needs_worker``: a thread is missing; ``group`` is the one
+    that has to let it in, "" for none.
     """
 
     wanted: str
@@ -60,6 +58,11 @@ class Obstacle:
     by: tuple[Waiter, ...]
     needs_worker: bool = False
     group: str = ""
+
+    @property
+    def kind(self) -> WaitedFor:
+        """What kind of thing is wanted."""
+        return self.wanted if isinstance(self.wanted, WaitedFor) else WaitedFor.REPLY
 
     @property
     def steps(self) -> tuple[str, ...]:
@@ -186,13 +189,13 @@ class WaitForGraph:
         if position.holder:
             holder = OnThread(position.holder)
             me = self._name(OnThread(position.thread))
-            return Obstacle(LOCK, f"{me} wants the lock that {self._name(holder)} keeps", (holder,))
+            return Obstacle(WaitedFor.LOCK, f"{me} wants the lock that {self._name(holder)} keeps", (holder,))
         if position.call == "Rate.sleep":
             node = self._timeline.entities[span.entity].node
             for entity in self._moment.waiting:
                 known = self._timeline.entities[entity]
                 if known.kind is EntityKind.TIMER and known.node == node and is_models(known):
-                    return self._admission_obstacle(entity, RATE, RATE)
+                    return self._admission_obstacle(entity, WaitedFor.RATE, WaitedFor.RATE)
         if position.doing is Doing.WAITS or position.loop[0]:
             pending = (call for call in self._outstanding() if call.caller == span.entity)
             for call in pending:

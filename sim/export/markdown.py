@@ -13,7 +13,7 @@ from sim.trace.figures.chains_text import told_chain
 from sim.trace.figures.statistics import CallbackStatistics, Distribution, Statistics, ages_used, statistics
 from sim.trace.figures.summary import CallbackFigures, Summary, summarise
 from sim.trace.figures.summary_text import robot_line, service_line
-from sim.trace.model import AxisMark, Nanoseconds, Window
+from sim.trace.model import AxisMark, AxisMarkKind, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _MARKS = 200
@@ -212,7 +212,9 @@ def _words(timeline: Timeline) -> Iterator[str]:
             yield f"- {seconds(notice.t)} s, {notice.severity.value}: {plain(notice.text)}"
         yield ""
     marks = [
-        mark for mark in timeline.marks(Window(0, timeline.end + 1)) if mark.kind in ("command", "error")
+        mark
+        for mark in timeline.marks(Window(0, timeline.end + 1))
+        if mark.kind in (AxisMarkKind.COMMAND, AxisMarkKind.ERROR)
     ]
     if marks:
         yield "## Commands and errors"

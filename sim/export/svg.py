@@ -11,7 +11,7 @@ from sim.export.texts import seconds, xml
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import GroupKind, Reason
 from sim.trace.figures.chains import ChainStep
-from sim.trace.model import EntityInfo, GroupInfo, Nanoseconds, Span, ThreadInfo, Wait, Window
+from sim.trace.model import AxisMarkKind, EntityInfo, GroupInfo, Nanoseconds, Span, ThreadInfo, Wait, Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
@@ -206,7 +206,7 @@ class _Picture:
         last = self._scale.left - _TICK_EVERY
         for mark in self._timeline.marks(self._window):
             x = self._scale.x(mark.at)
-            if mark.kind not in ("command", "call", "reply", "notice") or x < last + 2:
+            if mark.kind is AxisMarkKind.ERROR or x < last + 2:
                 continue
             yield draw.line(x, top, x, bottom, draw.FAINT, 0.7)
             if x - last > _TICK_EVERY:

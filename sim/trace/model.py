@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from enum import StrEnum
 from typing import TypeAlias
 
 from sim.trace.events import (
@@ -270,12 +271,22 @@ class Call:
     lost: bool = False
 
 
+class AxisMarkKind(StrEnum):
+    """What happened at a point on the time axis."""
+
+    COMMAND = "command"
+    CALL = "call"
+    REPLY = "reply"
+    NOTICE = "notice"
+    ERROR = "error"
+
+
 @dataclass(frozen=True, slots=True)
 class AxisMark:
-    """A point on the time axis: a command, a call, a reply, a notice or an error."""
+    """A point on the time axis."""
 
     at: Nanoseconds
-    kind: str
+    kind: AxisMarkKind
     text: str
 
 

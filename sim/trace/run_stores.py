@@ -11,7 +11,7 @@ from sim.trace.activity import Activity
 from sim.trace.blocking import Blocking
 from sim.trace.events import AnyEvent, EntityId, EntityKind
 from sim.trace.execution import Execution
-from sim.trace.model import AxisMark, Nanoseconds, Queue
+from sim.trace.model import AxisMark, AxisMarkKind, Nanoseconds, Queue
 from sim.trace.participants import Participants
 from sim.trace.positions import Positions
 from sim.trace.publications import Publications
@@ -198,7 +198,7 @@ class RunStores:
         self.execution.fail(event)
         entity = self.participants.entities.get(event.entity)
         who = entity.spoken_name if entity else "a callback"
-        self.marks.add(AxisMark(event.t, "error", f"{who} raised {event.error}"))
+        self.marks.add(AxisMark(event.t, AxisMarkKind.ERROR, f"{who} raised {event.error}"))
 
     def _published(self, event: ev.Published) -> None:
         self.publications.add(event)
@@ -210,11 +210,11 @@ class RunStores:
     def _service_called(self, event: ev.ServiceCalled) -> None:
         self.calls.send(event)
         self.sendings.add(event.service, event.t, event.call, self._sender(event.entity))
-        self.marks.add(AxisMark(event.t, "call", f"{event.service} {event.request}"))
+        self.marks.add(AxisMark(event.t, AxisMarkKind.CALL, f"{event.service} {event.request}"))
 
     def _service_replied(self, event: ev.ServiceReplied) -> None:
         self.calls.reply(event)
-        self.marks.add(AxisMark(event.t, "reply", f"{event.service} {event.response}"))
+        self.marks.add(AxisMark(event.t, AxisMarkKind.REPLY, f"{event.service} {event.response}"))
 
     def _scanned(self, event: ev.Scanned) -> None:
         self.scans.add(event)
@@ -223,7 +223,7 @@ class RunStores:
             self.scans.take(taken.start, event.message)
 
     def _command_given(self, event: ev.CommandGiven) -> None:
-        self.marks.add(AxisMark(event.t, "command", event.text))
+        self.marks.add(AxisMark(event.t, AxisMarkKind.COMMAND, event.text))
 
     def _printed(self, event: ev.Printed) -> None:
         self.logs.add(event)
@@ -242,11 +242,11 @@ class RunStores:
 
     def _line_given(self, event: ev.LineGiven) -> None:
         self.shell.add(event)
-        self.marks.add(AxisMark(event.t, "command", event.text))
+        self.marks.add(AxisMark(event.t, AxisMarkKind.COMMAND, event.text))
 
     def _noticed(self, event: ev.Notice) -> None:
         self.notices.add(event)
-        self.marks.add(AxisMark(event.t, "notice", event.text))
+        self.marks.add(AxisMark(event.t, AxisMarkKind.NOTICE, event.text))
 
     def _events_lost(self, event: ev.EventsLost) -> None:
         self.lost = max(self.lost, event.count)

@@ -4,7 +4,7 @@ from math import inf
 
 from sim.trace import events as ev
 from sim.trace.events import GroupKind, kinds
-from sim.trace.model import AxisMark, Moment, Queue, QueuedMessage, Window
+from sim.trace.model import AxisMark, AxisMarkKind, Moment, Queue, QueuedMessage, Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, ns, shared_group_run
 from tests.trace.samples import CAST, FULL, full
@@ -92,12 +92,12 @@ def test_marks_are_the_points_worth_a_sign() -> None:
     timeline = Timeline()
     timeline.extend(FULL)
     assert timeline.marks(ALWAYS) == [
-        AxisMark(ns(2.1), "call", "/motor_power SetBool_Request(data=True)"),
-        AxisMark(ns(2.2), "reply", "/motor_power SetBool_Response(success=True, message='')"),
-        AxisMark(ns(2.25), "error", "odom_callback raised IndexError: no beam 720"),
-        AxisMark(ns(2.5), "command", "/motor_power SetBool data=True"),
-        AxisMark(ns(2.5), "command", "ros2 topic list"),
-        AxisMark(ns(2.6), "notice", "The robot touches the wall."),
+        AxisMark(ns(2.1), AxisMarkKind.CALL, "/motor_power SetBool_Request(data=True)"),
+        AxisMark(ns(2.2), AxisMarkKind.REPLY, "/motor_power SetBool_Response(success=True, message='')"),
+        AxisMark(ns(2.25), AxisMarkKind.ERROR, "odom_callback raised IndexError: no beam 720"),
+        AxisMark(ns(2.5), AxisMarkKind.COMMAND, "/motor_power SetBool data=True"),
+        AxisMark(ns(2.5), AxisMarkKind.COMMAND, "ros2 topic list"),
+        AxisMark(ns(2.6), AxisMarkKind.NOTICE, "The robot touches the wall."),
     ]
     assert [mark.kind for mark in timeline.marks(Window(ns(2.2), ns(2.5)))] == ["reply", "error"]
 

@@ -185,13 +185,14 @@ def _warnings(observed: ObservedRun) -> Iterator[str]:
 
 def _raised(observed: ObservedRun) -> Iterator[ScheduleFailure]:
     """The exceptions that came out of callbacks, by callback and kind; with the place if the run ended so."""
-    timeline, trouble = observed.timeline, observed.trouble or ""
+    timeline, trouble = observed.timeline, observed.trouble
+    ended_by = None if timeline.ended is None else timeline.ended.error
     whole = Window(0, timeline.end + 1)
     for entity in timeline.entities.values():
         for span in timeline.spans_of(entity.id, whole):
             if span.error:
                 text = span.error.removeprefix(f"{span.exception}: ")
-                detail = trouble if span.error in trouble else text
+                detail = trouble if trouble and span.error == ended_by else text
                 yield ScheduleFailure(f"{entity.spoken_name} raised {span.exception}", detail)
 
 

@@ -33,7 +33,17 @@ from cbtui.widgets.lanes.status import LaneStatus
 from sim.durations import duration
 from sim.trace.events import EntityKind
 from sim.trace.figures.chains import ChainStep
-from sim.trace.model import AxisMark, Blocked, Moment, Nanoseconds, Span, ThreadInfo, Wait, Window
+from sim.trace.model import (
+    AxisMark,
+    AxisMarkKind,
+    Blocked,
+    Moment,
+    Nanoseconds,
+    Span,
+    ThreadInfo,
+    Wait,
+    Window,
+)
 from sim.trace.timeline import Timeline
 
 FAINT = Ink(Role.FAINT)
@@ -369,7 +379,9 @@ class _LaneFrame:
         """The person's commands, except the calls that a service's lane shows."""
         shown = {self._scale.column_of(call.sent) for call in self._calls.latest}
         marks = self._timeline.marks(self._scale.window)
-        return [m for m in marks if m.kind == "command" and self._scale.column_of(m.at) not in shown]
+        return [
+            m for m in marks if m.kind is AxisMarkKind.COMMAND and self._scale.column_of(m.at) not in shown
+        ]
 
     def _framed(
         self, name: list[TextRun], runs: list[TextRun], status: TextRun, chosen: bool

@@ -12,7 +12,7 @@ FAINT = Ink(Role.FAINT)
 WARN = Ink(Role.WARN)
 
 _GAP = 3
-_Figure = tuple[str, Ink]
+_Figure = tuple[str, str, Ink]
 
 
 def figures(
@@ -22,14 +22,14 @@ def figures(
     entries = _entries(robot, command, charset)
     rows: list[CellRow] = []
     at = width
-    for text, ink in entries:
-        if not rows or at + len(text) > width:
+    for name, value, ink in entries:
+        length = len(name) + 1 + len(value)
+        if not rows or at + length > width:
             rows.append(CellRow(width, charset))
             at = 0
-        name, _, value = text.partition(" ")
         rows[-1].write(at, name, FAINT)
         rows[-1].write(at + len(name) + 1, value, ink)
-        at += len(text) + _GAP
+        at += length + _GAP
     return rows
 
 
@@ -39,12 +39,12 @@ def _entries(robot: RobotMoved, command: VelocityCommanded | None, charset: Char
     place = f"{_two_places(robot.x)} {_two_places(robot.y)} m"
     front = f"{robot.front:5.2f} m" if math.isfinite(robot.front) else "   free"
     return (
-        (f"pose {place} {round(math.degrees(robot.yaw)):4}{degree}", PLAIN),
-        (f"front {front}", PLAIN),
-        (f"told {told}", PLAIN),
-        ("motors on " if robot.motors else "motors OFF", PLAIN if robot.motors else WARN),
-        (f"real {_velocity(robot.linear, robot.angular)}", PLAIN),
-        ("touching YES" if robot.touching else "touching no ", WARN if robot.touching else PLAIN),
+        ("pose", f"{place} {round(math.degrees(robot.yaw)):4}{degree}", PLAIN),
+        ("front", front, PLAIN),
+        ("told", told, PLAIN),
+        ("motors", "on " if robot.motors else "OFF", PLAIN if robot.motors else WARN),
+        ("real", _velocity(robot.linear, robot.angular), PLAIN),
+        ("touching", "YES" if robot.touching else "no ", WARN if robot.touching else PLAIN),
     )
 
 

@@ -4,10 +4,10 @@ from collections.abc import Iterator, Sequence
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.locks import make_reentrant, take_together
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, line_of
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, WaitedFor, by_edit, line_of
 from sim.diagnosis.rules.edits import edits_for_reply
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.wait_for_graph import LOCK, RATE, StuckCallback, WaitForGraph
+from sim.diagnosis.wait_for_graph import StuckCallback, WaitForGraph
 from sim.diagnosis.words import often, threads_for, who, with_threads
 from sim.trace.events import EntityId, EntityKind, Reason
 from sim.trace.model import Blocked, Nanoseconds, Position, Window
@@ -37,13 +37,13 @@ class SelfMadeDeadlock(Rule):
 
     def kind(self, found: Finding) -> str:
         """Tell deadlocks over locks and rates from those over calls."""
-        return next((kind for wanted, kind in _KINDS.items() if wanted in found.ring), self.id)
+        return next((kind for wanted, kind in _KINDS.items() if wanted in found.waited_for), self.id)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name the callbacks of the cycle."""
         subject = who(found.subject, timeline)
-        about = _OWN_LOCK if found.about == LOCK and found.size == 1 else found.about
-        if LOCK in found.ring and any(step.startswith("/") for step in found.ring):
+        about = _OWN_LOCK if found.about == WaitedFor.LOCK and found.size == 1 else found.about
+        if found.waited_for >= {WaitedFor.LOCK, WaitedFor.REPLY}:
             about = _LOCK_AND_CALL
         why, cure = _WHY.get(about, _WHY_REPLY), _CURES.get(about, "")
         if not cure:
@@ -57,7 +57,10 @@ class SelfMadeDeadlock(Rule):
                     f"an async def {subject}; to wait inside it, {apart}"
                 )
         threads = 0
-        if LOCK not in found.ring and threads_for([found.subject], found.until, timeline) == 1:
+        if (
+            WaitedFor.LOCK not in found.waited_for
+            and threads_for([found.subject], found.until, timeline) == 1
+        ):
             threads = found.size + 1
             cure += f", and spin with {with_threads(threads)}"
         return _explanation(found, why, cure, self._remedies(found, threads, timeline), timeline)
@@ -65,14 +68,14 @@ class SelfMadeDeadlock(Rule):
     def _remedies(self, found: Finding, threads: int, timeline: Timeline) -> tuple[Remedy, ...]:
         place = _line_of(found.subject, found, timeline)
         apart = Remedy((found.subject,), threads)
-        if found.about == RATE:
+        if found.about == WaitedFor.RATE:
             return apart, Remedy(threads=threads)
-        if LOCK not in found.ring:
+        if WaitedFor.LOCK not in found.waited_for:
             return apart, *edits_for_reply(place, found.subject, timeline)
         other = _line_of(found.culprit, found, timeline)
         if found.size == 1:
             return by_edit(place, "make the lock a threading.RLock", make_reentrant)
-        if other is None or any(step.startswith("/") for step in found.ring):
+        if other is None or WaitedFor.REPLY in found.waited_for:
             return ()
         order = f"take both locks at once, in the order of {who(found.culprit, timeline)}"
         return by_edit(place, order, take_together, other.first_line)
@@ -104,20 +107,22 @@ class NeedsOneMoreWorker(Rule):
         return _explanation(found, why, cure, (Remedy(threads=found.size + 1), *edits), timeline)
 
 
-_KINDS = {LOCK: "deadlock-over-a-lock", RATE: "deadlock-over-a-rate"}
+_KINDS = {WaitedFor.LOCK: "deadlock-over-a-lock", WaitedFor.RATE: "deadlock-over-a-rate"}
 _WHY_REPLY = "the reply is brought by the executor, and needs a group that lets it in and a thread"
 _OWN_LOCK = "its own lock"
 _LOCK_AND_CALL = "a lock and a reply"
 _WHY = {
     _OWN_LOCK: "it has the lock already, and a Lock is not given to anybody twice",
-    RATE: "sleep() comes back when the executor has called the rate's timer, which needs a thread",
-    LOCK: "each keeps its lock while it waits for the other's, so neither lets go",
+    WaitedFor.RATE: "sleep() comes back when the executor has called the rate's timer, which needs a thread",
+    WaitedFor.LOCK: "each keeps its lock while it waits for the other's, so neither lets go",
     _LOCK_AND_CALL: "the lock is kept during a call, and whoever has to answer needs it",
 }
 _CURES = {
     _OWN_LOCK: "take it once, let go of it before, or use threading.RLock",
-    RATE: "leave sleep() out, and let a timer of the rate's period do one step at each call; or keep it",
-    LOCK: "take locks in the same order everywhere, and let go of one before you take the next",
+    WaitedFor.RATE: (
+        "leave sleep() out, and let a timer of the rate's period do one step at each call; or keep it"
+    ),
+    WaitedFor.LOCK: "take locks in the same order everywhere, and let go of one before you take the next",
     _LOCK_AND_CALL: "let go of the lock before the call, and take it again when the reply is there",
 }
 
@@ -213,5 +218,6 @@ def _found(
         size=len(deadlock),
         detail=detail,
         stuck=stuck,
+        waited_for=frozenset(each.obstacle.kind for each in deadlock),
         ring=(*ring, who(closing.entity, timeline)),
     )

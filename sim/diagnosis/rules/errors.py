@@ -7,7 +7,7 @@ from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight,
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of
 from sim.diagnosis.words import often, who
 from sim.trace.events import EntityKind
-from sim.trace.model import Nanoseconds, Window
+from sim.trace.model import AxisMarkKind, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 
@@ -23,8 +23,8 @@ class ProgramRaised(Rule):
         clashes = {(clash.file, clash.line) for clash in view.timeline.spin_clashes}
         if ended is None or not ended.problem or tuple(ended.place) in clashes:
             return
-        last = (view.spans(each.id)[-1:] for each in view.entities(EntityKind.SERVICE))
-        if (ended.error or "").startswith("TypeError") and any(each and each[0].no_response for each in last):
+        last = (span for each in view.entities(EntityKind.SERVICE) for span in view.spans(each.id)[-1:])
+        if any(span.no_response and span.error == ended.error for span in last):
             return
         yield Finding(self, ended.t, ended.t)
 
@@ -56,7 +56,7 @@ class ExceptionSwallowed(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each call that raised on a worker; ``weigh`` drops those that surfaced."""
-        if not any(mark.kind == "error" for mark in view.timeline.marks(view.window)):
+        if not any(mark.kind is AxisMarkKind.ERROR for mark in view.timeline.marks(view.window)):
             return
         for entity in view.entities():
             for span in view.spans(entity.id):

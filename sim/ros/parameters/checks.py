@@ -10,7 +10,10 @@ from sim.ros.parameters.parameter import Parameter
 PARAM_REL_TOL = 1e-6
 """How far a floating-point value may be from a limit or step, relative to it; as in rclpy."""
 
-WRONG_TYPE = "Wrong parameter type"
+
+def has_wrong_type(parameter: Parameter[Any], descriptor: Any) -> bool:
+    """Whether a value is of another type than a statically typed parameter's."""
+    return not descriptor.dynamic_typing and parameter.type_ not in (Parameter.Type.NOT_SET, descriptor.type)
 
 
 def objection(parameter: Parameter[Any], descriptor: Any) -> str:
@@ -20,9 +23,9 @@ def objection(parameter: Parameter[Any], descriptor: Any) -> str:
     """
     if descriptor.dynamic_typing:
         descriptor.type = parameter.type_.value
-    elif parameter.type_ not in (Parameter.Type.NOT_SET, descriptor.type):
+    elif has_wrong_type(parameter, descriptor):
         expected = Parameter.Type(descriptor.type)
-        return f"{WRONG_TYPE}, expected '{expected}' got '{parameter.type_}'"
+        return f"Wrong parameter type, expected '{expected}' got '{parameter.type_}'"
     if parameter.type_ is Parameter.Type.INTEGER and descriptor.integer_range:
         return _outside_integer_range(parameter.name, parameter.value, descriptor.integer_range[0])
     if parameter.type_ is Parameter.Type.DOUBLE and descriptor.floating_point_range:

@@ -16,7 +16,7 @@ from sim.ros.exceptions import (
     ParameterUninitializedException,
 )
 from sim.ros.naming.validate_parameter_name import validate_parameter_name
-from sim.ros.parameters.checks import WRONG_TYPE, objection
+from sim.ros.parameters.checks import has_wrong_type, objection
 from sim.ros.parameters.declaration import read_declaration
 from sim.ros.parameters.listing import listed
 from sim.ros.parameters.overruled import Overruled
@@ -129,7 +129,7 @@ class ParameterStore:
     def _declare(self, parameter: AnyParameter, descriptor: Any) -> None:
         descriptor.name = parameter.name
         reason = objection(parameter, descriptor)
-        if reason.startswith(WRONG_TYPE):
+        if has_wrong_type(parameter, descriptor):
             raise InvalidParameterTypeException(parameter, Parameter.Type(descriptor.type).name)
         if not reason:
             result = self._ask_callbacks([parameter])
