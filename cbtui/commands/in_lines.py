@@ -31,12 +31,12 @@ def open_in_lines(
     """
     from cbtui.runs.setup.shown_program import of_file, of_lesson
     from cbtui.screens.linear.console import LineTerminal
-    from cbtui.screens.linear.keyboard import Keyboard
+    from cbtui.screens.linear.keyboard import KeyReader
     from lessons.catalogue import find, lessons
 
     for sentence in look.complaints:
         complain(sentence)
-    keyboard = Keyboard()
+    keyboard = KeyReader()
     terminal = LineTerminal(keyboard, lambda line: say(f"{line}\n"), look.keys)
     keyboard.give = terminal.typed.put
     with keyboard.opened():

@@ -100,7 +100,7 @@ class StepState(Enum):
     OPEN = ""
 
 
-class Step(NamedTuple):
+class LessonStep(NamedTuple):
     """One of the steps through a lesson; ``note`` is shown in place of the state's sign."""
 
     name: str
@@ -113,7 +113,7 @@ class Step(NamedTuple):
         return f"{self.name} {self.note or self.state.value}".rstrip()
 
 
-def steps_of(lesson: Lesson, progress: LessonProgress, checks: str = "") -> tuple[Step, ...]:
+def steps_of(lesson: Lesson, progress: LessonProgress, checks: str = "") -> tuple[LessonStep, ...]:
     """Return the steps that a lesson has; the first one that is not done is current.
 
     ``checks`` tells how many checks of the exercise pass, if it is on screen: the exercise is current then.
@@ -121,7 +121,7 @@ def steps_of(lesson: Lesson, progress: LessonProgress, checks: str = "") -> tupl
     done, predicted = dict(_steps_done(lesson, progress)), all_predicted(lesson, progress)
     current = "Exercise" if checks else next((name for name, is_done in done.items() if not is_done), "")
     return tuple(
-        Step(
+        LessonStep(
             name,
             StepState.CURRENT if name == current else StepState.DONE if is_done else StepState.OPEN,
             checks

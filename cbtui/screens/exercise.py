@@ -14,7 +14,7 @@ from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.keys.action import CHECKS, PANES, Scope
 from cbtui.keys.keymap import STANDARD, Keymap, keymap_of
 from cbtui.learning.lesson_page import page_of_exercise
-from cbtui.learning.stage import Step
+from cbtui.learning.stage import LessonStep
 from cbtui.looks.theme import Charset
 from cbtui.runs.judged.checking import ObservedRun, ended_run
 from cbtui.runs.judged.run_budget import RunBudget
@@ -141,7 +141,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
         return self._learning.page()
 
     @property
-    def steps(self) -> tuple[Step, ...]:
+    def steps(self) -> tuple[LessonStep, ...]:
         """The steps through the lesson; the last one counts the checks that pass."""
         return self._learning.steps(self._sheet.count)
 

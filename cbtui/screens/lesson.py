@@ -9,7 +9,7 @@ from textual import on
 
 from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.learning.lesson_page import PageSection, page_of
-from cbtui.learning.stage import Step
+from cbtui.learning.stage import LessonStep
 from cbtui.looks.theme import Charset
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
@@ -116,7 +116,7 @@ class LessonScreen(RunScreen[LiveRun]):
         return super().page() if self._learning is None else self._learning.page()
 
     @property
-    def steps(self) -> tuple[Step, ...]:
+    def steps(self) -> tuple[LessonStep, ...]:
         """The steps through the lesson."""
         return () if self._learning is None else self._learning.steps()
 

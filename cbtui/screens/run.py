@@ -16,7 +16,7 @@ from textual.widget import Widget
 from cbtui.keys.action import PANES, Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
-from cbtui.learning.stage import Step
+from cbtui.learning.stage import LessonStep
 from cbtui.looks.theme import Charset
 from cbtui.runs.live.live_run import LiveRun, has_robot
 from cbtui.runs.setup.changes import Changes
@@ -171,7 +171,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         return {"guide": self.subject.guide}
 
     @property
-    def steps(self) -> tuple[Step, ...]:
+    def steps(self) -> tuple[LessonStep, ...]:
         """The steps through a lesson, with how far the learner is."""
         return ()
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from textual.geometry import Size
 from textual.reactive import reactive
 
-from cbtui.learning.stage import Step, StepState
+from cbtui.learning.stage import LessonStep, StepState
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
@@ -51,7 +51,7 @@ class RunStatus:
     unrecorded: int = 0
     recorded_bytes: int = 0
     exported: int | None = None
-    steps: tuple[Step, ...] = ()
+    steps: tuple[LessonStep, ...] = ()
     """The steps through the lesson, if there are any."""
     still: Nanoseconds | None = None
     """For how long nothing moves any more, None if something does."""
@@ -63,7 +63,7 @@ def status_of(
     playhead: Playhead,
     usual_executor: str,
     exported: int | None = None,
-    steps: tuple[Step, ...] = (),
+    steps: tuple[LessonStep, ...] = (),
     still_since: Nanoseconds | None = None,
 ) -> RunStatus:
     """Return the status of a run; until its executor appears, the lesson's own text stands for it.
@@ -172,7 +172,7 @@ _TURNING = "◐◓◑◒"
 _STEP_INKS = {StepState.DONE: _PLAIN, StepState.CURRENT: _STRONG, StepState.OPEN: _FAINT}
 
 
-def _steps(steps: Sequence[Step]) -> list[TextRun]:
+def _steps(steps: Sequence[LessonStep]) -> list[TextRun]:
     """The steps, each pointing to the next, and a gap."""
     runs: list[TextRun] = []
     for step in steps:
@@ -181,7 +181,7 @@ def _steps(steps: Sequence[Step]) -> list[TextRun]:
     return [*runs, _GAP] if runs else []
 
 
-def _about_current(steps: Sequence[Step]) -> Sequence[Step]:
+def _about_current(steps: Sequence[LessonStep]) -> Sequence[LessonStep]:
     """The current step and the one after it; all are done without a current one."""
     place = next((place for place, step in enumerate(steps) if step.state is StepState.CURRENT), len(steps))
     return steps[place : place + 2]

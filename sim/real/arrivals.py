@@ -20,7 +20,7 @@ _EARLY = 100
 """Takings of one queue that are remembered because their sending is not known."""
 
 
-class Sending(NamedTuple):
+class SentMessage(NamedTuple):
     """A message or request that was sent, from ``before`` to ``after`` (nanoseconds since 1970)."""
 
     number: int
@@ -34,7 +34,7 @@ class _Queue:
     entity: int
     kind: EntityKind
     depth: int
-    untaken: deque[Sending] = field(default_factory=lambda: deque(maxlen=_REMEMBERED))
+    untaken: deque[SentMessage] = field(default_factory=lambda: deque(maxlen=_REMEMBERED))
     handled: dict[int, int] = field(default_factory=dict)
     """A service's requests that were taken and not answered yet: their numbers, by when they were sent."""
     told: list[int] = field(default_factory=list)
@@ -45,7 +45,7 @@ class _Queue:
     heard: set[int] = field(default_factory=set)
     """The senders of which something was taken: they have found it."""
 
-    def was_taken(self, sending: Sending) -> bool:
+    def was_taken(self, sending: SentMessage) -> bool:
         """Whether a message that is told of only now was taken; that is remembered once."""
         stamp = next((each for each in self.early if sending.before <= each <= sending.after), None)
         if stamp is not None:
@@ -53,7 +53,7 @@ class _Queue:
             self.hears(sending.sender)
         return stamp is not None
 
-    def is_reached_by(self, sending: Sending) -> bool:
+    def is_reached_by(self, sending: SentMessage) -> bool:
         """Whether a message comes to lie in it, as far as is known."""
         return not self.heard or sending.sender in self.heard
 
@@ -90,7 +90,7 @@ class Arrivals:
         if queue in readers:
             readers.remove(queue)
 
-    def sent(self, t: int, name: str, sending: Sending) -> Iterator[AnyEvent]:
+    def sent(self, t: int, name: str, sending: SentMessage) -> Iterator[AnyEvent]:
         """Something was sent to a topic or service."""
         for queue in self._readers[name]:
             if queue.was_taken(sending):
@@ -173,14 +173,14 @@ class Arrivals:
         self._leaves(queue, call)
         return call, len(queue.told)
 
-    def _passed(self, t: int, queue: _Queue, sending: Sending) -> Iterator[AnyEvent]:
+    def _passed(self, t: int, queue: _Queue, sending: SentMessage) -> Iterator[AnyEvent]:
         """A message was passed over: it is lost, unless its sender had not found the queue yet."""
         if sending.sender in queue.heard or sending.number in queue.told:
             yield from self._lost(t, queue, sending)
         else:
             queue.untaken.remove(sending)
 
-    def _lost(self, t: int, queue: _Queue, sending: Sending) -> Iterator[AnyEvent]:
+    def _lost(self, t: int, queue: _Queue, sending: SentMessage) -> Iterator[AnyEvent]:
         queue.untaken.remove(sending)
         self._leaves(queue, sending.number)
         yield MessageDropped(t, queue.entity, len(queue.told), sending.number)

@@ -27,7 +27,7 @@ from sim.probes.on_path.cbtui_probe import FOLDER
 from sim.real.companions import RunRobot, ServiceCaller
 from sim.real.keyboard import RealKeyboard
 from sim.real.launched import LaunchedPrograms
-from sim.real.programs import STOPPED, OnExit, Outcome, claimed_domain, environment, unbootstrapped
+from sim.real.programs import STOPPED, OnExit, RealOutcome, claimed_domain, environment, unbootstrapped
 from sim.real.ros2_lines import Ros2Lines
 from sim.real.translation import HOLD, Translation
 from sim.real.watched import WatchedProcesses
@@ -80,7 +80,7 @@ class Programs(Protocol):
     def any_run(self) -> bool:
         """Whether there is anything left to follow, now or soon."""
 
-    def outcome(self) -> Outcome:
+    def outcome(self) -> RealOutcome:
         """How they ended, taken together."""
 
     def interrupt(self) -> None:
@@ -145,7 +145,7 @@ class RealEngine:
             setup.robot, setup.sensor_rate, setup.physics, self._selector, graph, self._translation.take
         )
         self._hold = HOLD
-        self._cause: Outcome | None = None
+        self._cause: RealOutcome | None = None
         self._time_was_up = False
         self._given_up_at: int | None = None
         self._due: list[_Due] = []
@@ -297,7 +297,7 @@ class RealEngine:
         The trace has it at the monotonic time ``at``, or now.
         """
         if self._cause is None:
-            self._cause = Outcome(reason, failed=False)
+            self._cause = RealOutcome(reason, failed=False)
             self._translation.take([RunEnding(time.monotonic_ns() if at is None else at, reason)])
             self._given_up_at = time.monotonic_ns() + int(_GRACE * 1e9)
             self._programs.interrupt()

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Protocol
 
 from sim.engine.setup import ProgramSetup, RealRos
 from sim.real.keyboard import RealKeyboard
-from sim.real.programs import ON_PATH, OnExit, Outcome, Program, Start
+from sim.real.programs import ON_PATH, OnExit, Program, RealOutcome, Start
 from sim.real.watched import WatchedProcesses
 from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
 
@@ -74,7 +74,7 @@ class LaunchedPrograms:
         self._due: list[tuple[float, int, Callable[[], None]]] = []
         self._numbers = count(1)
         self._order = count()
-        self._failure: Outcome | None = None
+        self._failure: RealOutcome | None = None
         self._children = WatchedProcesses(
             selector, RealRos(watched=str(folder)), take, record, self._numbers, self._is_own
         )
@@ -210,7 +210,7 @@ class LaunchedPrograms:
         try:
             self.launch(path, arguments, _ignore)
         except LaunchError as error:
-            self._fail(Outcome(str(error), failed=True))
+            self._fail(RealOutcome(str(error), failed=True))
 
     def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:
         """Call ``action`` that many seconds from now."""
@@ -230,7 +230,7 @@ class LaunchedPrograms:
         for launching in [each for each in self._launches if each.is_over]:
             self._launches.remove(launching)
             if launching.error:
-                self._fail(Outcome(launching.error, failed=True))
+                self._fail(RealOutcome(launching.error, failed=True))
         readers = {each.process: each.name for each in self._running if each.reads}
         waiting = self._keyboard.look(readers)
         for program in self._running:
@@ -248,7 +248,7 @@ class LaunchedPrograms:
             self._fail(outcome._replace(reason=named))
         on_exit(program.status)
 
-    def _fail(self, outcome: Outcome) -> None:
+    def _fail(self, outcome: RealOutcome) -> None:
         self._failure = self._failure or outcome
 
     def _is_own(self, process: int) -> bool:
@@ -259,13 +259,13 @@ class LaunchedPrograms:
         """Whether one of them has not ended."""
         return bool(self._running or self._launches)
 
-    def outcome(self) -> Outcome:
+    def outcome(self) -> RealOutcome:
         """How they ended, taken together."""
         if self._failure is not None:
             return self._failure
         if len(self._programs) == 1:
             return self._programs[0].outcome()
-        return Outcome("every program returned", failed=False)
+        return RealOutcome("every program returned", failed=False)
 
     def interrupt(self) -> None:
         """Have all end as Ctrl-C would."""

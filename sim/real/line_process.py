@@ -53,7 +53,7 @@ class _Signal:
         return self._event.wait()
 
 
-class _LineNode(Node):  # type: ignore[misc] # rclpy's classes are not typed
+class _RosLineNode(Node):  # type: ignore[misc] # rclpy's classes are not typed
     """A line's node, which tells what it sends for the line."""
 
     def create_publisher(self, *args: Any, **kwargs: Any) -> Any:
@@ -84,7 +84,7 @@ class _Process:
     def make_node(self, name: str) -> Any:
         """Make the line's node."""
         options = {"start_parameter_services": False, "enable_rosout": False, "use_global_arguments": False}
-        return _LineNode(name, context=self.context, **options)
+        return _RosLineNode(name, context=self.context, **options)
 
     def free_name(self) -> str:
         """The name of a hidden node that no other has."""

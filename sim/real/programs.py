@@ -105,7 +105,7 @@ OnExit = Callable[[int], None]
 """Takes an exit status, once."""
 
 
-class Outcome(NamedTuple):
+class RealOutcome(NamedTuple):
     """How programs ended, as a sentence, whether they failed, and the exception that ended one."""
 
     reason: str
@@ -195,18 +195,18 @@ class Program:
         """Its exit code once it has ended; negative for the signal that killed it."""
         return self._process.returncode
 
-    def outcome(self) -> Outcome:
+    def outcome(self) -> RealOutcome:
         """How it ended."""
         uncaught, status = self.link.uncaught, self.status
         if uncaught is not None:
             reason = f"{place_of(uncaught)}: the program raised {uncaught.error}"
-            return Outcome(reason + self._advice(uncaught.error), True, uncaught.error)
+            return RealOutcome(reason + self._advice(uncaught.error), True, uncaught.error)
         if status == -signal.SIGINT or (self._sent is not None and status == -self._sent):
-            return Outcome(STOPPED, failed=False)
+            return RealOutcome(STOPPED, failed=False)
         if status < 0:
-            return Outcome(f"the program crashed by {signal.Signals(-status).name}", failed=True)
+            return RealOutcome(f"the program crashed by {signal.Signals(-status).name}", failed=True)
         reason = "the program returned" if status == 0 else f"the program ended with exit code {status}"
-        return Outcome(reason + self._advice(self._last_error), failed=status != 0)
+        return RealOutcome(reason + self._advice(self._last_error), failed=status != 0)
 
     def _advice(self, error: str) -> str:
         from sim.real.missing import on_missing

@@ -6,7 +6,7 @@ from itertools import count
 
 import msgspec
 
-from sim.real.arrivals import Arrivals, Sending
+from sim.real.arrivals import Arrivals, SentMessage
 from sim.real.sampled_positions import position_of
 from sim.real.wire import (
     At,
@@ -14,11 +14,11 @@ from sim.real.wire import (
     Hello,
     Interrupted,
     Left,
+    MessageTaken,
     ProbeLine,
     ProgramWanted,
     Replied,
     Sent,
-    Taken,
     Uncaught,
     infinite,
 )
@@ -109,15 +109,17 @@ class Translation:
             case Sent():
                 message = next(self._messages)
                 yield Published(t, message, line.topic, line.node, line.entity)
-                yield from arrivals.sent(t, line.topic, Sending(message, line.node, line.before, line.after))
+                yield from arrivals.sent(
+                    t, line.topic, SentMessage(message, line.node, line.before, line.after)
+                )
             case Called():
                 call = self._calls[line.call] = next(self._messages)
                 if len(self._calls) > _CALLS:
                     del self._calls[next(iter(self._calls))]
                 yield ServiceCalled(t, call, line.service, line.entity, line.request)
                 arrivals.called(line.service, call)
-                yield from arrivals.sent(t, line.service, Sending(call, 0, line.before, line.after))
-            case Taken():
+                yield from arrivals.sent(t, line.service, SentMessage(call, 0, line.before, line.after))
+            case MessageTaken():
                 number, left, lost = arrivals.taken(t, line.entity, line.sent)
                 yield from lost
                 yield CallbackStarted(t, line.entity, line.thread, number, line.age, left)

@@ -7,7 +7,7 @@ from selectors import BaseSelector
 
 from sim.engine.setup import RealRos
 from sim.real.probe_link import Place, ProbeLink, sockets_in
-from sim.real.programs import Outcome, place_of
+from sim.real.programs import RealOutcome, place_of
 from sim.real.wire import Hello, ProbeLine
 from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
 
@@ -35,7 +35,7 @@ class WatchedProcesses:
         self._numbers = numbers
         self._is_known = is_known
         self._links: dict[Place, tuple[int, ProbeLink]] = {}
-        self._outcomes: dict[Place, Outcome] = {}
+        self._outcomes: dict[Place, RealOutcome] = {}
         self._left = False
 
     def start(self) -> None:
@@ -74,9 +74,9 @@ class WatchedProcesses:
         """Whether they are followed, and one of them is there or none has come yet."""
         return not self._left and (len(self._outcomes) < len(self._links) or not self._links)
 
-    def outcome(self) -> Outcome:
+    def outcome(self) -> RealOutcome:
         """All are gone; one that did not come to its own end is the one to tell of."""
-        usual = Outcome("every process that was watched is gone", failed=False)
+        usual = RealOutcome("every process that was watched is gone", failed=False)
         return next((each for each in self._outcomes.values() if each.failed), usual)
 
     def interrupt(self) -> None:
@@ -94,14 +94,14 @@ class WatchedProcesses:
         self._take(lines, process=number)
 
 
-def _outcome(link: ProbeLink) -> Outcome:
+def _outcome(link: ProbeLink) -> RealOutcome:
     name = "a process" if link.hello is None else label_of(link.hello)
     if link.uncaught is not None:
         error = link.uncaught.error
-        return Outcome(f"{place_of(link.uncaught)}: {name} raised {error}", True, error)
+        return RealOutcome(f"{place_of(link.uncaught)}: {name} raised {error}", True, error)
     if link.has_left:
-        return Outcome(f"{name} ended", failed=False)
-    return Outcome(f"{name} was killed, or its connection is gone", failed=True)
+        return RealOutcome(f"{name} ended", failed=False)
+    return RealOutcome(f"{name} was killed, or its connection is gone", failed=True)
 
 
 def label_of(hello: Hello) -> str:

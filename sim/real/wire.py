@@ -72,7 +72,7 @@ class Called(msgspec.Struct, frozen=True, array_like=True, tag="called"):
     """Nanoseconds since 1970 once the middleware had it."""
 
 
-class Taken(msgspec.Struct, frozen=True, array_like=True, tag="taken"):
+class MessageTaken(msgspec.Struct, frozen=True, array_like=True, tag="taken"):
     """A callback started with a message or a request."""
 
     t: int
@@ -146,7 +146,9 @@ class Interrupted(msgspec.Struct, frozen=True, array_like=True, tag="interrupt")
     line: int
 
 
-_Own: TypeAlias = Hello | Sent | Called | Taken | At | Replied | Uncaught | Left | ProgramWanted | Interrupted
+_Own: TypeAlias = (
+    Hello | Sent | Called | MessageTaken | At | Replied | Uncaught | Left | ProgramWanted | Interrupted
+)
 
 ProbeLine: TypeAlias = _Own | AnyEvent
 

@@ -70,14 +70,14 @@ def scan(text: str) -> Scan:
     """Take any line apart, finished or not."""
     prompt = _PROMPT.match(text)
     assert prompt is not None
-    return _Scanner(text, prompt.end()).run()
+    return _LineScanner(text, prompt.end()).run()
 
 
 def _shown(operator: str) -> str:
     return "the second line" if operator == "\n" else operator
 
 
-class _Scanner:
+class _LineScanner:
     """Reads a line character by character."""
 
     def __init__(self, text: str, start: int) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from cbtui.cli import main
-from cbtui.screens.linear.keyboard import Keyboard
+from cbtui.screens.linear.keyboard import KeyReader
 from sim.recording import RecordingMetadata
 from tests.recording.files import write
 from tests.trace.samples import FULL
@@ -68,7 +68,7 @@ def test_a_puzzle_is_played_in_lines(
 def test_arrows_are_no_other_keys(monkeypatch: pytest.MonkeyPatch) -> None:
     typed: list[str | None] = []
     with standard_input(piped("\x1b[Da\x1bOB\x1b[1;5Cb\n"), monkeypatch):
-        keyboard = Keyboard()
+        keyboard = KeyReader()
         keyboard.give = typed.append
         keyboard.read()
     assert typed == ["ab", None]
@@ -90,7 +90,7 @@ def test_keys_of_a_terminal_come_one_by_one_and_lines_when_they_are_wanted(
     person, terminal = pty.openpty()
     typed: list[str | None] = []
     with standard_input(terminal, monkeypatch):
-        keyboard = Keyboard()
+        keyboard = KeyReader()
         keyboard.take_lines(wanted=False)
         keyboard.give = typed.append
         os.write(person, b"s.\x04")

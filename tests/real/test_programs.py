@@ -7,13 +7,13 @@ from selectors import DefaultSelector
 
 import pytest
 
-from sim.real.programs import Outcome, Program, Start
+from sim.real.programs import Program, RealOutcome, Start
 
 _LIMIT = 30.0
 """Real seconds for a shell to print a word, or to end."""
 
 
-def outcome_of(script: str, do: Callable[[Program], object]) -> Outcome:
+def outcome_of(script: str, do: Callable[[Program], object]) -> RealOutcome:
     """How a shell script ended to which something was done as soon as it had printed a line."""
     printed: list[str] = []
     with DefaultSelector() as selector:
@@ -38,14 +38,14 @@ def outcome_of(script: str, do: Callable[[Program], object]) -> Outcome:
 @pytest.mark.parametrize(
     ("script", "do", "outcome"),
     [
-        ("trap '' INT; echo x; sleep 60", Program.kill, Outcome("it was stopped", failed=False)),
-        ("echo x; exec sleep 60", Program.interrupt, Outcome("it was stopped", failed=False)),
-        ("echo x; kill -9 $$", id, Outcome("the program crashed by SIGKILL", failed=True)),
-        ("echo x; exit 3", id, Outcome("the program ended with exit code 3", failed=True)),
-        ("echo x", id, Outcome("the program returned", failed=False)),
+        ("trap '' INT; echo x; sleep 60", Program.kill, RealOutcome("it was stopped", failed=False)),
+        ("echo x; exec sleep 60", Program.interrupt, RealOutcome("it was stopped", failed=False)),
+        ("echo x; kill -9 $$", id, RealOutcome("the program crashed by SIGKILL", failed=True)),
+        ("echo x; exit 3", id, RealOutcome("the program ended with exit code 3", failed=True)),
+        ("echo x", id, RealOutcome("the program returned", failed=False)),
     ],
 )
 def test_only_what_a_program_did_by_itself_counts_as_its_failure(
-    script: str, do: Callable[[Program], object], outcome: Outcome
+    script: str, do: Callable[[Program], object], outcome: RealOutcome
 ) -> None:
     assert outcome_of(script, do) == outcome

@@ -6,7 +6,7 @@ import msgspec
 import pytest
 
 from sim.real.translation import Translation
-from sim.real.wire import Called, Sent, Taken, decode_lines, finite
+from sim.real.wire import Called, MessageTaken, Sent, decode_lines, finite
 from sim.trace.events import (
     AnyEvent,
     CallbackStarted,
@@ -89,7 +89,9 @@ def test_threads_belong_to_their_process() -> None:
 def test_a_message_is_the_one_that_was_sent_at_that_time() -> None:
     told = Told()
     told.tell(sent(START + 10, 500), sent(START + 20, 600))
-    told.tell(Taken(START + 30, HEARD, THREAD, 503, 40), Taken(START + 40, HEARD, THREAD, 602, 50))
+    told.tell(
+        MessageTaken(START + 30, HEARD, THREAD, 503, 40), MessageTaken(START + 40, HEARD, THREAD, 602, 50)
+    )
     first, second = told.all(Published)
     assert isinstance(first, Published)
     assert isinstance(second, Published)
@@ -100,7 +102,7 @@ def test_a_message_is_the_one_that_was_sent_at_that_time() -> None:
 
 def test_a_message_from_elsewhere_has_no_number() -> None:
     told = Told()
-    told.tell(sent(START + 10, 500), Taken(START + 30, HEARD, THREAD, 700, 40))
+    told.tell(sent(START + 10, 500), MessageTaken(START + 30, HEARD, THREAD, 700, 40))
     [start] = told.all(CallbackStarted)
     assert isinstance(start, CallbackStarted)
     assert start.message == 0
@@ -112,7 +114,7 @@ def test_what_waits_has_its_messages_in_its_queue_and_a_full_one_loses_the_oldes
     told.tell(EntityReady(START + 20, HEARD, 1, 0))
     told.tell(WaitStarted(START + 20, HEARD, START + 15, Reason.GROUP_HELD, 0, False))
     told.tell(sent(START + 30, 600), sent(START + 40, 700))
-    told.tell(WaitEnded(START + 50, HEARD), Taken(START + 50, HEARD, THREAD, 601, 9))
+    told.tell(WaitEnded(START + 50, HEARD), MessageTaken(START + 50, HEARD, THREAD, 601, 9))
     depths = [(e.depth, e.message) for e in told.all(EntityReady) if isinstance(e, EntityReady)]
     assert depths == [(1, 1), (2, 2), (2, 3)]
     [lost] = told.all(MessageDropped)
@@ -128,9 +130,9 @@ def test_what_waits_has_its_messages_in_its_queue_and_a_full_one_loses_the_oldes
 
 def test_what_a_subscription_passes_over_is_lost() -> None:
     told = Told()
-    told.tell(sent(START + 10, 500), Taken(START + 15, HEARD, THREAD, 502, 9))
+    told.tell(sent(START + 10, 500), MessageTaken(START + 15, HEARD, THREAD, 502, 9))
     told.tell(sent(START + 20, 600), sent(START + 25, 700), sent(START + 30, 800))
-    told.tell(Taken(START + 40, HEARD, THREAD, 802, 9))
+    told.tell(MessageTaken(START + 40, HEARD, THREAD, 802, 9))
     assert [getattr(event, "message", None) for event in told.all(MessageDropped)] == [2, 3]
 
 
@@ -139,34 +141,34 @@ def test_what_comes_of_a_publisher_that_was_never_heard_is_not_lost() -> None:
         return Sent(START + t, t, "/news", 0, 0, 10 * t, 10 * t + 5)
 
     told = Told()
-    told.tell(sent(START + 10, 100), Taken(START + 15, HEARD, THREAD, 101, 0))
+    told.tell(sent(START + 10, 100), MessageTaken(START + 15, HEARD, THREAD, 101, 0))
     told.tell(robot(20), robot(30), robot(40))
     told.tell(EntityReady(START + 50, HEARD, 1, 0))
     told.tell(robot(60), sent(START + 70, 700), robot(80))
-    told.tell(Taken(START + 90, HEARD, THREAD, 701, 0))
+    told.tell(MessageTaken(START + 90, HEARD, THREAD, 701, 0))
     assert told.all(MessageDropped) == []
     assert [event.message for event in told.all(EntityReady) if isinstance(event, EntityReady)] == [0, 6]
 
 
 def test_what_was_sent_before_a_publisher_was_heard_first_is_not_lost() -> None:
     told = Told()
-    told.tell(sent(START + 10, 500), sent(START + 20, 600), Taken(START + 40, HEARD, THREAD, 602, 9))
+    told.tell(sent(START + 10, 500), sent(START + 20, 600), MessageTaken(START + 40, HEARD, THREAD, 602, 9))
     assert not told.all(MessageDropped)
 
 
 def test_what_was_taken_before_its_sending_was_told_of_is_not_lost() -> None:
     told = Told()
-    told.tell(sent(START + 10, 500), Taken(START + 15, HEARD, THREAD, 502, 9))
-    told.tell(Taken(START + 25, HEARD, THREAD, 602, 9))
+    told.tell(sent(START + 10, 500), MessageTaken(START + 15, HEARD, THREAD, 502, 9))
+    told.tell(MessageTaken(START + 25, HEARD, THREAD, 602, 9))
     assert told.all(MessageDropped) == []
-    told.tell(sent(START + 20, 600), sent(START + 30, 700), Taken(START + 40, HEARD, THREAD, 702, 9))
+    told.tell(sent(START + 20, 600), sent(START + 30, 700), MessageTaken(START + 40, HEARD, THREAD, 702, 9))
     assert told.all(MessageDropped) == []
 
 
 def test_a_call_keeps_its_number_from_request_to_reply() -> None:
     told = Told()
     told.tell(Called(START + 10, 4711, "/switch", 0, "request", 500, 505))
-    told.tell(Taken(START + 20, SERVED, THREAD, 502, 9))
+    told.tell(MessageTaken(START + 20, SERVED, THREAD, 502, 9))
     told.tell(ServiceReplied(START + 30, 4711, "/switch", "well"))
     told.tell(CallbackStarted(START + 31, CLIENT, THREAD, 4711, 0, 0))
     [call] = told.all(ServiceCalled)

@@ -42,7 +42,7 @@ def choose(host: LineHost, what: str, question: str, names: list[str]) -> Genera
 
 
 @dataclass
-class AskedChain(ScreenPart):
+class ChainPrompt(ScreenPart):
     """Tells how long messages took from one topic or service to another, and where."""
 
     host: LineHost

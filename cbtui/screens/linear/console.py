@@ -17,7 +17,7 @@ from cbtui.keys.named_keys import with_keys_in_force
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram
-from cbtui.screens.linear.asking import AskedChain, AskedExport
+from cbtui.screens.linear.asking import AskedExport, ChainPrompt
 from cbtui.screens.linear.dialogue import Dialogue
 from cbtui.screens.linear.plain import plain, plain_lines, spoken_key
 from cbtui.screens.linear.telling import Telling
@@ -110,7 +110,7 @@ class LinearConsole(Generic[RunT_co]):
 
     def add_parts(self, *parts: ScreenPart, **more: Callable[[], object]) -> None:
         """Add a console's own parts, and actions by their ids, to the common ones."""
-        chain = AskedChain(self, self.runs, self.navigation)
+        chain = ChainPrompt(self, self.runs, self.navigation)
         every = (self.navigation, self.telling, chain, AskedExport(self, self.runs), *parts)
         self._parts = ScreenParts(
             self, self.SCOPE, *every, go_to_time=lambda: self.ask(self._go_to()), **more

@@ -15,7 +15,7 @@ _SEQUENCE = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.)")
 """What arrows and other keys without a character send; their letters are keys of others."""
 
 
-class Keyboard:
+class KeyReader:
     """Reads standard input on a thread of its own, and hands on lines, None at its end.
 
     On a terminal each key counts as a line, and is not shown, unless lines are wanted. ``give`` takes them.

@@ -9,7 +9,7 @@ from cbtui.keys.action import Scope
 from cbtui.keys.keymap import STANDARD
 from cbtui.learning.lesson_page import Page, PageKeys, PageSection, PageState
 from cbtui.learning.outcome import PredictionOutcome
-from cbtui.learning.stage import Step, steps_of
+from cbtui.learning.stage import LessonStep, steps_of
 from cbtui.looks.theme import Charset
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost
@@ -55,7 +55,7 @@ class Learning:
         """The pane with the page."""
         return self.screen.query_one(Guide)
 
-    def steps(self, checks: str = "") -> tuple[Step, ...]:
+    def steps(self, checks: str = "") -> tuple[LessonStep, ...]:
         """Return the steps through the lesson; ``checks`` as ``steps_of``."""
         return steps_of(self.lesson, self.progress, checks)
 

@@ -64,7 +64,7 @@ class Chosen:
 
 
 @dataclass(frozen=True)
-class _Row:
+class _ListedWay:
     """A row of the list: a finding by its place, a way on from it, and the cure that this way is."""
 
     place: int
@@ -123,12 +123,12 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         """Stop trying cures."""
         self._given_up.set()
 
-    def _ways(self) -> Iterator[_Row]:
+    def _ways(self) -> Iterator[_ListedWay]:
         for place, lesson in enumerate(self._lessons):
-            yield _Row(place, Way.LOOK)
-            yield from (_Row(place, Way.CURE, cure) for about, cure in self._helpful if about == place)
+            yield _ListedWay(place, Way.LOOK)
+            yield from (_ListedWay(place, Way.CURE, cure) for about, cure in self._helpful if about == place)
             if lesson is not None and lesson not in self._lessons[:place]:
-                yield _Row(place, Way.LESSON)
+                yield _ListedWay(place, Way.LESSON)
 
     def _options(self) -> Iterator[Option]:
         for row in self._rows:
@@ -227,7 +227,7 @@ class DiagnosesScreen(WindowScreen[Chosen]):
             self.dismiss(Chosen(self._findings[self._chosen.place], Way.CURE, self._cure_at_hand))
 
     @property
-    def _chosen(self) -> _Row | None:
+    def _chosen(self) -> _ListedWay | None:
         highlighted = next((listed.highlighted for listed in self.query(FindingList)), None)
         return None if highlighted is None else self._rows[highlighted]
 

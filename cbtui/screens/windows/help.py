@@ -35,7 +35,7 @@ _SHOWN = (
 """The scopes that follow the lesson's tasks."""
 
 
-class _Row(NamedTuple):
+class _HelpRow(NamedTuple):
     """A key or a sign, and what it means."""
 
     sign: str
@@ -46,7 +46,7 @@ class _Section(NamedTuple):
     """Rows under a heading."""
 
     heading: str
-    rows: Sequence[_Row]
+    rows: Sequence[_HelpRow]
 
 
 class HelpScreen(WindowScreen[None]):
@@ -99,7 +99,7 @@ class HelpScreen(WindowScreen[None]):
         self.query_one(VerticalScroll).scroll_home(animate=False)
 
 
-def _has(row: _Row, heading: str, words: Sequence[str]) -> bool:
+def _has(row: _HelpRow, heading: str, words: Sequence[str]) -> bool:
     text = f"{row.sign} {row.meaning} {heading}".casefold()
     return all(word in text for word in words)
 
@@ -123,7 +123,7 @@ def _sections(scope: Scope | None, keymap: Keymap, charset: Charset) -> Iterator
 
 
 def _stages() -> _Section:
-    return _Section("Signs of the menu", [_Row(stage.value, meaning_of(stage)) for stage in Stage])
+    return _Section("Signs of the menu", [_HelpRow(stage.value, meaning_of(stage)) for stage in Stage])
 
 
 def _lane_signs(charset: Charset) -> _Section:
@@ -132,19 +132,19 @@ def _lane_signs(charset: Charset) -> _Section:
     return _Section(
         "Signs of the lanes",
         [
-            _Row(f"{glyphs.left[4]} {bar * 4}", "a callback runs; letter and colour are its group's"),
-            _Row(glyphs.hatch[Reason.GROUP_HELD] * 4, "a callback waits: another one holds its group"),
-            _Row(glyphs.hatch[Reason.NO_FREE_WORKER] * 4, "a callback waits: every thread is busy"),
-            _Row(glyphs.hatch[Reason.EVENT_QUEUE] * 4, "a callback waits: others came before it"),
-            _Row(glyphs.hatch[Reason.NOBODY_SPINS] * 4, "a callback waits: nobody spins its node"),
-            _Row(glyphs.blocked * 4, "a thread is blocked in a call, until the reply comes"),
-            _Row(line * 4, "a callback holds its group, or runs"),
-            _Row(glyphs.double_line * 4, "several callbacks of a group run at once"),
-            _Row(glyphs.lost, "a message is lost: its queue was full"),
-            _Row(glyphs.cross, "a callback raised an exception"),
-            _Row("late", "a timer was called later than its period says"),
-            _Row(glyphs.up, "what you did: a call of a service, a reset, a ros2 command"),
-            _Row(glyphs.cursor, "the moment on screen, which every pane shows"),
+            _HelpRow(f"{glyphs.left[4]} {bar * 4}", "a callback runs; letter and colour are its group's"),
+            _HelpRow(glyphs.hatch[Reason.GROUP_HELD] * 4, "a callback waits: another one holds its group"),
+            _HelpRow(glyphs.hatch[Reason.NO_FREE_WORKER] * 4, "a callback waits: every thread is busy"),
+            _HelpRow(glyphs.hatch[Reason.EVENT_QUEUE] * 4, "a callback waits: others came before it"),
+            _HelpRow(glyphs.hatch[Reason.NOBODY_SPINS] * 4, "a callback waits: nobody spins its node"),
+            _HelpRow(glyphs.blocked * 4, "a thread is blocked in a call, until the reply comes"),
+            _HelpRow(line * 4, "a callback holds its group, or runs"),
+            _HelpRow(glyphs.double_line * 4, "several callbacks of a group run at once"),
+            _HelpRow(glyphs.lost, "a message is lost: its queue was full"),
+            _HelpRow(glyphs.cross, "a callback raised an exception"),
+            _HelpRow("late", "a timer was called later than its period says"),
+            _HelpRow(glyphs.up, "what you did: a call of a service, a reset, a ros2 command"),
+            _HelpRow(glyphs.cursor, "the moment on screen, which every pane shows"),
         ],
     )
 
@@ -160,4 +160,4 @@ def _of_scope(scope: Scope, keymap: Keymap, charset: Charset) -> _Section:
 
 def _keys(heading: str, actions: Sequence[KeyAction], keymap: Keymap, charset: Charset) -> _Section:
     groups = group_by(keymap.of(actions), "line")
-    return _Section(heading, [_Row(signs_of(group, charset), group[0].line) for group in groups])
+    return _Section(heading, [_HelpRow(signs_of(group, charset), group[0].line) for group in groups])

@@ -20,7 +20,7 @@ class Walls:
 
 
 @dataclass(frozen=True, slots=True)
-class Figure:
+class FigureGlyphs:
     """A worker in three rows and three columns, and what it sits on: rows of seven columns, the lower two."""
 
     body: str
@@ -50,7 +50,7 @@ class FactoryGlyphs:
     tick: str
     walled: Walls
     open: Walls
-    figure: Figure
+    figure: FigureGlyphs
 
 
 _BRAILLE = FactoryGlyphs(
@@ -69,7 +69,7 @@ _BRAILLE = FactoryGlyphs(
     tick="◆",
     walled=Walls("━", "┃", "┏", "┓", "┣", "┫", "┗", "┛"),
     open=Walls("╌", "╎", "┌", "┐", "├", "┤", "└", "┘"),
-    figure=Figure("/█\\", "/ \\", "< \\", "/ >", ("▐     ▌", "▐▄▄▄▄▄▌"), ("       ", " (___) ")),
+    figure=FigureGlyphs("/█\\", "/ \\", "< \\", "/ >", ("▐     ▌", "▐▄▄▄▄▄▌"), ("       ", " (___) ")),
 )
 FACTORY_GLYPHS = {
     Charset.BRAILLE: _BRAILLE,
@@ -100,6 +100,6 @@ FACTORY_GLYPHS = {
         tick="*",
         walled=Walls("=", "|", "+", "+", "+", "+", "+", "+"),
         open=Walls(".", ":", ".", ".", ":", ":", ".", "."),
-        figure=Figure("/|\\", "/ \\", "< \\", "/ >", ("[     ]", "[_____]"), ("       ", " (___) ")),
+        figure=FigureGlyphs("/|\\", "/ \\", "< \\", "/ >", ("[     ]", "[_____]"), ("       ", " (___) ")),
     ),
 }

@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from sim.launch.errors import LaunchFailure, explained
-from sim.launch.frontend.elements import Element, read_elements
+from sim.launch.frontend.elements import LaunchElement, read_elements
 from sim.launch.frontend.texts import substitutions
 from sim.launch.launch import actions as launch
 from sim.launch.launch.action import Action
@@ -32,7 +32,7 @@ def actions_in(file: Path, source: bytes) -> list[Action]:
     return list(_inside(read_elements(file, source), file))
 
 
-def _inside(element: Element, file: Path) -> Iterator[Action]:
+def _inside(element: LaunchElement, file: Path) -> Iterator[Action]:
     for each in element.inside:
         try:
             action = _action(each, file)
@@ -42,7 +42,7 @@ def _inside(element: Element, file: Path) -> Iterator[Action]:
         yield action
 
 
-def _action(element: Element, file: Path) -> Action:
+def _action(element: LaunchElement, file: Path) -> Action:
     make = _ACTIONS.get(element.tag.replace("-", "_"))
     if make is None:
         raise LaunchFailure(f"there is no action <{element.tag}>; there are {', '.join(sorted(_ACTIONS))}")
@@ -53,7 +53,7 @@ def _action(element: Element, file: Path) -> Action:
     return made
 
 
-def _condition(element: Element) -> dict[str, Any]:
+def _condition(element: LaunchElement) -> dict[str, Any]:
     holds, fails = element.get("if"), element.get("unless")
     if holds is not None and fails is not None:
         raise LaunchFailure(f"<{element.tag}> has both 'if' and 'unless'")
@@ -62,7 +62,7 @@ def _condition(element: Element) -> dict[str, Any]:
     return {} if fails is None else {"condition": UnlessCondition(substitutions(fails))}
 
 
-def _text(element: Element, *names: str) -> Any:
+def _text(element: LaunchElement, *names: str) -> Any:
     found = element.get(*names)
     return None if found is None else substitutions(found)
 
@@ -72,25 +72,25 @@ def _given(**arguments: Any) -> dict[str, Any]:
     return {name: value for name, value in arguments.items() if value is not None}
 
 
-def _arg(element: Element, condition: dict[str, Any], _file: Path) -> Action:
+def _arg(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
     given = _given(default_value=_text(element, "default"), description=element.get("description"))
     choices = [each.need("value") for each in element.all("choice")]
     return launch.DeclareLaunchArgument(element.need("name"), choices=choices or None, **given, **condition)
 
 
-def _let(element: Element, condition: dict[str, Any], _file: Path) -> Action:
+def _let(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
     return launch.SetLaunchConfiguration(*_name_and_value(element), **condition)
 
 
-def _set_env(element: Element, condition: dict[str, Any], _file: Path) -> Action:
+def _set_env(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
     return launch.SetEnvironmentVariable(*_name_and_value(element), **condition)
 
 
-def _name_and_value(element: Element) -> tuple[Any, Any]:
+def _name_and_value(element: LaunchElement) -> tuple[Any, Any]:
     return substitutions(element.need("name")), substitutions(element.need("value"))
 
 
-def _node(element: Element, condition: dict[str, Any], _file: Path) -> Action:
+def _node(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
     parameters: list[Any] = []
     for each in element.all("param"):
         source = _text(each, "from")
@@ -115,14 +115,14 @@ def _node(element: Element, condition: dict[str, Any], _file: Path) -> Action:
     )
 
 
-def _executable(element: Element, condition: dict[str, Any], _file: Path) -> Action:
+def _executable(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
     named = _given(name=_text(element, "name"))
     return launch.ExecuteProcess(
         cmd=_words(element.need("cmd")) or [], **named, **_process(element), **condition
     )
 
 
-def _process(element: Element) -> dict[str, Any]:
+def _process(element: LaunchElement) -> dict[str, Any]:
     """What nodes and other processes have in common."""
     environment = {name[0].text: value for name, value in map(_name_and_value, element.all("env"))}
     delay = element.get("respawn_delay")
@@ -151,7 +151,7 @@ def _words(text: str | None) -> list[Any] | None:
     return [substitutions(word) for word in words]
 
 
-def _parameter(element: Element) -> dict[str, Any]:
+def _parameter(element: LaunchElement) -> dict[str, Any]:
     """A parameter by name, or several in one that is nested."""
     name = element.need("name")
     inside = element.all("param")
@@ -160,7 +160,7 @@ def _parameter(element: Element) -> dict[str, Any]:
     return {name: _value(element)}
 
 
-def _value(element: Element) -> Any:
+def _value(element: LaunchElement) -> Any:
     """A parameter's value: of the type asked for, or what YAML reads in it once it is known."""
     parts = substitutions(element.need("value"))
     wanted = _TYPES.get(element.get("type") or "")
@@ -170,49 +170,49 @@ def _value(element: Element) -> Any:
     return yaml.safe_load("".join(texts)) if len(texts) == len(parts) else parts
 
 
-def _include(element: Element, condition: dict[str, Any], _file: Path) -> Action:
+def _include(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
     given = [_name_and_value(each) for each in element.all("arg", "let")]
     source = AnyLaunchDescriptionSource(substitutions(element.need("file")))
     return launch.IncludeLaunchDescription(source, launch_arguments=given or None, **condition)
 
 
-def _group(element: Element, condition: dict[str, Any], file: Path) -> Action:
+def _group(element: LaunchElement, condition: dict[str, Any], file: Path) -> Action:
     scoped = yaml.safe_load(element.get("scoped") or "true")
     return launch.GroupAction(list(_inside(element, file)), scoped=scoped, **condition)
 
 
-def _timer(element: Element, condition: dict[str, Any], file: Path) -> Action:
+def _timer(element: LaunchElement, condition: dict[str, Any], file: Path) -> Action:
     period = float(element.need("period"))
     return launch.TimerAction(period=period, actions=list(_inside(element, file)), **condition)
 
 
-def _log(element: Element, condition: dict[str, Any], _file: Path) -> Action:
+def _log(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
     element.get("level")
     return launch.LogInfo(msg=substitutions(element.need("message")), **condition)
 
 
-def _shutdown(element: Element, condition: dict[str, Any], _file: Path) -> Action:
+def _shutdown(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
     return launch.Shutdown(**_given(reason=element.get("reason")), **condition)
 
 
-def _namespace(element: Element, condition: dict[str, Any], _file: Path) -> Action:
+def _namespace(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
     return ros.PushROSNamespace(substitutions(element.need("namespace", "ns")), **condition)
 
 
-def _set_parameter(element: Element, condition: dict[str, Any], _file: Path) -> Action:
+def _set_parameter(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
     return ros.SetParameter(substitutions(element.need("name")), _value(element), **condition)
 
 
-def _set_remap(element: Element, condition: dict[str, Any], _file: Path) -> Action:
+def _set_remap(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
     return ros.SetRemap(substitutions(element.need("from")), substitutions(element.need("to")), **condition)
 
 
-def _container(_element: Element, _condition: dict[str, Any], _file: Path) -> Action:
+def _container(_element: LaunchElement, _condition: dict[str, Any], _file: Path) -> Action:
     ros.ComposableNodeContainer()
     raise AssertionError
 
 
-_ACTIONS: Mapping[str, Callable[[Element, dict[str, Any], Path], Action]] = {
+_ACTIONS: Mapping[str, Callable[[LaunchElement, dict[str, Any], Path], Action]] = {
     "arg": _arg,
     "executable": _executable,
     "group": _group,

@@ -14,13 +14,13 @@ from sim.launch.errors import LaunchError, LaunchFailure
 
 
 @dataclass
-class Element:
+class LaunchElement:
     """One element of a launch file, and the line that it begins on."""
 
     tag: str
     line: int
     attributes: dict[str, str] = field(default_factory=dict)
-    inside: list[Element] = field(default_factory=list)
+    inside: list[LaunchElement] = field(default_factory=list)
     taken: set[str] = field(default_factory=set)
     """The attributes that somebody has asked for."""
 
@@ -40,18 +40,18 @@ class Element:
             raise LaunchFailure(f"<{self.tag}> needs the attribute {names[0]!r}")
         return found
 
-    def all(self, *tags: str) -> list[Element]:
+    def all(self, *tags: str) -> list[LaunchElement]:
         """The elements inside that have one of these tags."""
         return [each for each in self.inside if each.tag in tags]
 
 
-def read_elements(file: Path, source: bytes) -> Element:
+def read_elements(file: Path, source: bytes) -> LaunchElement:
     """The root of a launch file.
 
     Raises:
         LaunchError: it is not well-formed, or its root is no ``launch``.
     """
-    read: Callable[[bytes], Element] = _xml if file.suffix == ".xml" else _yaml
+    read: Callable[[bytes], LaunchElement] = _xml if file.suffix == ".xml" else _yaml
     try:
         root = read(source)
     except expat.ExpatError as error:
@@ -66,12 +66,12 @@ def read_elements(file: Path, source: bytes) -> Element:
     return root
 
 
-def _xml(source: bytes) -> Element:
+def _xml(source: bytes) -> LaunchElement:
     parser = expat.ParserCreate()
-    open_ones = [Element("", 0)]
+    open_ones = [LaunchElement("", 0)]
 
     def start(tag: str, attributes: dict[str, str]) -> None:
-        element = Element(tag, parser.CurrentLineNumber, attributes)
+        element = LaunchElement(tag, parser.CurrentLineNumber, attributes)
         open_ones[-1].inside.append(element)
         open_ones.append(element)
 
@@ -81,7 +81,7 @@ def _xml(source: bytes) -> Element:
     return open_ones[0].inside[0]
 
 
-def _yaml(source: bytes) -> Element:
+def _yaml(source: bytes) -> LaunchElement:
     root = yaml.compose(source, yaml.SafeLoader)
     if not isinstance(root, yaml.MappingNode) or len(root.value) != 1:
         raise LaunchFailure("a launch file in YAML is 'launch:' and a list of actions")
@@ -89,9 +89,9 @@ def _yaml(source: bytes) -> Element:
     return _element(tag, content)
 
 
-def _element(tag: Any, content: Any) -> Element:
+def _element(tag: Any, content: Any) -> LaunchElement:
     """An element of YAML: its attributes and elements by name, or a list of the elements inside."""
-    made = Element(str(tag.value), tag.start_mark.line + 1)
+    made = LaunchElement(str(tag.value), tag.start_mark.line + 1)
     if isinstance(content, yaml.SequenceNode):
         for each in content.value:
             made.inside += _elements(each)
@@ -101,13 +101,13 @@ def _element(tag: Any, content: Any) -> Element:
     return made
 
 
-def _elements(node: Any) -> list[Element]:
+def _elements(node: Any) -> list[LaunchElement]:
     if not isinstance(node, yaml.MappingNode):
         raise LaunchFailure(f"line {node.start_mark.line + 1}: an action is wanted, as '- node: …'")
     return [_element(tag, content) for tag, content in node.value]
 
 
-def _add(made: Element, name: Any, value: Any) -> None:
+def _add(made: LaunchElement, name: Any, value: Any) -> None:
     if isinstance(value, yaml.ScalarNode):
         made.attributes[name.value] = value.value
     elif name.value == "children":

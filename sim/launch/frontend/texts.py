@@ -45,10 +45,10 @@ def substitutions(text: str) -> Parts:
     Raises:
         LaunchFailure: one is unknown, lacks its closing bracket, or has a wrong number of arguments.
     """
-    return _Scanner(text).parts("")
+    return _TextScanner(text).parts("")
 
 
-class _Scanner:
+class _TextScanner:
     """Reads a text from left to right."""
 
     def __init__(self, text: str) -> None:

@@ -15,7 +15,7 @@ from sim.ros.context.utilities import get_default_context, timeout_sec_to_nsec
 from sim.ros.scheduling.cycle import Cycle, Work
 from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.handlers import Handler
-from sim.ros.scheduling.running import Runner
+from sim.ros.scheduling.running import CallbackRunner
 from sim.ros.scheduling.task import Future, Task
 from sim.ros.scheduling.waitable_entity import WaitableEntity, ask_waitables
 from sim.ros.scheduling.waiting_ends import (
@@ -51,7 +51,7 @@ class Executor:
         self._profile = self._host.profile
         self._probe = self._context.probe
         self._nodes: list[OwnerNode] = []
-        self._runner = Runner(self)
+        self._runner = CallbackRunner(self)
         chooses = type(self).can_execute is not Executor.can_execute
         self._cycle = self._runner.cycle = Cycle(
             self._nodes,

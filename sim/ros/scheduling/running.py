@@ -23,7 +23,7 @@ Started: TypeAlias = "tuple[Entity, Taken, int] | Task[Any]"
 """A callback that runs on this thread by its trace, and what ran here before (its id)."""
 
 
-class Runner:
+class CallbackRunner:
     """Runs the callbacks and tasks of an executor, and knows which run. Guarded by the host's lock."""
 
     def __init__(self, executor: Executor) -> None:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from sim.ros.middleware.host import current_host
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.ros.scheduling.cycle import Cycle
-from sim.ros.scheduling.running import Runner
+from sim.ros.scheduling.running import CallbackRunner
 from tests.ros.scheduling.schedules import broken_rules, first_trouble, play_seeded
 from tests.ros.scheduling.systems import System, play, systems
 from tests.support.properties import examples
@@ -106,5 +106,5 @@ def test_a_wake_up_that_is_lost_between_looking_and_waiting_is_found(monkeypatch
 
 
 def test_a_start_that_is_told_of_late_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Runner, "start", before(Runner.start, let_go_of_the_lock))
+    monkeypatch.setattr(CallbackRunner, "start", before(CallbackRunner.start, let_go_of_the_lock))
     assert_only_exploring_finds("it was not the oldest")

@@ -4,7 +4,7 @@ import contextlib
 from typing import cast
 
 from cbtui.runs.live.live_run import ShownRun
-from cbtui.screens.linear.asking import AskedChain
+from cbtui.screens.linear.asking import ChainPrompt
 from cbtui.screens.linear.dialogue import Dialogue, LineHost
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.runs import RunController
@@ -34,7 +34,7 @@ def told(answer: str, at: int | None = None) -> list[str]:
         navigation.seek(at)
     host = Host(answer)
     runs = cast("RunController[ShownRun]", Runs(timeline))
-    AskedChain(cast("LineHost", host), runs, navigation).action_chain()
+    ChainPrompt(cast("LineHost", host), runs, navigation).action_chain()
     return host.told
 
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Generator
     from types import FrameType
 
-    from .entities import Entity
+    from .entities import WatchedEntity
     from .recorder import Here, Recorder
 
 _SHIFT = 1_000_000
@@ -50,7 +50,7 @@ def written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int]
 class Calls:
     """Tells of the calls of one entity's callback. ``recorder`` takes the events."""
 
-    def __init__(self, recorder: Recorder, entity: Entity) -> None:
+    def __init__(self, recorder: Recorder, entity: WatchedEntity) -> None:
         self._recorder = recorder
         self._entity = entity
 

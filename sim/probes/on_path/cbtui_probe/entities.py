@@ -31,7 +31,7 @@ STATE = "_cbtui"
 """The attribute in which an entity, node, publisher or group of rclpy's has what the probe knows of it."""
 
 
-class Entity:
+class WatchedEntity:
     """What the probe knows of something with a callback."""
 
     def __init__(self, kind: str) -> None:
@@ -192,7 +192,7 @@ class Entities:
             if bound is None:
                 with UNSEEN:
                     return make(node, *args, **kwargs)  # which says what is wrong
-            entity = Entity("guard" if kind == "guard_condition" else kind)
+            entity = WatchedEntity("guard" if kind == "guard_condition" else kind)
             callback = bound.arguments.get("callback")
             if self._tuning.has_changes:
                 self._tuning.change(node, kind, _called(node, kind, bound.arguments), bound.arguments)
@@ -209,7 +209,7 @@ class Entities:
 
         setattr(node_class, f"create_{kind}", create)
 
-    def _traced(self, entity: Entity, callback: Callable[..., Any]) -> Any:
+    def _traced(self, entity: WatchedEntity, callback: Callable[..., Any]) -> Any:
         calls = Calls(self._recorder, entity)
         if entity.kind == "subscription":
             return calls.traced_with_info(callback)
@@ -217,7 +217,7 @@ class Entities:
         return calls.traced(callback, begin.get(entity.kind))
 
     def _know(
-        self, node: Any, made: Any, entity: Entity, callback: Callable[..., Any] | None, name: str = ""
+        self, node: Any, made: Any, entity: WatchedEntity, callback: Callable[..., Any] | None, name: str = ""
     ) -> None:
         recorder = self._recorder
         group = self._group_id(made.callback_group, self.node_made(node))
@@ -334,7 +334,7 @@ class Entities:
                 name = ""
                 if is_action:  # a server does not keep its name: it is an argument of what calls this
                     name = node.resolve_service_name(sys._getframe(1).f_locals["action_name"])
-                entity = Entity("waitable")
+                entity = WatchedEntity("waitable")
                 waitable.execute = Calls(self._recorder, entity).traced(waitable.execute)
                 self._know(node, waitable, entity, None, name)
                 if hasattr(waitable, "_execute_callback"):
@@ -348,12 +348,12 @@ class Entities:
 
         On the trace it is in a reentrant group of its own, which lets everything in.
         """
-        entity, callback = Entity("waitable"), server._execute_callback
+        entity, callback = WatchedEntity("waitable"), server._execute_callback
         server._execute_callback = Calls(self._recorder, entity).traced(callback)
         self._know(node, _Execution(), entity, callback, name)
 
 
-def _watch_triggering(guard: Any, entity: Entity) -> None:
+def _watch_triggering(guard: Any, entity: WatchedEntity) -> None:
     """Remember when a guard condition was triggered: asking it by a wait set would reset it."""
     trigger = guard.trigger
 

@@ -9,7 +9,7 @@ from .callbacks import raised_at
 from .clients import watch_clients, watch_services
 from .entities import Entities
 from .executors import Executors
-from .positions import Positions
+from .positions import PositionSampler
 from .recorder import Recorder, now
 from .sockets import Server
 from .tuning import Tuning
@@ -38,7 +38,7 @@ def install(folder: str) -> None:
     tuning, turns = Tuning(recorder), Turns()
     executors, entities = Executors(recorder, tuning, turns), Entities(recorder, tuning)
     waits = Waits(recorder, entities, executors, rclpy_implementation)
-    positions = Positions(recorder, executors)
+    positions = PositionSampler(recorder, executors)
 
     def look() -> None:
         positions.look()

@@ -25,7 +25,7 @@ _DEEPEST = 20
 _UNKNOWN = (0, 0, 0, 0)
 
 
-class Positions:
+class PositionSampler:
     """Samples the threads that run callbacks, and tells where each is when that has changed.
 
     For one thread.

@@ -14,7 +14,7 @@ from .entities import state_of
 from .recorder import now
 
 if TYPE_CHECKING:
-    from .entities import Entities, Entity
+    from .entities import Entities, WatchedEntity
     from .executors import Executors, Spinner
     from .recorder import Recorder
 
@@ -37,7 +37,7 @@ class Waits:
         self._entities = entities
         self._executors = executors
         self._rclpy = rclpy_implementation
-        self._waiting: set[Entity] = set()
+        self._waiting: set[WatchedEntity] = set()
 
     def look(self) -> None:
         """Tell of all callbacks that wait now, and of those that wait no longer without having run."""
@@ -49,11 +49,11 @@ class Waits:
             entity.waits_no_more(self._recorder)
         self._waiting = waiting
 
-    def _look_at(self, node: Any) -> set[Entity]:
+    def _look_at(self, node: Any) -> set[WatchedEntity]:
         spinner = self._executors.spinner_of(node.executor)
-        found: dict[Entity, int] = {}
-        reasons: dict[Entity, tuple[str, int, bool]] = {}
-        unsure: list[tuple[str, Any, Entity]] = []
+        found: dict[WatchedEntity, int] = {}
+        reasons: dict[WatchedEntity, tuple[str, int, bool]] = {}
+        unsure: list[tuple[str, Any, WatchedEntity]] = []
         for kind in ("timer", "guard", "waitable", *_KINDS):
             for made in list(getattr(node, f"{kind}s")):
                 entity = state_of(made)
@@ -81,12 +81,12 @@ class Waits:
             entity.waits(self._recorder, since, reasons[entity])
         return set(found)
 
-    def _ready_of(self, node: Any, unsure: list[tuple[str, Any, Entity]]) -> list[Entity]:
+    def _ready_of(self, node: Any, unsure: list[tuple[str, Any, WatchedEntity]]) -> list[WatchedEntity]:
         """Those for which something has arrived."""
         if not unsure:
             return []
         with ExitStack() as held:
-            handles: list[tuple[str, Any, Entity]] = []
+            handles: list[tuple[str, Any, WatchedEntity]] = []
             for kind, made, entity in unsure:
                 try:
                     held.enter_context(made.handle)
