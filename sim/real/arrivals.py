@@ -1,10 +1,9 @@
-"""Which messages, requests and replies lie in whose queue, as far as that can be told from outside.
+"""Reconstructs the queues of subscriptions, services and clients from what rclpy sends and takes.
 
-rclpy tells what was sent, and what was taken; that something lies in a queue shows while a callback waits.
-So what an entity that waits has in its queue are the last messages of its topic that it has not taken. Those
-that do not fit, and those that it passes over, are lost: what one publisher sends comes in order. What was
-sent before the first that it takes of a publisher was sent before the two had found each other, if they ever
-do.
+rclpy does not report the content of its queues. While an entity waits, its queue is taken to hold the latest
+messages of its topic that it has not taken yet. Messages arrive in the order in which a publisher sent them,
+so those that do not fit into the queue, and those that the entity passes over, are lost. Messages that were
+sent before the first one that it takes from a publisher were sent before discovery had connected the two.
 """
 
 from collections import defaultdict, deque
@@ -15,9 +14,9 @@ from typing import NamedTuple
 from sim.trace.events import AnyEvent, EntityAppeared, EntityKind, EntityReady, MessageDropped
 
 _REMEMBERED = 2_000
-"""Messages that are remembered of one queue, and calls of one service that nobody has answered."""
+"""The most messages kept per queue, and the most unanswered calls kept per service."""
 _EARLY = 100
-"""Takings of one queue that are remembered because their sending is not known."""
+"""The most takes kept per queue for which no sending has been reported yet."""
 
 
 class SentMessage(NamedTuple):
@@ -36,17 +35,17 @@ class _Queue:
     depth: int
     untaken: deque[SentMessage] = field(default_factory=lambda: deque(maxlen=_REMEMBERED))
     handled: dict[int, int] = field(default_factory=dict)
-    """A service's requests that were taken and not answered yet: their numbers, by when they were sent."""
+    """Numbers of a service's requests that are taken and not answered yet, by the time of sending."""
     told: list[int] = field(default_factory=list)
-    """What was told to lie in it."""
+    """Numbers of the messages that the trace says are in it."""
     waits: bool = False
     early: deque[int] = field(default_factory=lambda: deque(maxlen=_EARLY))
-    """When messages were sent that were taken before their sending was told of, if it ever is."""
+    """Times of sending of messages whose take was reported before their sending."""
     heard: set[int] = field(default_factory=set)
-    """The senders of which something was taken: they have found it."""
+    """Senders from which something was taken: discovery has connected them."""
 
     def was_taken(self, sending: SentMessage) -> bool:
-        """Whether a message that is told of only now was taken; that is remembered once."""
+        """Whether a message whose sending is reported late was taken already; answers True once per take."""
         stamp = next((each for each in self.early if sending.before <= each <= sending.after), None)
         if stamp is not None:
             self.early.remove(stamp)
@@ -54,11 +53,11 @@ class _Queue:
         return stamp is not None
 
     def is_reached_by(self, sending: SentMessage) -> bool:
-        """Whether a message comes to lie in it, as far as is known."""
+        """Whether a message reaches this queue, as far as is known."""
         return not self.heard or sending.sender in self.heard
 
     def hears(self, sender: int) -> None:
-        """Something of a sender was taken. Before the first, it was not known whose messages lie in it."""
+        """Note that a message of a sender was taken; before the first one the queue's senders are unknown."""
         if not self.heard:
             others = {each.number for each in self.untaken if each.sender != sender}
             self.told = [number for number in self.told if number not in others]
@@ -72,7 +71,7 @@ class Arrivals:
         self._queues: dict[int, _Queue] = {}
         self._readers: defaultdict[str, list[_Queue]] = defaultdict(list)
         self._pending: defaultdict[str, dict[int, None]] = defaultdict(dict)
-        """The calls of each service to which no reply was taken, in the order of their sending."""
+        """The calls of each service whose replies were not taken yet, in the order of sending."""
         self._names: dict[int, str] = {}
 
     def appeared(self, entity: EntityAppeared) -> None:
@@ -109,7 +108,7 @@ class Arrivals:
     def replied(self, entity: int, sent: int) -> tuple[str, int]:
         """A service answered the request that was sent at ``sent``; returns its name, and the call's number.
 
-        The number is 0 if nobody who is watched made the call.
+        The number is 0 if the caller is not watched.
         """
         queue = self._queues.get(entity)
         return self._names.get(entity, ""), 0 if queue is None else queue.handled.pop(sent, 0)
@@ -119,7 +118,7 @@ class Arrivals:
         self._pending[service].pop(call, None)
 
     def ready(self, t: int, entity: int) -> Iterator[AnyEvent]:
-        """Something lies in the queue of an entity that waits."""
+        """Something is in the queue of an entity that waits."""
         queue = self._queues.get(entity)
         if queue is None or queue.kind not in _QUEUED:
             yield EntityReady(t, entity, 0, 0)
@@ -141,9 +140,9 @@ class Arrivals:
             self._queues[entity].waits = False
 
     def taken(self, t: int, entity: int, sent: int) -> tuple[int, int, list[AnyEvent]]:
-        """What was sent at ``sent`` (nanoseconds since 1970) was taken from a queue.
+        """Note that the message sent at ``sent`` (nanoseconds since 1970) was taken from a queue.
 
-        Returns its number, 0 if nobody who is watched sent it, how much is left, and what was lost before it.
+        Returns its number (0 if the sender is not watched), the queue's new length, and what was lost before.
         """
         queue = self._queues.get(entity)
         if queue is None:

@@ -1,6 +1,6 @@
-"""What takes part in a run's ROS graph beside its programs: who calls services, ``ros2`` lines, the robot.
+"""Helper processes on a run's ROS graph: the service caller, the process of ``ros2`` lines, the robot.
 
-Each is a process of its own that tells on standard output, line by line, what a probe would tell of it.
+Each writes on standard output, line by line, what a probe would report about it.
 """
 
 import subprocess
@@ -19,7 +19,7 @@ from sim.trace.events import ArenaShown, EntityAppeared, EntityKind
 
 
 class Companion:
-    """A process that is started with its first use, or before. ``take`` gets what it tells."""
+    """A process that is started at its first use, or before. ``take`` gets the lines that it writes."""
 
     def __init__(
         self,
@@ -57,7 +57,7 @@ class Companion:
         return self._process is not None and not self.is_over
 
     def say(self, line: object) -> None:
-        """Have it read a line of JSON."""
+        """Send it a line of JSON."""
         self.start()
         assert self._process is not None
         assert self._process.stdin is not None
@@ -81,7 +81,7 @@ class Companion:
 
 
 class ServiceCaller:
-    """Calls services for the person who watches; ``python`` has the rclpy to do it with."""
+    """Calls services for the person at the console; ``python`` is an interpreter that has rclpy."""
 
     def __init__(
         self,
@@ -104,7 +104,7 @@ class ServiceCaller:
         ]
 
     def set_bool(self, name: str | None, data: bool) -> str | None:
-        """Call a service of type SetBool, without a name the first that is offered; returns which, if any."""
+        """Call a SetBool service, the first on offer if ``name`` is empty; returns its name, if any."""
         names = self._offered if name is None else [name]
         if not names:
             return None
@@ -112,14 +112,14 @@ class ServiceCaller:
         return names[0]
 
     def reset_world(self) -> None:
-        """Have the robot begin anew."""
+        """Reset the robot."""
         self._process.say(["std_srvs/srv/Empty", ["/reset_world"], {}])
 
 
 class RunRobot:
-    """The robot of a run, which is shown from its first use on, or from the beginning.
+    """The robot of a run; it is shown from its first use on, or from the beginning.
 
-    ``take`` gets what it tells: one that nothing uses moves nowhere.
+    ``take`` gets its events. A robot that no program uses does not move.
     """
 
     def __init__(
@@ -137,7 +137,7 @@ class RunRobot:
         self._use = use
         self._is_used = use is RobotUse.ALWAYS
         self._arena: list[ProbeLine] = []
-        """What it told of its world before something used it."""
+        """Events about its world from before its first use."""
         self.stop = self._process.stop
 
     def start(self) -> None:
@@ -147,7 +147,7 @@ class RunRobot:
 
     @property
     def drives(self) -> bool:
-        """Whether it has told something."""
+        """Whether it has sent something."""
         return self._process.has_spoken
 
     @property
@@ -162,7 +162,7 @@ class RunRobot:
 
     @property
     def is_awaited(self) -> bool:
-        """Whether it was started, and has neither ended nor told anything."""
+        """Whether it was started, and has neither ended nor sent anything."""
         return self.is_running and not self.drives
 
     def hear(self, lines: Sequence[ProbeLine]) -> None:

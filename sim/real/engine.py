@@ -1,6 +1,6 @@
-"""The process behind a run on real rclpy: it takes what probes tell, and does what the console asks for.
+"""The engine process of a run on real rclpy: it reads the probes and carries out the console's commands.
 
-It speaks with the console as the model's engine does. One thread does all; the outbox has another.
+It has the same connection to the console as the model's engine. One thread does all work but the outbox's.
 """
 
 import os
@@ -51,12 +51,12 @@ from sim.trace.integrity.sealing import Seal
 _PERIOD = 0.01
 """Seconds between two looks at what is due."""
 _LONGEST_HOLD = 500_000_000
-"""Nanoseconds for which events are held back at most."""
+"""The longest time, in nanoseconds, for which events are held back to be put in order."""
 _HOLD_DECAY = 0.995
 _GRACE = 3.0
-"""Seconds that the programs have to end once they were told to."""
+"""Seconds that the programs have to exit once they were asked to."""
 _TO_BEGIN = 10_000_000_000
-"""Nanoseconds after which the robot is waited for no longer, and after which a run without a node begins."""
+"""Nanoseconds to wait for the robot, and for the first node, before the run begins without."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ class Programs(Protocol):
         """Start them."""
 
     def look(self) -> None:
-        """See who has come, and who has ended."""
+        """Notice new programs, and those that have ended."""
 
     @property
     def any_run(self) -> bool:
@@ -84,10 +84,10 @@ class Programs(Protocol):
         """How they ended, taken together."""
 
     def interrupt(self) -> None:
-        """Have those that the run started end as Ctrl-C would; the others are followed no longer."""
+        """Interrupt the programs that the run started, as Ctrl-C would, and stop following the others."""
 
     def kill(self) -> list[str]:
-        """End those by force that the run started; returns the names of those that ran."""
+        """Kill the programs that the run started; returns the names of those that still ran."""
 
 
 class RealEngine:
@@ -192,12 +192,12 @@ class RealEngine:
             self._lines.prepare()
 
     def _robot_is_awaited(self) -> bool:
-        """Whether there is to be a robot, and it does not drive yet."""
+        """Whether the run has a robot that is not ready yet."""
         is_late = time.monotonic_ns() > self._began_to_wait + _TO_BEGIN
         return self._robot.is_awaited and not is_late and self._cause is None
 
     def _robot_is_all(self) -> bool:
-        """Whether the run is there for its robot, who drives whoever else comes and goes."""
+        """Whether the run is about its robot, which goes on when programs come and go."""
         return self._keyboard is None and self._robot.is_running and self._cause is None
 
     def _schedule(self) -> None:
@@ -256,11 +256,11 @@ class RealEngine:
     # what happens
 
     def _record(self, event: AnyEvent) -> None:
-        """Put an event of the run's own among those of the probes, at the moment that it is."""
+        """Record an event of the run's own now, in order with those of the probes."""
         self._translation.take([msgspec.structs.replace(event, t=time.monotonic_ns())])
 
     def _record_keys(self, event: AnyEvent) -> None:
-        """Record what is about the keyboard; who reads before there is a node has the run begin."""
+        """Record an event about the keyboard; a program that reads before the first node begins the run."""
         self._record(event)
         self._translation.begin_at(time.monotonic_ns())
 
@@ -274,12 +274,12 @@ class RealEngine:
         self._robot.hear(lines)
 
     def _hold_for(self, lines: list[ProbeLine]) -> None:
-        """Hold events back for longer while a busy machine brings them late, so that all come in order."""
+        """Hold events back for longer while a busy machine delivers them late, so that all stay in order."""
         late = max((time.monotonic_ns() - line.t for line in lines[:1]), default=0)
         self._hold = min(max(HOLD, late, round(self._hold * _HOLD_DECAY)), _LONGEST_HOLD)
 
     def _take_untrusted(self, lines: list[ProbeLine], process: int = 0) -> None:
-        """Take what a program tells that may lie: of the run and of the robot it can know nothing."""
+        """Take events from a program, without those that only the run or its robot may record."""
         told = [line for line in lines if not isinstance(line, OF_THE_RUN)]
         if len(told) < len(lines):
             text = "the program tells, as if it were the run, of the run or of the robot"
@@ -292,9 +292,9 @@ class RealEngine:
     # the end
 
     def _stop(self, reason: str, at: int | None = None) -> None:
-        """Have the programs end as by Ctrl-C, by force if that takes too long; what is watched goes on.
+        """Interrupt the programs, and kill them if they take too long; watched programs go on.
 
-        The trace has it at the monotonic time ``at``, or now.
+        The trace shows this at the monotonic time ``at``, or now.
         """
         if self._cause is None:
             self._cause = RealOutcome(reason, failed=False)
@@ -303,7 +303,7 @@ class RealEngine:
             self._programs.interrupt()
 
     def _time_is_up(self) -> None:
-        """End the run at its very end: what began after that is none of it."""
+        """End the run exactly at its time limit: what began later is not part of it."""
         assert self._setup.until is not None
         self._time_was_up = self._cause is None
         self._stop("its time was up", self._start + self._setup.until)
@@ -365,16 +365,16 @@ class RealEngine:
 
 
 def _sealed_with(key: bytes) -> Callable[[list[AnyEvent]], bytes]:
-    """What packs batches so that a second writer is noticed."""
+    """The encoder of batches, which lets a second writer be noticed."""
     seal = Seal(key)
     return lambda events: seal.close(encode(events))
 
 
 def _nothing() -> None:
-    """Do nothing between batches: what waits is found out by the probes."""
+    """Do nothing between batches: the probes find out what waits."""
 
 
 def run(packed_setup: bytes, pipe: Connection, crash_dump: Connection) -> None:
-    """Be the engine process of one run on real rclpy; programs that crash do so in processes of their own."""
+    """Run one set-up on real rclpy in this process; programs run, and crash, in processes of their own."""
     crash_dump.close()
     RealEngine(msgspec.msgpack.decode(packed_setup, type=RunSetup), pipe).run()

@@ -1,4 +1,4 @@
-"""The terminal of a run's programs on real rclpy: who reads from it, and what is typed there."""
+"""The pseudo-terminal of a run's programs on real rclpy: which of them reads, and what is typed."""
 
 import os
 import platform
@@ -14,20 +14,20 @@ from sim.trace.events import AnyEvent, KeyboardAsked, Reading, Typed
 _READ = {"x86_64": "0", "aarch64": "63"}.get(platform.machine(), "")
 """The number of the system call ``read``."""
 _SELECTS = {"x86_64": ("7", "23", "232", "270", "271", "281"), "aarch64": ("22", "72", "73")}
-"""The numbers of ``poll``, ``select`` and their kin."""
+"""The numbers of ``poll``, ``select`` and similar system calls."""
 _UNSEEN = 1.0
-"""Seconds after which a program that wants keys, and was not seen to wait for them, is handed them."""
+"""Seconds after which typed keys go to a program that wants keys but was not seen to wait for them."""
 _PERIOD = 0.05
-"""Seconds between two looks at programs while nothing is to be handed on."""
+"""Seconds between two looks at the programs while no input is pending."""
 _BETWEEN = 0.3
-"""Seconds for which a program that has read is taken to read on."""
+"""Seconds for which a program that has read counts as reading still."""
 
 
 class RealKeyboard:
-    """Programs read from ``near``. ``record`` takes the events of who waits for keys, and what is typed.
+    """Gives typed text to the program that waits for it. ``record`` gets the events about reading and typing.
 
-    That a program waits is seen from outside: one of its threads is in a system call that reads from the
-    terminal, or the program has asked the terminal for single keys.
+    Programs read from the descriptor ``near``. A program counts as waiting if one of its threads is in a
+    system call that reads from the terminal, or if it has set the terminal to single keys.
     """
 
     def __init__(self, record: Callable[[AnyEvent], None], keyboard: Keyboard, scheduled: int) -> None:
@@ -38,7 +38,7 @@ class RealKeyboard:
         self._asked = Reading.NOTHING
         self._look_at = self._read_at = 0.0
         self._fed: tuple[int, int] | None = None
-        """Who was handed something last, and how many reads of its had ended by then."""
+        """The program that got the last input, and how many of its reads had ended by then."""
         self.near = self._pair.near
 
     def type(self, text: str, *, ends: bool = False, scheduled: bool = False) -> None:
@@ -51,14 +51,14 @@ class RealKeyboard:
             self._record(Typed(0, self._pair.type(text)))
 
     def interrupts(self, text: str) -> bool:
-        """Whether text, typed now, would interrupt the programs."""
+        """Whether this text, typed now, would interrupt the programs."""
         return self._pair.interrupts(text)
 
     def look(self, programs: Mapping[int, str]) -> int:
-        """Hand on what was typed to the program that waits for it.
+        """Write typed text to the program that waits for it.
 
-        ``programs`` are the names of those that may read, by their numbers in the operating system. Returns
-        the number of one that has begun to wait, 0 for none.
+        ``programs`` has the names of the programs that may read, by process id. Returns the process id of a
+        program that has begun to wait, 0 for none.
         """
         now = time.monotonic()
         if now < self._look_at:
@@ -82,7 +82,7 @@ class RealKeyboard:
         return 0
 
     def _note(self, asked: Reading, reader: int, programs: Mapping[int, str]) -> bool:
-        """Tell how a program reads, if that is new; returns whether it has begun to."""
+        """Record how a program reads, if that has changed; returns whether it has begun to read."""
         is_between = not reader and programs and time.monotonic() < self._read_at + _BETWEEN
         if asked is self._asked or is_between:
             return False
@@ -92,9 +92,9 @@ class RealKeyboard:
 
 
 def _ended_reads(process: int) -> int:
-    """How many reads of a process have ended: what is handed on reaches the one that waits a little later.
+    """The number of a process's finished reads; input reaches a reader a little after it was written.
 
-    Where the system does not tell, another number every 50 ms.
+    Where the system does not give it, a number that changes every 50 ms.
     """
     try:
         told = Path(f"/proc/{process}/io").read_text()
@@ -104,9 +104,9 @@ def _ended_reads(process: int) -> int:
 
 
 def _reads(process: int, near: int, mode: Reading) -> bool:
-    """Whether a thread of a process is in a system call that reads from the terminal, or waits for that.
+    """Whether a thread of a process is in a system call that reads from the terminal, or polls it.
 
-    A program that sets the terminal anew for each key loses those that are typed in between.
+    A program that changes the terminal's mode for each key loses keys that are typed in between.
     """
     terminal = os.ttyname(near) if os.isatty(near) else str(Path(f"/proc/self/fd/{near}").readlink())
     for call in Path(f"/proc/{process}/task").glob("*/syscall"):

@@ -40,8 +40,8 @@ class RunLaunchedLine(Protocol):
 class LaunchedPrograms:
     """Starts programs, each with a command of its own, and knows which of them run.
 
-    Their probes, and those of what they start themselves, listen in ``folder``. ``take`` gets what they tell,
-    ``record`` the events of their beginnings and ends, ``show`` what they print. ``run_line`` carries out the
+    Their probes, and those of their child processes, listen in ``folder``. ``take`` gets the probes' lines,
+    ``record`` the events about starts and ends, ``show`` what programs print. ``run_line`` carries out the
     ``ros2`` lines of launch files.
     """
 
@@ -219,7 +219,7 @@ class LaunchedPrograms:
     # Meanwhile
 
     def look(self) -> None:
-        """Listen to the probes that can be listened to, and take note of the programs that have ended."""
+        """Connect to probes that have begun to listen, and notice programs that have ended."""
         while self._due and self._due[0][0] <= time.monotonic():
             heapq.heappop(self._due)[2]()
         for program in self._running:
@@ -283,7 +283,7 @@ class LaunchedPrograms:
 
 
 def ros2_command(environment: Mapping[str, str]) -> str | None:
-    """The ``ros2`` command of a ROS that is sourced, if there is one."""
+    """The ``ros2`` command of a sourced ROS installation, if there is one."""
     return shutil.which("ros2", path=environment.get("PATH"))
 
 

@@ -1,8 +1,8 @@
 """Carries out ``ros2`` lines on real rclpy: ``python -m sim.real.line_process [FOLDER…]``.
 
-Each line of standard input is a request (``sim.real.wire.LineRequest``); what lines print, how they end and
-what they send is told on standard output, as a probe tells what a program does. The folders are searched for
-packages. All lines share one context, which knows the graph by the time that they ask.
+Each line of standard input is a request (``sim.real.wire.LineRequest``). Standard output has, in the probe's
+format, what the ``ros2`` lines print and send, and how they end. The folders are searched for packages. All
+lines share one context, so that discovery is over when a line needs the graph.
 """
 
 import importlib
@@ -34,9 +34,9 @@ stand_in.install()
 from sim.shell import CommandFailed, OnExit, ShellLine, complete, word_start  # noqa: E402 -- with rclpy's modules
 
 _TO_DISCOVER = 1.0
-"""Seconds after its start for which the process lets lines wait: it gets to know the graph."""
+"""Seconds after its start for which lines wait, so that discovery finds the graph."""
 _TO_TELL = 0.5
-"""Seconds that a node has to tell its parameters while a line is completed."""
+"""Seconds that a node has to list its parameters while a line is completed."""
 
 now = time.monotonic_ns
 
@@ -104,7 +104,7 @@ class _Process:
         deed()
 
     def leave(self) -> None:
-        """Leave: its node is destroyed already, and the context is everybody's."""
+        """Do nothing: the node is destroyed already, and all lines share the context."""
 
 
 class RealGround:
@@ -120,7 +120,7 @@ class RealGround:
         self.signal = _Signal
 
     def discover(self) -> None:
-        """Wait until the graph is known, as far as that takes a time."""
+        """Wait until discovery has had its time."""
         time.sleep(max(0.0, self._known_at - time.monotonic()))
 
     def enter(self, _take: object) -> _Process:
@@ -152,7 +152,7 @@ class RealGround:
         return list(self._node.get_fully_qualified_node_names())
 
     def parameters(self, node: str) -> list[str]:
-        """The parameters of a node, none if it does not tell soon."""
+        """The parameters of a node; empty if it does not reply soon."""
         client = AsyncParameterClient(self._node, node)
         if not client.services_are_ready():
             return []
@@ -178,7 +178,7 @@ class _Program:
 
 @dataclass
 class _Tools:
-    """Tells the run what one line says, and which programs it wants."""
+    """Reports to the run what one line prints, and which programs it asks for."""
 
     line: int
     lines: "_Lines"

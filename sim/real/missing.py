@@ -1,4 +1,4 @@
-"""What to do on real ROS 2 about a package that is missing there, and that cbtui's model has."""
+"""Advice about a package that the model has and the real ROS 2 lacks."""
 
 import re
 
@@ -15,13 +15,13 @@ _WHEELS = """
     rcl_interfaces rclpy sensor_msgs std_msgs std_srvs stereo_msgs test_msgs trajectory_msgs
     type_description_interfaces visualization_msgs
 """.split()  # noqa: SIM905 -- one to a line they would hide the rest
-"""Those that PyPI has; the others come with an installed ROS 2 only."""
+"""Packages on PyPI; the others come only with an installed ROS 2."""
 _DEBIAN = {"tf2_ros": "tf2-ros-py"}
-"""Packages of Debian that are not named as the module is."""
+"""Names of Debian packages that differ from their module's."""
 
 
 def on_missing(said: str, distribution: str) -> str:
-    """What to do about an exception, its class and text, in half a sentence; else, and for others, empty."""
+    """Advice on an exception, given its class and text, as a clause; empty if there is none."""
     found = _MISSING.search(said)
     package = found[1] if found else ""
     if package not in {*packages(), *_PYTHON}:

@@ -1,4 +1,4 @@
-"""Reads what processes tell, line by line: their probes, and what they print."""
+"""Reads lines from processes: from their probes, and from their output."""
 
 import os
 import socket
@@ -15,17 +15,17 @@ from sim.real.wire import Hello, Left, ProbeLine, Uncaught, decode_lines
 _CHUNK = 1 << 16
 """Bytes that are read at once."""
 _TO_ANSWER = 1.0
-"""Seconds that a probe has to tell which process it is in."""
+"""Seconds that a probe has to send the id of its process."""
 
 
 Place: TypeAlias = Path | tuple[str, int]
-"""Where a probe listens: a socket of this user's, or host and port."""
+"""Where a probe listens: a socket of this user, or a host and port."""
 
 
 class LineReader:
-    """Cuts what comes from a descriptor into lines. ``take`` gets whole ones, each with its end.
+    """Splits what a descriptor delivers into lines. ``take`` gets whole lines, each with its newline.
 
-    At the end it gets what is left, and ``closed`` is told.
+    At the end of the input it gets the rest, and ``closed`` is called.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class LineReader:
             self._closed()
 
     def read_all(self) -> None:
-        """Read what is there, and hand it on though it is no whole line."""
+        """Read what is available, and pass it on even if it is not a whole line."""
         if self._is_open:
             self.read()
         self._take_rest()
@@ -75,7 +75,7 @@ class LineReader:
 
 
 class ProbeLink:
-    """The connection to the probe of one process. ``take`` gets what it tells."""
+    """The connection to the probe of one process. ``take`` gets its lines."""
 
     def __init__(self, selector: BaseSelector, take: Callable[[list[ProbeLine]], None]) -> None:
         self.hello: Hello | None = None
@@ -83,13 +83,13 @@ class ProbeLink:
         self.uncaught: Uncaught | None = None
         """The exception that ended the program."""
         self.has_left = False
-        """Whether the process came to its own end, and was not killed."""
+        """Whether the process exited by itself, and was not killed."""
         self.is_open = False
         self._selector = selector
         self._take = take
 
     def connect(self, place: Place) -> bool:
-        """Listen to the probe at a place, unless it is listened to; returns whether that is so now."""
+        """Connect to the probe at an address, unless connected; returns whether there is a connection now."""
         if self.is_open or self.hello is not None:
             return True
         try:
@@ -118,7 +118,7 @@ class ProbeLink:
 
 
 def _connected(place: Place, word: bytes = b"") -> socket.socket:
-    """A connection to a probe, to which a word has been said."""
+    """Connect to a probe and send ``word``, after the token if it is reached by host and port."""
     family, address = (socket.AF_UNIX, str(place)) if isinstance(place, Path) else (socket.AF_INET, place)
     connection = socket.socket(family)
     try:
@@ -133,12 +133,12 @@ def _connected(place: Place, word: bytes = b"") -> socket.socket:
 
 
 def say_token(token: str) -> None:
-    """Have this process and those that it starts say a token to the probes of other machines."""
+    """Have this process and its children send a token to the probes of other machines."""
     os.environ[TOKEN] = token
 
 
 def process_at(place: Place) -> Hello | None:
-    """Ask the probe at a place which process it is in; None: it does not say, as to one without its token.
+    """Ask the probe at an address for its process; None if it does not reply, as without its token.
 
     Raises:
         OSError: nobody listens there.
@@ -152,7 +152,7 @@ def process_at(place: Place) -> Hello | None:
 
 
 def processes_in(folder: Path) -> list[Hello]:
-    """Ask the probes that listen in a folder which processes they are in; remove dead ones' sockets."""
+    """Ask all probes that listen in a folder for their processes; remove the sockets of dead ones."""
     found = []
     for path in sockets_in(folder):
         try:
@@ -165,5 +165,5 @@ def processes_in(folder: Path) -> list[Hello]:
 
 
 def sockets_in(folder: Path) -> list[Path]:
-    """The sockets of probes in a folder, and in those of its folders that are of one command each."""
+    """The sockets of probes in a folder, and in the folders in it, each of which belongs to one command."""
     return sorted(folder.rglob("*.sock"))

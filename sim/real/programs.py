@@ -26,19 +26,19 @@ from sim.real.wire import Uncaught
 ON_PATH = Path(__file__).parents[1] / "probes" / "on_path"
 """The folder that a probed program has on its path."""
 _LAST_WORDS = 0.5
-"""Seconds for which the output of a program that has ended is waited for."""
+"""Seconds to wait for the output of a program that has ended."""
 _BOOTSTRAPPED = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
-"""The environment variable by which ROS's wheels know that they have found their libraries."""
+"""The environment variable that ROS's wheels set once they have found their libraries."""
 _DOMAINS = range(1, 102)
 """The ROS domains whose ports are free on every system."""
 _LOG_BEGINS, _LOG_ENDS = "\x1e", "\x1f"
-"""What rclpy's log lines stand between on the terminal: the probe tells of them too."""
+"""Markers around rclpy's log lines in the output; the probe reports these lines as events."""
 
 
 def unbootstrapped(python: str) -> dict[str, str]:
-    """This process's environment as an interpreter is to have it, with the probe's folder on its path.
+    """The environment for another interpreter: this process's, with the probe's folder on Python's path.
 
-    The wheels of this Python's ROS put their libraries there, which are not those of another one.
+    Library paths that this interpreter's ROS wheels have added are removed: another one has its own.
     """
     inherited = dict(os.environ)
     if python != sys.executable and inherited.pop(_BOOTSTRAPPED, ""):
@@ -52,19 +52,19 @@ def unbootstrapped(python: str) -> dict[str, str]:
 def watched_environment(
     python: str, folder: Path, port: int | None = None, token: str = ""
 ) -> dict[str, str]:
-    """The environment of a process that others start, probed at a socket in ``folder``.
+    """The environment of a process whose probe listens at a socket in ``folder``.
 
-    With a ``port`` of the loopback interface also there, for consoles that say the ``token``.
+    With a ``port`` it also listens on the loopback interface, for consoles that send the ``token``.
     """
     reached = {} if port is None else {PORT: str(port), TOKEN: token}
     return {**unbootstrapped(python), FOLDER: str(folder), **reached}
 
 
 def claimed_domain() -> tuple[int, socket.socket]:
-    """A ROS domain that no other run on this machine has, until the socket is closed.
+    """A ROS domain that no other run on this machine uses, reserved until the socket is closed.
 
     Raises:
-        OSError: there are as many runs as domains.
+        OSError: every domain is in use.
     """
     claim = socket.socket(socket.AF_UNIX)
     for domain in random.sample(_DOMAINS, len(_DOMAINS)):
@@ -76,9 +76,9 @@ def claimed_domain() -> tuple[int, socket.socket]:
 
 
 def environment(setup: RunSetup, python: str, folder: Path, domain: int) -> dict[str, str]:
-    """The environment of a run's programs: probed at sockets in ``folder``, in a ROS domain of their own.
+    """The environment of a run's programs: probes listen in ``folder``, in a ROS domain of the run's own.
 
-    Their probes make the changes of the set-up.
+    The probes apply the set-up's changes.
     """
     changes = {
         "threads": setup.threads,
@@ -99,7 +99,7 @@ def environment(setup: RunSetup, python: str, folder: Path, domain: int) -> dict
 
 
 STOPPED = "it was stopped"
-"""What is said of a program that ended because somebody wanted that."""
+"""The ending of a program that was asked to end."""
 
 OnExit = Callable[[int], None]
 """Takes an exit status, once."""
@@ -129,7 +129,7 @@ class Start(NamedTuple):
 class Program:
     """One program that was started. ``take`` gets what its probe sends, ``show`` the lines that it prints.
 
-    ``number`` tells it from the others of the run, 0 for an only one; ``name`` is what people call it.
+    ``number`` identifies it in the run, 0 if it is the only one; ``name`` is its name for people.
     """
 
     def __init__(
@@ -147,11 +147,11 @@ class Program:
         self._show = show
         self._open = 2
         self.hear_output: Callable[[str, bool], None] | None = None
-        """Takes each line, logged ones too: that of the launch file that started it, and ends it."""
+        """Also gets every line, logged ones too: the launch file that started the program, and ends it."""
         self.reads = start.terminal is not None
         """Whether it has the keyboard."""
         self._last_error = ""
-        """The last line on stderr: class and text of an exception that came before rclpy was imported."""
+        """The last line on stderr: the class and text of an exception raised before rclpy was imported."""
         self._ended_at = 0.0
         self._sent: signal.Signals | None = None
         """The last signal that it was sent."""
@@ -175,14 +175,14 @@ class Program:
         ]
 
     def look(self, folder: Path) -> None:
-        """Listen to its probe as soon as that listens in a folder."""
+        """Connect to its probe once it listens in a folder."""
         self.link.connect(folder / f"{self.process}.sock")
 
     @property
     def has_ended(self) -> bool:
-        """Whether it is over, and what it said has been taken.
+        """Whether it has ended and its output has been read.
 
-        What it started may hold its output open, and is waited for no longer than a moment.
+        Child processes may keep its output open; they are waited for only briefly.
         """
         if self._process.poll() is None:
             return False
@@ -214,7 +214,7 @@ class Program:
         return on_missing(error, self.link.hello.distribution if self.link.hello else "")
 
     def show_rest(self) -> None:
-        """Show all that it has written so far, be it no whole line."""
+        """Show all that it has written so far, even an unfinished line."""
         for reader in self._readers:
             reader.read_all()
 
@@ -251,7 +251,7 @@ class Program:
 
 
 def place_of(uncaught: Uncaught) -> str:
-    """File and line at which the exception was raised that ended a program."""
+    """File and line that raised the exception which ended a program."""
     name = Path(uncaught.file).name
     return f"{name}:{uncaught.line}" if uncaught.line else name
 
@@ -266,7 +266,7 @@ def _lines(text: str) -> list[str]:
 
 
 def _without_log(text: str) -> str:
-    """What a program wrote besides its log; a line of the log is written at once."""
+    """The output of a program without its log lines, each of which is written in one piece."""
     kept, _, rest = text.partition(_LOG_BEGINS)
     while rest:
         _, _, rest = rest.partition(_LOG_ENDS)

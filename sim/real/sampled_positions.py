@@ -1,4 +1,4 @@
-"""What a callback does where a probe saw it: told from the source, as functions made of C leave no frame."""
+"""What a callback does at a sampled position; read from the source, since C functions have no frame."""
 
 import ast
 import linecache
@@ -30,7 +30,7 @@ def position_of(seen: At, t: int) -> CallbackAt:
 
 
 def _called(module: str, function: str) -> tuple[Doing, str]:
-    """What goes on in a function of Python's library or rclpy's, by its qualified name."""
+    """What a callback does in a function of Python's library or rclpy, by its qualified name."""
     if module.partition(".")[0] == "rclpy":
         is_pause = function.rpartition(".")[2].startswith("sleep") and not function.startswith("Rate.")
         return (Doing.SLEEPS if is_pause else Doing.CALLS_ROS), function
@@ -38,7 +38,7 @@ def _called(module: str, function: str) -> tuple[Doing, str]:
 
 
 def _built_in(seen: At) -> tuple[Doing, str]:
-    """What goes on in an instruction of the program's own that has called nothing made of Python."""
+    """What a callback does at an instruction of its own that has called no Python function."""
     file, _, line = seen.frames[-1]
     text = _source(file, seen.instruction)
     try:
@@ -63,9 +63,9 @@ def _source(file: str, place: tuple[int, int, int, int]) -> str:
 
 @lru_cache(maxsize=256)
 def _is_entered(file: str, line: int, text: str) -> bool:
-    """Whether a line has a ``with`` that enters this.
+    """Whether a line has a ``with`` on this expression.
 
-    What takes time to be entered and is not made of Python is a lock.
+    If entering it takes time and has no Python frame, it is a lock.
     """
     try:
         tree = ast.parse("".join(linecache.getlines(file)))

@@ -1,4 +1,4 @@
-"""Makes events of the trace of what probes send: in the run's time, in order, and with messages linked."""
+"""Translates what probes send into the trace's events: in the run's time, in order, messages linked."""
 
 import heapq
 from collections.abc import Callable, Iterable, Iterator
@@ -43,18 +43,17 @@ from sim.trace.events import (
 )
 
 HOLD = 30_000_000
-"""Nanoseconds for which events are held back: those of several threads and processes then come in order."""
+"""Nanoseconds for which events are held back, so that those of several processes can be put in order."""
 
 _CALLS = 10_000
-"""Calls whose numbers are remembered until their replies have come."""
+"""The most calls whose numbers are kept until their replies come."""
 
 
 class Translation:
-    """Takes what the probes of a run send, and hands on events in the order in which they happened.
+    """Takes lines from the probes of a run, and returns events in the order in which they happened.
 
-    The run begins with the first node: what a program imports before that takes as long as it does.
-    ``begin`` is told when that was, in monotonic nanoseconds. Messages and calls get numbers in the order of
-    their sending.
+    The run begins with the first node, so that imports before it do not count. ``begin`` gets that moment in
+    monotonic nanoseconds. Messages and calls are numbered in the order of sending.
     """
 
     def __init__(self, record: Callable[[AnyEvent], None], begin: Callable[[int], None]) -> None:
@@ -66,7 +65,7 @@ class Translation:
         self._arrivals = Arrivals()
         self._messages = count(1)
         self._calls: dict[int, int] = {}
-        """The numbers of the latest calls, by those that their probes gave them."""
+        """The numbers of the latest calls on the trace, by their probes' numbers."""
         self._answered: dict[int, None] = {}
         """The latest calls whose replies were told of."""
         self._lost: dict[int, int] = {}
@@ -78,7 +77,7 @@ class Translation:
             self._begin(moment)
 
     def take(self, lines: Iterable[ProbeLine], process: int = 0) -> None:
-        """Take what a program's probe sent; ``process`` is its number on the trace, 0 for an only one."""
+        """Take lines of a program's probe; ``process`` is its number on the trace, 0 for a single one."""
         for line in lines:
             match line:
                 case Hello() | Uncaught() | Left() | ProgramWanted() | Interrupted():
@@ -95,7 +94,7 @@ class Translation:
             heapq.heappush(self._held, (line.t, next(self._order), line))
 
     def release(self, until: int) -> None:
-        """Hand on what happened up to a moment, in monotonic nanoseconds; nothing before the run begins."""
+        """Return the events up to a moment in monotonic nanoseconds; none before the run begins."""
         if self._start is None:
             return
         while self._held and self._held[0][0] <= until:
@@ -138,7 +137,7 @@ class Translation:
                 yield from self._with_number(line, t)
 
     def _replied(self, t: int, call: int, service: str, response: str) -> Iterator[AnyEvent]:
-        """A reply, of which the service's process tells, and the caller's if it is watched, too."""
+        """A reply; the service's process reports it, and so does the caller's if that is watched."""
         if call not in self._answered:
             self._answered[call] = None
             if len(self._answered) > _CALLS:

@@ -1,4 +1,4 @@
-"""The processes of others that a run watches: found by the sockets of their probes, and left as they are."""
+"""Processes that a run only watches: it finds them by their probes' sockets, and never ends them."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -15,8 +15,8 @@ from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
 class WatchedProcesses:
     """Listens to the probes that ``wanted`` names, and to those that come later.
 
-    ``take`` gets what they tell, ``record`` the events of their coming and going; ``numbers`` are those that
-    they get on the trace. Those that are known already, by their numbers in the system, are left to others.
+    ``take`` gets their lines, ``record`` the events about their start and end; ``numbers`` gives their
+    numbers on the trace. A process id that ``is_known`` is left out.
     """
 
     def __init__(
@@ -39,12 +39,12 @@ class WatchedProcesses:
         self._left = False
 
     def start(self) -> None:
-        """Begin to listen to those whose host and port are known: no folder tells of them."""
+        """Connect to the probes given by host and port, which no folder lists."""
         for address in self._wanted.addresses:
             self._listen_to(address)
 
     def look(self) -> None:
-        """Listen to those that have come, and take note of those that are gone."""
+        """Connect to new probes, and notice processes that are gone."""
         for path in self._new_sockets():
             if not self._listen_to(path):
                 path.unlink(missing_ok=True)  # its process was killed
@@ -71,11 +71,11 @@ class WatchedProcesses:
 
     @property
     def any_run(self) -> bool:
-        """Whether they are followed, and one of them is there or none has come yet."""
+        """Whether to go on: a process is there, or none has come yet."""
         return not self._left and (len(self._outcomes) < len(self._links) or not self._links)
 
     def outcome(self) -> RealOutcome:
-        """All are gone; one that did not come to its own end is the one to tell of."""
+        """The outcome once all are gone; a process that did not exit by itself takes precedence."""
         usual = RealOutcome("every process that was watched is gone", failed=False)
         return next((each for each in self._outcomes.values() if each.failed), usual)
 

@@ -1,4 +1,4 @@
-"""What a probe sends: lines of JSON, each an array of events; some are yet to be made events of the trace.
+"""The format of a probe: lines of JSON, each an array of events, some of which are translated later.
 
 Times are nanoseconds of the machine's monotonic clock; ids differ between all processes of the machine.
 """
@@ -128,7 +128,7 @@ class Left(msgspec.Struct, frozen=True, array_like=True, tag="left"):
 
 
 class ProgramWanted(msgspec.Struct, frozen=True, array_like=True, tag="start"):
-    """A ``ros2`` line asks the run to start a program of a package, or a launch file, which may have none."""
+    """A ``ros2`` line asks the run to start a package's program or a launch file, whose package may be ""."""
 
     t: int
     line: int
@@ -156,7 +156,7 @@ OF_THE_RUN = (
     *(RunStarted, RunEnding, RunEnded, CommandGiven, TimePassed),
     *(ArenaShown, RobotMoved, Scanned, VelocityCommanded),
 )
-"""What no program can tell, but the run itself, or its robot."""
+"""Events that only the run itself or its robot may record."""
 
 
 @cache
@@ -166,10 +166,10 @@ def _decoder() -> msgspec.json.Decoder[list[ProbeLine]]:
 
 
 def decode_lines(data: bytes) -> list[ProbeLine]:
-    """Return what whole lines tell.
+    """Decode whole lines.
 
     Raises:
-        msgspec.DecodeError: they are not what a probe sends.
+        msgspec.DecodeError: they are not in a probe's format.
     """
     try:
         return [told for line in _decoder().decode_lines(data) for told in line]
@@ -185,13 +185,13 @@ class ProgramEnded(msgspec.Struct, frozen=True, tag="program_ended"):
 
 
 LineRequest: TypeAlias = commands.RunLine | commands.InterruptLine | commands.CompleteLine | ProgramEnded
-"""What a run asks of the process that carries out ``ros2`` lines."""
+"""A request to the process that carries out ``ros2`` lines."""
 
 decode_request: Callable[[bytes], LineRequest] = msgspec.json.Decoder(LineRequest).decode
 
 
 def finite(event: AnyEvent) -> AnyEvent:
-    """The event as JSON can have it, which knows no infinite numbers: those of a robot with a free way."""
+    """The event without infinite numbers, which JSON lacks; a robot with a free way ahead has them."""
     if isinstance(event, RobotMoved) and math.isinf(event.front):
         return msgspec.structs.replace(event, front=sys.float_info.max)
     return event
