@@ -1,4 +1,4 @@
-"""``cbtui completion`` and ``cbtui man``: the command line, told to a shell and to a reader of manuals."""
+"""``cbtui completion`` and ``cbtui man``: completions of the command line for shells, and its manual page."""
 
 import argparse
 from collections.abc import Callable, Iterator
@@ -53,7 +53,7 @@ def _actions(parser: argparse.ArgumentParser) -> Iterator[argparse.Action]:
 
 
 def _completion_of(action: argparse.Action, lessons: str) -> dict[str, str]:
-    """What each shell completes an argument with, as far as its name for readers tells."""
+    """What shells complete an argument with, derived from its name in the help."""
     import shtab
 
     name = str(action.metavar or "")

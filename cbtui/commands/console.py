@@ -101,7 +101,7 @@ def replay(options: argparse.Namespace) -> int:
 
 
 def run_console(look: Appearance, **begins_with: Any) -> int:
-    """Run the console with those looks, or tell it in lines; returns the exit code.
+    """Run the console with an appearance, on the screen or in lines; returns the exit code.
 
     The other arguments are ``CbtuiApp``'s own.
     """

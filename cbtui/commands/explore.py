@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 DEFAULT_SECONDS = 10.0
 SCHEDULES, MOST_SCHEDULES = 100, 10_000
 SHRINKING = 50
-"""At least how many schedules are tried to find a simple one that fails; else as many as were run."""
+"""The least number of schedules to try when looking for a simpler failing one; else as many as were run."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -141,7 +141,7 @@ def _search(shard: "Shard", exploration: "Exploration", part: int, parts: int) -
 
 
 def _tell(shard: "Shard", whose: str = "", exploration: "Exploration | None" = None) -> None:
-    """Print what came of the schedules; with an exploration, also the simplest that fails so."""
+    """Print the outcomes of the schedules; with an exploration, also the simplest failing schedule."""
     from cbtui.runs.judged.exploration_text import exploration_text, proof_text
 
     found, proof = shard.ranked(), ""

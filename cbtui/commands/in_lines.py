@@ -25,7 +25,7 @@ def open_in_lines(
     start_program: "ShownProgram | None" = None,
     start_recording: "Recording | None" = None,
 ) -> int:
-    """Tell in lines what the console would show; what to open is asked for unless it is given.
+    """Run the console in lines; it asks what to open unless that is given.
 
     Returns the exit code.
     """

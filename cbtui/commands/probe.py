@@ -131,7 +131,7 @@ def _process_at(address: tuple[str, int]) -> "Hello":
 
 
 def probes_folder() -> Path:
-    """The folder in which probes listen; one that cannot be used ends the program with one line and 2."""
+    """The folder in which probes listen; if it cannot be used, exit with one line and code 2."""
     from cbtui.engines.control_socket import UnusableFolderError, runtime_folder
 
     try:

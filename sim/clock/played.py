@@ -121,7 +121,7 @@ class Played:
         return self.decide(choice)
 
     def _number(self, what: Hashable) -> int:
-        """A number that stands for a thread or for data; negative, it stands for who has read that."""
+        """A number for a thread or for data; its negative is for the threads that have read the data."""
         if isinstance(what, str):
             return crc32(what.encode())
         return self._numbers.setdefault(what, len(self._numbers) + 1)

@@ -19,7 +19,7 @@ class Schedule(Protocol):
     """Makes the choices of one run. Used by one thread at a time, the one that has the baton."""
 
     explores: bool
-    """Whether it may choose anything but the first; if not, nobody has to offer it a switch."""
+    """Whether it may choose another than the first; if not, switch points need not ask it."""
 
     def next(self, ready: Sequence[Hashable]) -> int:
         """The index in ``ready``, oldest first, of the thread that goes on."""
@@ -34,7 +34,7 @@ class Schedule(Protocol):
         """The index of the chosen one of ``number`` equals; 0 came first."""
 
     def hands_over(self) -> bool:
-        """Whether a lock goes to a thread that waits for it, and is not left to whoever comes first."""
+        """Whether a released lock goes to a waiting thread, instead of to the next thread that asks."""
 
     def did(self, thread: Hashable, what: Hashable) -> None:
         """A thread has done something with ``what``; called only if the schedule ``explores``."""

@@ -275,7 +275,7 @@ class VirtualClock:
 
 
 def _ignore(*_what: object) -> None:
-    """Stand in for a listener that nobody set."""
+    """The default listener, which does nothing."""
 
 
 class VirtualAutoResetEvent:

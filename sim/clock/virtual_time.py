@@ -48,7 +48,7 @@ class VirtualTime:
         self.outside_works: Callable[[], bool] = _no
         """Whether something outside is at work, so that time passes as on the wall; it must not wait."""
         self.in_moment = False
-        """Whether time stands in the middle of a moment: only ``steer`` reaches the run then."""
+        """Whether time is stopped within a moment; then only ``steer`` reaches the run."""
 
     @property
     def idles(self) -> bool:
@@ -75,7 +75,7 @@ class VirtualTime:
         self._inbox.put(action)
 
     def steer(self, action: Callable[[], None]) -> None:
-        """As ``inject``, and at once where time stands in the middle of a moment; for the pace."""
+        """As ``inject``, but also while time is stopped within a moment; for pausing and stepping."""
         self._inbox.put(action, steers=True)
 
     def give(self, action: Callable[[], None]) -> None:

@@ -18,7 +18,7 @@ from sim.trace.lazy import LazySequence
 from sim.trace.model import Nanoseconds, Span, Window
 from sim.trace.storage.intervals import OPEN, Intervals, Lane, Layer, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
-from sim.trace.storage.table import Table
+from sim.trace.storage.table import IntegerTable
 
 ALWAYS = Window(-OPEN, OPEN)
 
@@ -87,7 +87,7 @@ class ThreadSpans(Lane):
         self.stack: list[RowId] = []
         self._latest: RowId | None = None
         self._busy: Nanoseconds = 0
-        self._busy_before = Table(intervals.spill, 1)
+        self._busy_before = IntegerTable(intervals.spill, 1)
 
     def add(self, row: RowId) -> Layer:
         """Take in a span that begins inside those of the stack, or after all; tells where."""
@@ -130,7 +130,7 @@ class Execution:
         self._group_of: dict[EntityId, Lane] = {}
         self._suspended: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self._gaps))
         self._awaiting: defaultdict[EntityId, deque[tuple[RowId, RowId]]] = defaultdict(deque)
-        self._resumed_at: defaultdict[EntityId, Table] = defaultdict(lambda: Table(spill, 1))
+        self._resumed_at: defaultdict[EntityId, IntegerTable] = defaultdict(lambda: IntegerTable(spill, 1))
         self._uncertain_below = 0
         self._newest_taken: MessageId = -1
 

@@ -3,7 +3,7 @@
 from sim.trace.events import MessageId, Published
 from sim.trace.model import Nanoseconds, Publication
 from sim.trace.storage.spill_file import SpillFile
-from sim.trace.storage.table import Table
+from sim.trace.storage.table import IntegerTable
 
 _TIME, _NODE, _ENTITY = range(1, 4)
 
@@ -14,7 +14,7 @@ class Publications:
     __slots__ = ("_latest", "_table")
 
     def __init__(self, spill: SpillFile) -> None:
-        self._table = Table(spill, 4)
+        self._table = IntegerTable(spill, 4)
         self._latest: MessageId | None = None
 
     def add(self, event: Published) -> None:

@@ -8,7 +8,7 @@ from sim.trace.events import MessageId
 from sim.trace.lazy import LazySequence
 from sim.trace.model import Nanoseconds, Queue, QueuedMessage, Window
 from sim.trace.storage.spill_file import SpillFile
-from sim.trace.storage.table import Table
+from sim.trace.storage.table import IntegerTable
 
 OriginTime: TypeAlias = Callable[[MessageId], Nanoseconds | None]
 """Returns when a message was published or a request sent; None if that is unknown."""
@@ -26,11 +26,11 @@ class QueueHistory:
     __slots__ = ("_arrived", "_left_early", "_lost_at", "_queued", "_steps")
 
     def __init__(self, spill: SpillFile) -> None:
-        self._steps = Table(spill, 2)
-        self._arrived = Table(spill, 2)
-        self._lost_at = Table(spill, 1)
+        self._steps = IntegerTable(spill, 2)
+        self._arrived = IntegerTable(spill, 2)
+        self._lost_at = IntegerTable(spill, 1)
         self._queued: deque[MessageId] = deque()
-        self._left_early = Table(spill, 2)
+        self._left_early = IntegerTable(spill, 2)
 
     def arrive(self, at: Nanoseconds, depth: int, message: MessageId) -> None:
         """Add a message; ``depth`` are queued then."""

@@ -21,7 +21,7 @@ from sim.trace.sendings import Sendings
 from sim.trace.service_calls import ServiceCalls
 from sim.trace.storage.history import History
 from sim.trace.storage.spill_file import SpillFile
-from sim.trace.storage.table import Table
+from sim.trace.storage.table import IntegerTable
 from sim.trace.waiting import Waiting
 
 _LINES_BEFORE_PROMPT = 60
@@ -53,7 +53,7 @@ class RunStores:
         self.blocking = Blocking(spill)
         self.positions = Positions(spill)
         self.queues: defaultdict[EntityId, QueueHistory] = defaultdict(lambda: QueueHistory(spill))
-        self.dropped_at = Table(spill, 1)
+        self.dropped_at = IntegerTable(spill, 1)
         self.publications = Publications(spill)
         self.calls = ServiceCalls(spill)
         self.sendings = Sendings(spill)

@@ -7,7 +7,7 @@ from sim.trace.events import MessageId, Scanned
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.storage.history import History
 from sim.trace.storage.spill_file import SpillFile
-from sim.trace.storage.table import Table
+from sim.trace.storage.table import IntegerTable
 
 SCANS_IN_BLOCK = 32
 
@@ -20,10 +20,10 @@ class Scans:
 
     def __init__(self, spill: SpillFile) -> None:
         self._scans: History[Scanned] = History(attrgetter("t"), Scanned, spill, SCANS_IN_BLOCK)
-        self._times = Table(spill, 2)
+        self._times = IntegerTable(spill, 2)
         self._latest: OrderedDict[MessageId, None] = OrderedDict()
         self._oldest_cached: MessageId = 0
-        self._taken = Table(spill, 2)
+        self._taken = IntegerTable(spill, 2)
 
     def add(self, event: Scanned) -> None:
         """Add a scan."""

@@ -7,7 +7,7 @@ from sim.trace.lazy import LazySequence
 from sim.trace.model import Nanoseconds, Sending, Span
 from sim.trace.storage.intervals import RowId
 from sim.trace.storage.spill_file import SpillFile
-from sim.trace.storage.table import Table
+from sim.trace.storage.table import IntegerTable
 
 _NOBODY: RowId = -1
 
@@ -17,12 +17,12 @@ class Sendings:
 
     def __init__(self, spill: SpillFile) -> None:
         self._spill = spill
-        self._tables: dict[str, Table] = {}
+        self._tables: dict[str, IntegerTable] = {}
 
     def add(self, name: str, at: Nanoseconds, number: MessageId | CallId, sender: RowId | None) -> None:
         """Add a message or request; ``sender`` is the span in which it was sent."""
         if name not in self._tables:
-            self._tables[name] = Table(self._spill, 3)
+            self._tables[name] = IntegerTable(self._spill, 3)
         self._tables[name].add([at, number, _NOBODY if sender is None else sender])
 
     @property

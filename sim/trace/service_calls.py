@@ -8,7 +8,7 @@ from sim.trace.model import Call, Nanoseconds, Window
 from sim.trace.storage.history import History
 from sim.trace.storage.intervals import Intervals, Lane, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
-from sim.trace.storage.table import Table
+from sim.trace.storage.table import IntegerTable
 
 NEWEST_KEPT = 1024
 
@@ -25,8 +25,8 @@ class ServiceCalls(Intervals):
         self._responses = _texts(spill)
         self._responses.add("")
         self._lane = Lane(self)
-        self._in_order = Table(spill, 2)
-        self._numbered = Table(spill, 2)
+        self._in_order = IntegerTable(spill, 2)
+        self._numbered = IntegerTable(spill, 2)
         self._pending: dict[CallId, RowId] = {}
         self._newest: dict[RowId, Call] = {}
 

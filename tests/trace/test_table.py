@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim.trace.storage.spill_file import SpillFile
-from sim.trace.storage.table import Table
+from sim.trace.storage.table import IntegerTable
 
 rows = st.lists(st.tuples(st.integers(-20, 20), st.integers(-(2**63), 2**63 - 1)), max_size=60)
 spills = st.builds(SpillFile, cache_size=st.integers(1, 400), entries=st.integers(1, 7))
@@ -16,8 +16,8 @@ def key(row: tuple[int, int]) -> int:
     return row[0]
 
 
-def table_of(spill: SpillFile, rows: list[tuple[int, int]]) -> Table:
-    table = Table(spill, 2)
+def table_of(spill: SpillFile, rows: list[tuple[int, int]]) -> IntegerTable:
+    table = IntegerTable(spill, 2)
     for row in rows:
         table.add(list(row))
     return table
@@ -38,7 +38,7 @@ def test_rows_stand_in_order_of_their_first_cell_then_of_arrival(
 
 @given(spills, rows)
 def test_appended_rows_keep_the_numbers_they_got(spill: SpillFile, rows: list[tuple[int, int]]) -> None:
-    table = Table(spill, 2)
+    table = IntegerTable(spill, 2)
     assert [table.append(list(row)) for row in rows] == list(range(len(rows)))
     assert [(table.cell(number, 0), table.cell(number, 1)) for number in range(len(rows))] == rows
 
@@ -56,7 +56,7 @@ def test_a_search_finds_how_many_rows_begin_before_and_until_a_key(
 def test_a_column_is_cut_and_walked_like_a_list(
     spill: SpillFile, rows: list[tuple[int, int]], cut: slice
 ) -> None:
-    table = Table(spill, 2)
+    table = IntegerTable(spill, 2)
     for row in rows:
         table.append(list(row))
     column, naive = table.column(1, range(len(table))), [row[1] for row in rows]
@@ -70,7 +70,7 @@ def test_a_column_is_cut_and_walked_like_a_list(
 def test_a_changed_cell_stays_changed(
     spill: SpillFile, rows: list[tuple[int, int]], changes: list[tuple[int, int, int]]
 ) -> None:
-    table, naive = Table(spill, 2), [list(row) for row in rows]
+    table, naive = IntegerTable(spill, 2), [list(row) for row in rows]
     for row in rows:
         table.append(list(row))
     for number, column, value in changes:
@@ -84,7 +84,7 @@ def test_a_changed_cell_stays_changed(
 def test_the_newest_cells_are_the_last_ones_of_their_column(
     spill: SpillFile, rows: list[tuple[int, int]], count: int
 ) -> None:
-    table = Table(spill, 2)
+    table = IntegerTable(spill, 2)
     for row in rows:
         table.append(list(row))
     count = min(count, spill.entries)

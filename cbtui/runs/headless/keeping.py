@@ -86,7 +86,7 @@ class Keeper:
         self._monitor = FindingsMonitor(self._timeline)
 
     def _troubles(self, events: Sequence[AnyEvent]) -> Iterator[str]:
-        """What there is to tell of that was not told yet, as sentences."""
+        """The troubles in these events that were not reported yet, as sentences."""
         yield from (event.reason for event in events if isinstance(event, ProcessEnded) and event.status)
         if self._monitor.look_when_due():
             for each in self._monitor.findings:

@@ -26,7 +26,7 @@ _LIMIT = 15.0
 """Real seconds after which a run is given up."""
 
 Problem: TypeAlias = tuple[str, str, str]
-"""A rule's id and whom it is about and blames, by name: the same in several runs of a program."""
+"""A rule's id, its subject and its culprit, by name: comparable between runs of a program."""
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from sim.plural import counted
 
 
 class Shrunk(NamedTuple):
-    """What a search for a simple schedule that fails came to: ``result`` None if it found none."""
+    """The outcome of a search for a simple schedule that fails; ``result`` is None if it found none."""
 
     tried: int
     seed: str

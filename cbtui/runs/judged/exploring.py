@@ -184,7 +184,7 @@ def _warnings(observed: ObservedRun) -> Iterator[str]:
 
 
 def _raised(observed: ObservedRun) -> Iterator[ScheduleFailure]:
-    """The exceptions that came out of callbacks, by callback and kind; with the place if the run ended so."""
+    """The exceptions that callbacks raised, by callback and class; one that ended the run has its place."""
     timeline, trouble = observed.timeline, observed.trouble
     ended_by = None if timeline.ended is None else timeline.ended.error
     whole = Window(0, timeline.end + 1)

@@ -30,9 +30,9 @@ JITTER: Nanoseconds = SECOND // 20
 _LONG: Nanoseconds = SECOND // 2
 """How long a callback has to wait, or not to return, for that to be compared."""
 _TO_FIND: Nanoseconds = 3 * SECOND
-"""By how much a callback's first call may come later: what it hears has to be found first."""
+"""How much later a callback's first call may be: discovery has to find its publisher first."""
 _PACE = 50
-"""One call in so many may be missing: who publishes at a rate does so a little slower on a machine."""
+"""One call in so many may be missing: a machine publishes a little more slowly than the rate says."""
 _NUMBER = re.compile(r"\d+(\.\d+)?")
 _OWN = Path(sim.__file__).parent
 
@@ -90,7 +90,7 @@ class _Calls:
 
     @property
     def longest(self) -> Nanoseconds:
-        """How long a call of it lasted that has returned."""
+        """The duration of its longest finished call."""
         lengths = self.figures.figures.duration
         return 0 if lengths is None else lengths.most
 
@@ -339,7 +339,7 @@ def _served(timeline: Timeline, window: Window) -> Iterator[tuple[Nanoseconds, l
 
 
 def _begun_between(one: _Calls, other: _Calls) -> float:
-    """How many calls usually begin in the time by which its first call came later on one ground."""
+    """How many calls usually begin during the delay of its first call on the slower ground."""
     usual = max(one, other, key=lambda calls: calls.count).usual_gap
     return abs(one.first - other.first) / max(JITTER, usual)
 

@@ -68,7 +68,7 @@ class FindingsMonitor:
         self._notices = 0
 
     def stuck_at(self, at: Nanoseconds) -> Finding | None:
-        """The finding of callbacks that can never go on and had come to a stop by a moment; None for none."""
+        """The finding on callbacks that had stopped for ever by a moment; None if there is none."""
         endless = (each.finding for each in self.findings if each.explanation.for_ever)
         return next((found for found in endless if found.at <= at), None)
 

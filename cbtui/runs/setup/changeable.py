@@ -60,7 +60,7 @@ class ChangeableSetup:
 
 
 def changeable(subject: ShownProgram, setup: RunSetup, timeline: Timeline) -> ChangeableSetup:
-    """Return what can be changed about a run, as far as its trace tells."""
+    """Return what can be changed about a run, as far as its trace shows."""
     lesson, started = subject.lesson, timeline.started
     words = setup.programs[0].arguments if setup.programs else ()
     arguments = [

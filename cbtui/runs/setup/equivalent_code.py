@@ -62,7 +62,7 @@ def code_of_sensor_rate(rate: float) -> str:
 
 
 def code_of_release(release: str) -> str:
-    """Return the line that makes a file run as on a release, and what such a run stands on."""
+    """Return the line that makes a file run as on a release, and the sources of that release's behaviour."""
     was_run = Profile.named(release).distro in RUN
     caveat = "" if was_run else "\n# it follows documentation and source, not runs"
     return f"# cbtui: distro = {release}{caveat}"

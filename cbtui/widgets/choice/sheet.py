@@ -20,7 +20,7 @@ class ChoiceOption(NamedTuple):
 
 @dataclass(frozen=True)
 class ChoiceSheet:
-    """The content of the pane: what is asked or has come of it, and what is to be brought about.
+    """The content of the pane: the question or the result, and the goal.
 
     ``kept`` says why the others may not go on, ``advised`` is the option that a solution takes.
     """

@@ -25,7 +25,7 @@ _FAINT, _PLAIN, _STRONG, _WARN = Ink(Role.FAINT), Ink(Role.TEXT), Ink(Role.STRON
 
 
 class _State(NamedTuple):
-    """How far a figure has come, from 0 to 1, what its callback does, and why."""
+    """A figure's progress from 0 to 1, what its callback does, and why."""
 
     progress: float
     words: str

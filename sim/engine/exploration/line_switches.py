@@ -77,7 +77,7 @@ class _FrameTrace:
 
 
 def _outermost(frame: FrameType) -> Hashable:
-    """What stands for the call of a callback, or for the outermost call of the program outside callbacks."""
+    """The key of the current call of a callback, or of the program's outermost call outside callbacks."""
     trace = frame.f_trace
     for each in outwards(frame):
         if each in calls_the_program:

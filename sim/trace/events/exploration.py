@@ -31,9 +31,9 @@ class ChoiceAsked(TraceEvent, frozen=True, tag="choice_asked"):
     threads: tuple[str, ...]
     """The threads that can go on."""
     functions: tuple[str, ...]
-    """The function of the program's own in which each stands, "" outside of them."""
+    """The innermost function of the program in which each of them is; "" for none."""
     places: tuple[SourcePlace, ...]
-    """The line in front of which it stands there."""
+    """The line that each of them would run next."""
     preempts: bool
     """Whether the first of them runs and could go on."""
     others: tuple[str, ...]

@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.storage.spill_file import SpillFile
-from sim.trace.storage.table import Table
+from sim.trace.storage.table import IntegerTable
 
 RowId: TypeAlias = int
 
@@ -23,7 +23,7 @@ class Intervals:
 
     def __init__(self, spill: SpillFile, more: int = 0) -> None:
         self.spill = spill
-        self.table = Table(spill, 2 + more)
+        self.table = IntegerTable(spill, 2 + more)
 
     def __len__(self) -> int:
         return len(self.table)
@@ -50,7 +50,7 @@ def end_or_none(end: Nanoseconds) -> Nanoseconds | None:
     return None if end == OPEN else end
 
 
-class Layer(Table):
+class Layer(IntegerTable):
     """Intervals of a lane that do not overlap: starts and row numbers, in order."""
 
     __slots__ = ()

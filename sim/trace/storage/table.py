@@ -12,7 +12,7 @@ _LARGEST = 2**63 - 1
 """The largest number that a cell holds."""
 
 
-class Table:
+class IntegerTable:
     """Rows of ``width`` 64-bit integers each, addressed by row number.
 
     Searches use the first column, which has to ascend; ``add`` keeps it so. The newest one or two blocks stay
@@ -161,7 +161,7 @@ class TableColumn(Sequence[int]):
 
     __slots__ = ("_column", "_rows", "_table")
 
-    def __init__(self, table: Table, column: int, rows: range) -> None:
+    def __init__(self, table: IntegerTable, column: int, rows: range) -> None:
         self._table = table
         self._column = column
         self._rows = rows
