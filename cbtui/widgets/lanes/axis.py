@@ -5,17 +5,24 @@ from collections.abc import Iterable
 from cbtui.looks.theme import GLYPHS, Ink, Role
 from cbtui.text.cells import CellRow
 from cbtui.widgets.lanes.scale import TimeScale, labels
-from sim.trace.model import AxisMark
+from sim.trace.model import AxisMark, AxisMarkKind, Call
 
 _FAINT = Ink(Role.FAINT)
 _NOW = Ink(Role.NOW)
 _MARK = Ink(Role.MARK)
 
 
-def draw_axis(row: CellRow, scale: TimeScale, cursor: int, commands: Iterable[AxisMark]) -> None:
-    """Draw an axis. ``cursor`` is the cursor's column, which may lie outside the picture."""
+def draw_axis(
+    row: CellRow, scale: TimeScale, cursor: int, marks: Iterable[AxisMark], calls: Iterable[Call]
+) -> None:
+    """Draw an axis, with the person's commands except the calls that a service's lane shows.
+
+    ``cursor`` is the cursor's column, which may lie outside the picture.
+    """
     _draw_cursor(row, cursor)
-    _draw_commands(row, scale, commands)
+    shown = {scale.column_of(call.sent) for call in calls}
+    commands = (mark for mark in marks if mark.kind is AxisMarkKind.COMMAND)
+    _draw_commands(row, scale, (each for each in commands if scale.column_of(each.at) not in shown))
     for column, text in labels(scale):
         if row.blank(max(column - 1, 0), column + len(text) + 1):
             row.write(column, text, _FAINT)

@@ -33,17 +33,7 @@ from cbtui.widgets.lanes.status import LaneStatus
 from sim.durations import duration
 from sim.trace.events import EntityKind
 from sim.trace.figures.chains import ChainStep
-from sim.trace.model import (
-    AxisMark,
-    AxisMarkKind,
-    Blocked,
-    Moment,
-    Nanoseconds,
-    Span,
-    ThreadInfo,
-    Wait,
-    Window,
-)
+from sim.trace.model import Blocked, Moment, Nanoseconds, Span, ThreadInfo, Wait, Window
 from sim.trace.timeline import Timeline
 
 FAINT = Ink(Role.FAINT)
@@ -305,7 +295,8 @@ class _LaneFrame:
     def axis(self, hidden: int) -> list[TextRun]:
         """Paint the time axis, with the number of hidden lanes at its left."""
         row = CellRow(self._layout.columns, self._charset)
-        draw_axis(row, self._scale, self._now_column, self._commands())
+        marks = self._timeline.marks(self._scale.window)
+        draw_axis(row, self._scale, self._now_column, marks, self._calls.latest)
         name = more_lanes(hidden, self._painter.more_key, self._layout.names) if hidden else "seconds"
         unit = f"{duration(self._scale.per_column)}/col" if self._layout.statuses >= 15 else ""
         self._show_cursor(row)
@@ -374,14 +365,6 @@ class _LaneFrame:
     def _latest(self, columns: list[LaneColumn[Span] | None]) -> Span | None:
         shown = columns[: max(0, self._now_column + 1)]
         return next((column.top for column in reversed(shown) if column is not None), None)
-
-    def _commands(self) -> list[AxisMark]:
-        """The person's commands, except the calls that a service's lane shows."""
-        shown = {self._scale.column_of(call.sent) for call in self._calls.latest}
-        marks = self._timeline.marks(self._scale.window)
-        return [
-            m for m in marks if m.kind is AxisMarkKind.COMMAND and self._scale.column_of(m.at) not in shown
-        ]
 
     def _framed(
         self, name: list[TextRun], runs: list[TextRun], status: TextRun, chosen: bool
