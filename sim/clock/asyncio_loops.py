@@ -2,7 +2,9 @@
 
 import asyncio
 import selectors
+import sys
 import threading
+import warnings
 from typing import Any
 
 from sim.clock.interface import RunClock
@@ -16,11 +18,15 @@ _SLICE = 0.02
 """Real seconds between checks of a wait on a paced clock: the pace may have changed."""
 
 
-class ProgramLoops(asyncio.DefaultEventLoopPolicy):
+with warnings.catch_warnings(action="ignore"):  # deprecated since Python 3.14, to go in 3.16
+    _PythonsOwn = asyncio.DefaultEventLoopPolicy
+
+
+class ProgramLoops(_PythonsOwn):
     """Python's policy, for programs whose main threads are threads of one process.
 
-    Each of these gets a loop on first access, like a main thread. Loops wait on ``clock``: on a virtual one
-    they let its time pass, on a paced one they keep its pace.
+    Before Python 3.14 each of these gets a loop on first access, like a main thread. Loops wait on ``clock``:
+    on a virtual one they let its time pass, on a paced one they keep its pace.
     """
 
     def __init__(self, clock: RunClock) -> None:
@@ -28,9 +34,15 @@ class ProgramLoops(asyncio.DefaultEventLoopPolicy):
         self._clock = clock
         self._thread = threading.local()
 
+    def install(self) -> None:
+        """Make it the policy of this process."""
+        with warnings.catch_warnings(action="ignore"):
+            asyncio.set_event_loop_policy(self)
+
     def get_event_loop(self) -> asyncio.AbstractEventLoop:
-        """The calling thread's loop; a main thread that has none gets one."""
-        if threading.current_thread().name == _MAIN and not getattr(self._thread, "was_set", False):
+        """The calling thread's loop; a main thread that has none gets one where Python gives it one."""
+        is_given = sys.version_info < (3, 14) and threading.current_thread().name == _MAIN
+        if is_given and not getattr(self._thread, "was_set", False):
             self.set_event_loop(self.new_event_loop())
         return super().get_event_loop()
 

@@ -21,7 +21,7 @@ from sim.clock.stdlib import live_on
 clock = VirtualClock()
 live_on(clock)
 number_tasks(clock)
-asyncio.set_event_loop_policy(ProgramLoops(clock))
+ProgramLoops(clock).install()
 
 class Lumber:
     pass

@@ -25,7 +25,7 @@ told = []
 clock = VirtualClock()
 refuse_children()
 live_on(clock, told.append)
-asyncio.set_event_loop_policy(ProgramLoops(clock))
+ProgramLoops(clock).install()
 exec(sys.argv[2])
 for place, row in enumerate(json.loads(sys.argv[1])):
     told.clear()

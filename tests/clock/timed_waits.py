@@ -4,7 +4,6 @@
 with the nanoseconds that every step took, or with what it raised.
 """
 
-import asyncio
 import json
 import subprocess
 import sys
@@ -123,7 +122,7 @@ def _live() -> None:
     clock = VirtualClock()
     install(Host(clock, SilentProbe(clock)))
     live_on(clock)
-    asyncio.set_event_loop_policy(ProgramLoops(clock))
+    ProgramLoops(clock).install()
     for line in sys.stdin:
         try:
             answer: Any = [_run_step(*step) for step in json.loads(line)]

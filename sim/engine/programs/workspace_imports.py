@@ -84,11 +84,9 @@ class _AsyncioFinder:
         return spec
 
     def _use_own_loops(self, _module: ModuleType) -> None:
-        import asyncio
-
         from sim.clock.asyncio_loops import ProgramLoops
 
-        asyncio.set_event_loop_policy(ProgramLoops(self._clock))
+        ProgramLoops(self._clock).install()
         if isinstance(self._clock, VirtualClock):
             number_tasks(self._clock)
 
