@@ -10,7 +10,7 @@ from pathlib import Path
 
 from cbtui.doctor.engines import engine
 from cbtui.doctor.examination import Examination
-from cbtui.doctor.extras import browser, editor, ros
+from cbtui.doctor.extras import browser, editor, grading, ros
 from cbtui.doctor.files import configuration, folders, lessons_found, progress
 from cbtui.doctor.packages import dependencies, physics, python, system
 from cbtui.doctor.probes import ProbeProcess
@@ -37,6 +37,7 @@ def examinations(charset: str, config: str | None = None) -> Iterator[Examinatio
         yield progress()
         yield editor(os.environ)
         yield browser()
+        yield grading(shutil.which("bwrap"))
         yield from ros(os.environ)
     finally:
         importing.end()

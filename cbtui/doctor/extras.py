@@ -1,19 +1,23 @@
-"""Examines optional parts: an editor, the console in a browser, and an installed ROS 2."""
+"""Examines optional parts: an editor, the console in a browser, confinement, and an installed ROS 2."""
 
 import re
 import shlex
 import shutil
 import socket
+import subprocess
 from collections.abc import Iterator, Mapping
 from importlib.metadata import distributions
 from importlib.util import find_spec
 from pathlib import Path
 
 from cbtui.doctor.examination import Examination, note, well
+from cbtui.doctor.requirements import requirements
 from cbtui.text.installing import install_command
 
 _PORT = 8000
 """The default port of ``cbtui serve``."""
+_TRIED = 10.0
+"""Limit of a trial of ``bwrap`` in seconds."""
 
 
 def editor(environment: Mapping[str, str]) -> Examination:
@@ -45,6 +49,23 @@ def browser(port: int = _PORT) -> Examination:
     return well("browser", f"cbtui serve can have port {port}")
 
 
+def grading(bwrap: str | None) -> Examination:
+    """Examine whether ``bwrap``, the program at that path, can confine what is graded."""
+    at_risk = "so what cbtui grade runs can read, write and end whatever you can"
+    elsewhere = "grade where it can do no harm"
+    if bwrap is None:
+        return note("grading", f"bwrap is not there, {at_risk}", f"install bubblewrap, or {elsewhere}")
+    command = [bwrap, "--unshare-all", "--die-with-parent", "--ro-bind", "/", "/", "true"]
+    try:
+        tried = subprocess.run(command, capture_output=True, text=True, timeout=_TRIED, check=False)
+        why = tried.stderr.strip().rpartition("\n")[2] if tried.returncode else ""
+    except (OSError, subprocess.TimeoutExpired) as error:
+        why = str(error)
+    if why:
+        return note("grading", f"bwrap does not work here ({why}), {at_risk}", elsewhere)
+    return well("grading", "bwrap confines what cbtui grade runs")
+
+
 def ros(environment: Mapping[str, str]) -> Iterator[Examination]:
     """Examine whether a real ROS 2 is installed beside cbtui's model of it."""
     distribution = environment.get("ROS_DISTRO")
@@ -68,6 +89,11 @@ def ros(environment: Mapping[str, str]) -> Iterator[Examination]:
         yield well(
             "ROS 2",
             f"{distribution} is set up here, for another Python: name that with --on ros2 --python EXE",
+        )
+    elif requirements("ros") == requirements():
+        yield well(
+            "ROS 2",
+            "none here, and none needed; no wheels of it fit this Python: --on ros2 takes --python EXE",
         )
     else:
         yield well(

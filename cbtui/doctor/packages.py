@@ -77,6 +77,13 @@ def _broken(importing: ProbeProcess) -> dict[str, str]:
     return broken
 
 
+def _is_installed(name: str) -> bool:
+    try:
+        return bool(version(name))
+    except PackageNotFoundError:
+        return False
+
+
 def physics(world: ProbeProcess, *, installed: bool) -> Examination:
     """Examine what moves the robot; ``installed`` tells whether there is a module ``pybullet``."""
     outcome = world.outcome()
@@ -86,6 +93,12 @@ def physics(world: ProbeProcess, *, installed: bool) -> Examination:
         why = outcome.death or (outcome.complained.strip().splitlines() or ["it failed"])[-1]
         remedy = f"give --physics numpy, or install it anew: {install}" if install else "give --physics numpy"
         return fault("physics", f"PyBullet builds no world ({why})", remedy)
+    if len(both := [name for name in sorted(PHYSICS) if _is_installed(name)]) > 1:
+        return note(
+            "physics",
+            f"{' and '.join(both)} are both installed, and have overwritten each other",
+            f"uninstall both, then {install or 'install one'}",
+        )
     if installed:
         return well("physics", "PyBullet moves the robot, and draws the camera's pictures")
     found = "the numpy model moves the robot, without a camera"

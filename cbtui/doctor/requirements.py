@@ -11,11 +11,11 @@ PHYSICS = frozenset({"pybullet", "pybullet-arm64"})
 
 
 @cache
-def requirements() -> Sequence[Requirement]:
-    """Return the dependencies for this Python, without extras; none if cbtui is not installed."""
+def requirements(extra: str = "") -> Sequence[Requirement]:
+    """Return the dependencies for this Python, with those of one extra; none if cbtui is not installed."""
     try:
         lines = requires("cbtui") or []
     except PackageNotFoundError:
         return ()
     found = map(Requirement, lines)
-    return tuple(each for each in found if each.marker is None or each.marker.evaluate({"extra": ""}))
+    return tuple(each for each in found if each.marker is None or each.marker.evaluate({"extra": extra}))

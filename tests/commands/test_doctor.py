@@ -13,7 +13,7 @@ from cbtui import __main__, cli
 from cbtui.doctor import engines, extras
 from cbtui.doctor.engines import engine
 from cbtui.doctor.examination import Examination, Sign, fault, note, well
-from cbtui.doctor.extras import browser, editor, ros
+from cbtui.doctor.extras import browser, editor, grading, ros
 from cbtui.doctor.files import configuration, folders, lessons_found, progress
 from cbtui.doctor.packages import dependencies, physics, python, system
 from cbtui.doctor.probes import ProbeProcess, ProbeResult
@@ -72,6 +72,13 @@ def test_the_exit_code_is_1_only_if_something_is_at_fault(
     assert "b            is less: do this" in out
 
 
+def installed(folder: Path, *names: str) -> None:
+    for name in names:
+        about = folder / f"{name.replace('-', '_')}-1.0.dist-info"
+        about.mkdir()
+        (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+
+
 class _Ended(ProbeProcess):
     """A probe that has ended with a certain outcome."""
 
@@ -121,6 +128,17 @@ def test_the_physics_that_moves_the_robot_is_told(
     found = physics(_Ended(outcome), installed=installed)
     assert found.sign is sign
     assert said in found.what
+
+
+def test_two_packages_of_one_module_are_told_though_the_robot_moves(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    installed(tmp_path, "pybullet", "pybullet-arm64")
+    monkeypatch.syspath_prepend(tmp_path)
+    found = physics(_Ended(ProbeResult("", "", 0, "")), installed=True)
+    assert found.sign is Sign.NOTE
+    assert found.what == "pybullet and pybullet-arm64 are both installed, and have overwritten each other"
+    assert found.remedy.startswith("uninstall both, then ")
 
 
 def test_where_there_is_no_pip_as_in_an_environment_of_uvs_uv_is_to_install(
@@ -317,6 +335,26 @@ def test_a_port_that_is_taken_is_noted() -> None:
         assert browser(other.getsockname()[1]).sign is Sign.NOTE
 
 
+def test_whether_submissions_can_be_confined_is_tried(tmp_path: Path) -> None:
+    assert "install bubblewrap" in grading(None).remedy
+    assert grading(str(tmp_path / "none")).sign is Sign.NOTE
+    refusing = tmp_path / "bwrap"
+    refusing.write_text("#!/bin/sh\necho 'bwrap: No permissions to create a new namespace' >&2\nexit 1\n")
+    refusing.chmod(0o700)
+    assert "does not work here (bwrap: No permissions" in grading(str(refusing)).what
+    refusing.write_text("#!/bin/sh\n")
+    assert grading(str(refusing)).sign is Sign.WELL
+
+
+def test_the_wheels_of_ros_are_offered_only_where_they_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(extras, "find_spec", lambda _: None)
+    monkeypatch.setattr(extras, "distributions", lambda: [])
+    monkeypatch.setattr(extras, "requirements", lambda extra="": (extra,))
+    assert "cbtui[ros]" in next(ros({})).what
+    monkeypatch.setattr(extras, "requirements", lambda extra="": ())
+    assert "no wheels of it fit this Python: --on ros2 takes --python EXE" in next(ros({})).what
+
+
 def test_doctor_says_which_real_ros_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as without:
         without.setattr(extras, "find_spec", lambda _: None)
@@ -335,10 +373,7 @@ def test_doctor_says_which_real_ros_there_is(tmp_path: Path, monkeypatch: pytest
 def test_wheels_of_two_distributions_in_one_python_are_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for name in ("ros-jazzy-rclpy", "ros-kilted-rclpy"):
-        about = tmp_path / f"{name.replace('-', '_')}-1.0.dist-info"
-        about.mkdir()
-        (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+    installed(tmp_path, "ros-jazzy-rclpy", "ros-kilted-rclpy")
     monkeypatch.setattr("sys.path", [str(tmp_path)])
     [found] = ros({})
     assert "the wheels of jazzy and kilted are in one Python" in found.what
