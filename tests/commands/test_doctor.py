@@ -358,7 +358,6 @@ def test_the_wheels_of_ros_are_offered_only_where_they_fit(monkeypatch: pytest.M
 def test_doctor_says_which_real_ros_there_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as without:
         without.setattr(extras, "find_spec", lambda _: None)
-        assert "cbtui[ros]" in next(ros({})).what
         assert "jazzy" in next(ros({"ROS_DISTRO": "jazzy"})).what
     (tmp_path / "rclpy").mkdir()
     (tmp_path / "rclpy" / "__init__.py").write_text("raise RuntimeError('this is the real one')\n")
