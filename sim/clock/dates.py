@@ -2,7 +2,7 @@
 
 ``datetime.datetime`` itself gets new ``now`` and ``utcnow``, so that whoever has imported the class, and each
 subclass, follows, and ``isinstance`` and ``pickle`` are as ever. Its dictionary is reached as CPython 3.11 to
-3.13 let it be reached.
+3.14 let it be reached.
 """
 
 import ctypes
