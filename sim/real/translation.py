@@ -7,6 +7,7 @@ from itertools import count
 import msgspec
 
 from sim.real.arrivals import Arrivals, SentMessage
+from sim.real.left_open import LeftOpen
 from sim.real.sampled_positions import position_of
 from sim.real.wire import (
     At,
@@ -32,6 +33,7 @@ from sim.trace.events import (
     EntityReady,
     EventsLost,
     NodeAppeared,
+    ProcessEnded,
     Published,
     RequestLost,
     ServiceCalled,
@@ -69,6 +71,7 @@ class Translation:
         self._answered: dict[int, None] = {}
         """The latest calls whose replies were told of."""
         self._lost: dict[int, int] = {}
+        self._left_open = LeftOpen()
 
     def begin_at(self, moment: int) -> None:
         """Have the run begin, if it has not yet."""
@@ -86,6 +89,8 @@ class Translation:
                     self.begin_at(t)
                 case ThreadAppeared():
                     line = msgspec.structs.replace(line, process=process)  # noqa: PLW2901
+                case EntityAppeared():
+                    self._left_open.appeared(line, process)
                 case EventsLost(t=t, count=lost):
                     self._lost[process] = lost
                     line = EventsLost(t, sum(self._lost.values()))  # noqa: PLW2901
@@ -100,6 +105,7 @@ class Translation:
         while self._held and self._held[0][0] <= until:
             t, _, line = heapq.heappop(self._held)
             for event in self._translated(line, max(0, t - self._start)):
+                self._left_open.follow(event)
                 self._record(event)
 
     def _translated(self, line: ProbeLine, t: int) -> Iterator[AnyEvent]:
@@ -128,6 +134,9 @@ class Translation:
                     yield from self._replied(t, call, service, response)
             case At():
                 yield position_of(line, t)
+            case ProcessEnded(process=process):
+                yield from self._left_open.closed(process, t)
+                yield msgspec.structs.replace(line, t=t)
             case EntityReady():
                 yield from arrivals.ready(t, line.entity)
             case WaitStarted(since=since):

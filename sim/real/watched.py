@@ -9,7 +9,7 @@ from sim.engine.setup import RealRos
 from sim.real.probe_link import Place, ProbeLink, sockets_in
 from sim.real.programs import RealOutcome, place_of
 from sim.real.wire import Hello, ProbeLine
-from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
+from sim.trace.events import AnyEvent, Notice, ProcessAppeared, ProcessEnded, Severity
 
 
 class WatchedProcesses:
@@ -35,6 +35,8 @@ class WatchedProcesses:
         self._numbers = numbers
         self._is_known = is_known
         self._links: dict[Place, tuple[int, ProbeLink]] = {}
+        self._unnamed: dict[int, str] = {}
+        """The labels of processes that have not told anything yet, by their numbers on the trace."""
         self._outcomes: dict[Place, RealOutcome] = {}
         self._left = False
 
@@ -52,6 +54,9 @@ class WatchedProcesses:
             if not link.is_open and place not in self._outcomes:
                 outcome = self._outcomes[place] = _outcome(link)
                 self._record(ProcessEnded(0, number, outcome.reason, int(outcome.failed)))
+                if self.any_run:
+                    severity = Severity.WARN if outcome.failed else Severity.INFO
+                    self._record(Notice(0, severity, outcome.reason))
 
     def _new_sockets(self) -> Iterator[Path]:
         chosen = self._wanted.processes
@@ -88,9 +93,12 @@ class WatchedProcesses:
         return []
 
     def _told(self, number: int, lines: list[ProbeLine]) -> None:
+        """Take what one tells; it has appeared when what it tells first happened, which may be long ago."""
         for line in lines:
             if isinstance(line, Hello):
-                self._record(ProcessAppeared(0, number, label_of(line)))
+                self._unnamed[number] = label_of(line)
+            elif number in self._unnamed:
+                self._take([ProcessAppeared(line.t, number, self._unnamed.pop(number))])
         self._take(lines, process=number)
 
 

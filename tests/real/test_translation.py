@@ -9,8 +9,12 @@ from sim.real.translation import Translation
 from sim.real.wire import Called, MessageTaken, Sent, decode_lines, finite
 from sim.trace.events import (
     AnyEvent,
+    CallbackEnded,
     CallbackStarted,
+    CallBlocked,
+    CallUnblocked,
     EntityAppeared,
+    EntityGone,
     EntityKind,
     EntityReady,
     EventsLost,
@@ -18,6 +22,7 @@ from sim.trace.events import (
     MessageDropped,
     NodeAppeared,
     Notice,
+    ProcessEnded,
     Published,
     Reason,
     RobotMoved,
@@ -84,6 +89,26 @@ def test_threads_belong_to_their_process() -> None:
     told = Told()
     told.tell(ThreadAppeared(START, 99, "MainThread"), process=3)
     assert [getattr(event, "process", None) for event in told.all(ThreadAppeared)] == [0, 3]
+
+
+def test_what_a_killed_process_was_at_is_over_with_it_and_others_go_on() -> None:
+    told = Told()
+    for process, at in ((1, 80), (2, 90)):
+        told.tell(
+            appeared(at, EntityKind.TIMER, "", depth=0),
+            appeared(at + 1, EntityKind.TIMER, "", depth=0),
+            CallbackStarted(START + 10, at, at + 5, 0, 0, 0),
+            CallBlocked(START + 20, 0, at + 5, at, "/switch"),
+            WaitStarted(START + 20, at + 1, START + 20, Reason.GROUP_HELD, at, False),
+            process=process,
+        )
+    told.tell(ProcessEnded(START + 50, 2, "it was killed", 1))
+    told.translation.release(10**18)
+    closing = [event for event in told.events if event.t == 50]
+    assert closing[:2] == [CallUnblocked(50, 0, 95), CallbackEnded(50, 90, 95)]
+    assert {event.entity for event in closing if isinstance(event, EntityGone)} == {90, 91}
+    assert closing[-1] == ProcessEnded(50, 2, "it was killed", 1)
+    assert len(closing) == 5
 
 
 def test_a_message_is_the_one_that_was_sent_at_that_time() -> None:

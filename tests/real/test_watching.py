@@ -28,6 +28,7 @@ from sim.trace.events import (
     ProcessAppeared,
     RunEnded,
     ServiceCalled,
+    ThreadAppeared,
     VelocityCommanded,
 )
 from tests.real import programs
@@ -81,6 +82,8 @@ def test_a_process_is_watched_and_goes_on_when_nobody_watches_any_more(tmp_path:
                 assert f"tried.py-{process.pid}" in [
                     e.label for e in events if isinstance(e, ProcessAppeared)
                 ]
+                introduced = [type(e) for e in events if isinstance(e, ProcessAppeared | ThreadAppeared)]
+                assert introduced[0] is ProcessAppeared, "the process's threads are named after it"
                 assert isinstance(events[-1], RunEnded)
                 assert process.poll() is None
             process.terminate()
