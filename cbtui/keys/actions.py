@@ -23,6 +23,16 @@ _JUMP = "Show a letter on whatever can be gone to; type it to go there"
 _OPTION = "Highlight another thread, and its line"
 _OPTION_NUMBER = "Have the thread with this number go on"
 _ANSWER_NUMBER = "Highlight the answer with this number"
+_NO_TIME = "Tell why time cannot be changed here"
+OWN_TIME = {
+    "pause": "space",
+    "resume": "space",
+    "step": "full_stop",
+    "slower": "minus",
+    "faster": "plus",
+    "take_over": "W",
+}
+"""The actions that need a time that can be stopped, as real ROS 2's cannot; with their keys."""
 _PANE = f"Go to a pane: {', '.join(PANES)}"
 
 _ROWS: dict[Scope, tuple[_Row, ...]] = {
@@ -106,6 +116,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("no_hint", "h", "", "Tell why there is no hint now"),
         ("no_solution", "H", "", "Tell why there is no solution now"),
         ("no_comparison", "C", "", "Tell what can be compared"),
+        *((f"no_time('{name}')", key, "", _NO_TIME) for name, key in OWN_TIME.items()),
         ("diagnoses", "d", "diagnoses", "List what went wrong, why, and what to do about it"),
         *(
             (f"show_pane('{name}')", str(number), "pane", f"Go to the {name}", _PANE)

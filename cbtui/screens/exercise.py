@@ -22,7 +22,7 @@ from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import of_exercise
 from cbtui.screens.compare import CompareKey
-from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey
+from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TimeRefusals
 from cbtui.screens.parts.own_file import FileRead, read_when_saved
 from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
@@ -86,6 +86,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
         )
         self.add_parts(
             PaceKeys(self, runs),
+            TimeRefusals(self, runs, lambda action: self._parts.offer(action, ())),
             RecordingKey(self, runs, self.finisher),
             self.restarts,
             CompareKey(self, self.restarts),

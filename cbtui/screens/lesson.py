@@ -18,7 +18,7 @@ from cbtui.screens.choosing import ChoosingScreen
 from cbtui.screens.compare import CompareKey
 from cbtui.screens.parts.choices import TakeOver
 from cbtui.screens.parts.cures import CureTrials
-from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TypingKeys, WorldKeys
+from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TimeRefusals, TypingKeys, WorldKeys
 from cbtui.screens.parts.keys import Refusals
 from cbtui.screens.parts.own_file import FileRead, OwnFile, read_when_saved
 from cbtui.screens.parts.part import ScreenPart
@@ -73,6 +73,10 @@ class LessonScreen(RunScreen[LiveRun]):
             else None
         )
         lesson, more = subject.lesson, {}
+
+        def is_available(action: str) -> bool:
+            return self._parts.offer(action, ())
+
         if lesson is not None and lesson.exercise is not None:
             more["exercise"] = lambda: self.console.open_exercise(lesson, runs.run.setup.real)
         self.add_parts(
@@ -87,7 +91,8 @@ class LessonScreen(RunScreen[LiveRun]):
                 runs, subject, lambda taken: self.ask(ChoosingScreen(taken, open_session, charset), None)
             ),
             *([] if lesson is None else self._teaching_parts(lesson)),
-            Refusals(self, lesson, lambda action: self._parts.offer(action, ())),
+            Refusals(self, lesson, is_available),
+            TimeRefusals(self, runs, is_available),
             **more,
         )
         self._is_tour = tour

@@ -25,7 +25,7 @@ from cbtui.screens.linear.exercise import ExerciseInLines
 from cbtui.screens.linear.teaching import Teaching
 from cbtui.screens.parts.choices import TakeOver
 from cbtui.screens.parts.cures import CureTrial, CureTrials
-from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, WorldKeys
+from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TimeRefusals, WorldKeys
 from cbtui.screens.parts.keys import Refusals
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.parts.restarts import Restarts
@@ -68,14 +68,18 @@ class LessonConsole(LinearConsole[LiveRun]):
         keys = (PaceKeys(self, runs), WorldKeys(runs), TypedLines(self), self.restarts, take_over)
         exercise = None if lesson is None else ExerciseInLines(self, lesson, self.progress)
         recording = RecordingKey(self, runs, FinishInLines(self))
-        refusals = Refusals(self, lesson, lambda action: self._parts.offer(action, ()))
+        refusals = Refusals(self, lesson, self._is_available)
+        of_time = TimeRefusals(self, runs, self._is_available)
         set_up = AskedSetUp(self, runs, self.restarts, subject)
-        told = (self._comparison, self._cures, self._teaching, exercise, set_up, recording, refusals)
+        told = (self._comparison, self._cures, self._teaching, exercise, set_up, recording, refusals, of_time)
         more = filter(None, told)
         on = {} if following is None else {"next_lesson": partial(self.open_lesson, following)}
         self.add_parts(*keys, *more, **on)
         runs.begin(1.0)
         self.telling.begin()
+
+    def _is_available(self, action: str) -> bool:
+        return self._parts.offer(action, ())
 
     def _teaching_of(self, lesson: Lesson, observe: Observe) -> Teaching:
         teaching = Teaching(

@@ -12,6 +12,8 @@ from cbtui.screens.parts.part import DrawnHost, RunHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.shell import ShellView
 
+_GOES_ON = "Real ROS 2 goes on by itself: only the model's time can be stopped, stepped or changed."
+
 
 @dataclass
 class PaceKeys(ScreenPart):
@@ -50,6 +52,27 @@ class PaceKeys(ScreenPart):
         """Let time pass faster."""
         self.runs.run.change_speed(1)
         self.host.redraw()
+
+
+@dataclass
+class TimeRefusals(ScreenPart):
+    """Tells why what needs a time of its own is not to be had on real ROS 2.
+
+    ``is_available`` tells whether an action does something.
+    """
+
+    host: RunHost
+    runs: RunController[LiveRun]
+    is_available: Callable[[str], bool]
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer the refusal where the action itself is not offered."""
+        [wanted] = parameters
+        return self.runs.run.setup.real is not None and not self.is_available(str(wanted))
+
+    def action_no_time(self, _wanted: str) -> None:
+        """Tell it."""
+        self.host.tell(_GOES_ON)
 
 
 class Finisher(Protocol):

@@ -92,9 +92,9 @@ class TimeNavigation(ScreenPart):
 
     @property
     def run_that_goes_on(self) -> LiveRun | None:
-        """The run whose engine can still run on, if there is one."""
+        """The run whose engine can still run on, and pause at a moment, if there is one."""
         run = self.live()
-        return run if run is not None and run.alive else None
+        return run if run is not None and run.can_be_paced else None
 
     def go_to(self, moment: Nanoseconds) -> None:
         """Go to a past moment, or let the run continue to a future one."""

@@ -1,6 +1,6 @@
 """The help: the signs of the screen, then every key by what it is for, with a search."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from textual import on
@@ -10,7 +10,7 @@ from textual.content import Content
 from textual.widgets import Input, Static
 
 from cbtui.keys.action import KeyAction, Scope, group_by
-from cbtui.keys.actions import ACTIONS, TASKS
+from cbtui.keys.actions import ACTIONS, OWN_TIME, TASKS
 from cbtui.keys.keymap import Keymap, keymap_of
 from cbtui.keys.signs import signs_of
 from cbtui.learning.stage import Stage, meaning_of
@@ -40,6 +40,8 @@ class _HelpRow(NamedTuple):
 
     sign: str
     meaning: str
+    is_refused: bool = False
+    """Whether real ROS 2 rules it out."""
 
 
 class _Section(NamedTuple):
@@ -63,8 +65,17 @@ class HelpScreen(WindowScreen[None]):
 
     def on_mount(self) -> None:
         """Show everything."""
-        keymap, scope = keymap_of(self.app), getattr(self.app.screen_stack[-2], "SCOPE", None)
-        self._sections = tuple(_sections(scope, keymap, self._charset))
+        below = self.app.screen_stack[-2]
+        scope = getattr(below, "SCOPE", None)
+
+        def is_refused(action: KeyAction) -> bool:
+            return (
+                scope is Scope.LESSON
+                and action.name in OWN_TIME
+                and below.check_action("no_time", (action.name,)) is True
+            )
+
+        self._sections = tuple(_sections(scope, keymap_of(self.app), self._charset, is_refused))
         self.query_one(Input).display = False
         self.query_one(VerticalScroll).focus()
         self._show("")
@@ -106,19 +117,24 @@ def _has(row: _HelpRow, heading: str, words: Sequence[str]) -> bool:
 
 def _shown(section: _Section) -> Content:
     rows = (
-        Content.assemble((f"{row.sign:>9}", "bold $text-accent"), f"  {row.meaning}") for row in section.rows
+        Content.styled(f"{row.sign:>9}  {row.meaning} (not on real ROS 2)", "$text-muted")
+        if row.is_refused
+        else Content.assemble((f"{row.sign:>9}", "bold $text-accent"), f"  {row.meaning}")
+        for row in section.rows
     )
     heading = Content.styled(section.heading, "bold $text-primary")
     return Content("\n").join([heading, *rows, Content("")])
 
 
-def _sections(scope: Scope | None, keymap: Keymap, charset: Charset) -> Iterator[_Section]:
+def _sections(
+    scope: Scope | None, keymap: Keymap, charset: Charset, is_refused: Callable[[KeyAction], bool]
+) -> Iterator[_Section]:
     """Yield the signs, then the keys: first those of the screen below, of ``scope``."""
     in_menu = scope in (Scope.MENU, Scope.SEARCH)
     signs = (_stages(), _lane_signs(charset)) if in_menu else (_lane_signs(charset), _stages())
     yield from signs
     others = [_of_scope(each, keymap, charset) for each in sorted(_SHOWN, key=lambda each: each is not scope)]
-    tasks = [_of_task(task, ids, keymap, charset) for task, ids in TASKS.items()]
+    tasks = [_of_task(task, ids, keymap, charset, is_refused) for task, ids in TASKS.items()]
     yield from [*others[:1], *tasks, *others[1:]] if scope in _SHOWN else [*tasks, *others]
 
 
@@ -149,15 +165,30 @@ def _lane_signs(charset: Charset) -> _Section:
     )
 
 
-def _of_task(task: str, ids: Sequence[str], keymap: Keymap, charset: Charset) -> _Section:
+def _of_task(
+    task: str,
+    ids: Sequence[str],
+    keymap: Keymap,
+    charset: Charset,
+    is_refused: Callable[[KeyAction], bool],
+) -> _Section:
     actions = [action for action in ACTIONS if action.scope is Scope.LESSON and action.name in ids]
-    return _keys(task, sorted(actions, key=lambda action: ids.index(action.name)), keymap, charset)
+    actions.sort(key=lambda action: ids.index(action.name))
+    return _keys(task, actions, keymap, charset, is_refused)
 
 
 def _of_scope(scope: Scope, keymap: Keymap, charset: Charset) -> _Section:
     return _keys(scope.value, [action for action in ACTIONS if action.scope is scope], keymap, charset)
 
 
-def _keys(heading: str, actions: Sequence[KeyAction], keymap: Keymap, charset: Charset) -> _Section:
+def _keys(
+    heading: str,
+    actions: Sequence[KeyAction],
+    keymap: Keymap,
+    charset: Charset,
+    is_refused: Callable[[KeyAction], bool] = lambda _: False,
+) -> _Section:
     groups = group_by(keymap.of(actions), "line")
-    return _Section(heading, [_HelpRow(signs_of(group, charset), group[0].line) for group in groups])
+    return _Section(
+        heading, [_HelpRow(signs_of(group, charset), group[0].line, is_refused(group[0])) for group in groups]
+    )

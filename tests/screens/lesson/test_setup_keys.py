@@ -206,6 +206,39 @@ async def test_on_real_ros_the_release_is_fixed_and_undoing_all_stays_there(tmp_
         assert (setup.threads, setup.real) == (None, RealRos())
 
 
+async def test_on_real_ros_the_keys_of_time_tell_why_they_do_nothing(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    engines = FakeEngines(shared_group_run().events, ns(12.9))
+    app = CbtuiApp(start_file=(file, [], "real"), start_changes=Changes(real=RealRos()), open_session=engines)
+    async with app.run_test(size=WIDE, notifications=True) as pilot:
+        await settle(pilot)
+        for key in ("space", "full_stop", "minus", "plus", "W"):
+            app.clear_notifications()
+            await press(pilot, key)
+            assert notes(app) == [
+                "Real ROS 2 goes on by itself: only the model's time can be stopped, stepped or changed."
+            ]
+        await press(pilot, "comma", "full_stop")
+        assert engines.sessions[-1].commands == []
+        await press(pilot, "question_mark", "slash", *"pause:", "enter")
+        assert "Pause: stop time for every thread (not on real ROS 2)" in text_of(app)
+
+
+async def test_on_real_ros_a_moment_to_come_is_not_paused_at(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    engines = FakeEngines(shared_group_run().events, ns(12.9))
+    app = CbtuiApp(start_file=(file, [], "real"), start_changes=Changes(real=RealRos()), open_session=engines)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        await press(pilot, "G")
+        assert "The run is at 12.9" in text_of(app)
+        assert "pauses there" not in text_of(app)
+        await press(pilot, *("backspace",) * 8, *"20", "enter")
+        assert engines.sessions[-1].commands == []
+
+
 # notifications
 
 

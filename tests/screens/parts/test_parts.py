@@ -98,6 +98,7 @@ def test_each_screen_has_the_actions_that_make_sense_for_what_it_shows(tmp_path:
     assert every(Scope.LESSON) - of_an_exercise == WITH_A_PERSON | TAUGHT | REFUSED | CHOSEN
     missing = every(Scope.LESSON) - actions_of(replay(tmp_path))
     assert missing == WITH_AN_ENGINE | WITH_A_PERSON | TAUGHT | REFUSED | CHOSEN | {
+        "no_time",
         "compare",
         "hint",
         "solution",
