@@ -44,10 +44,11 @@ def _built_in(seen: At) -> tuple[Doing, str]:
     try:
         does = ast.parse(f"({text})", mode="eval").body
     except (SyntaxError, ValueError):
-        return _COMPUTES
+        does = None
     if isinstance(does, ast.Call):
         return _FUNCTIONS.get(ast.unparse(does.func).rpartition(".")[2], _COMPUTES)
-    return (Doing.WAITS, LOCK) if _is_entered(file, line, text) else _COMPUTES
+    is_entered = _is_with(text) if does is None else _is_entered(file, line, text)
+    return (Doing.WAITS, LOCK) if is_entered else _COMPUTES
 
 
 def _source(file: str, place: tuple[int, int, int, int]) -> str:
@@ -59,6 +60,15 @@ def _source(file: str, place: tuple[int, int, int, int]) -> str:
     lines[-1] = lines[-1][:end]
     lines[0] = lines[0][start:]
     return b"".join(lines).decode(errors="replace")
+
+
+def _is_with(text: str) -> bool:
+    """Whether an instruction is a whole ``with``, as that which enters it is until Python 3.12."""
+    try:
+        [statement] = ast.parse(text).body
+    except (SyntaxError, ValueError):
+        return False
+    return isinstance(statement, ast.With)
 
 
 @lru_cache(maxsize=256)

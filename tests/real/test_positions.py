@@ -15,7 +15,7 @@ class Tried(Node):
         super().__init__("tried")
         self.lock = threading.Lock()
         group = ReentrantCallbackGroup()
-        for callback in (self.keep, self.take, self.ask):
+        for callback in (self.keep, self.take, self.enter, self.ask):
             self.create_timer(0.3, callback, callback_group=group)
         self.create_service(SetBool, "switch", self.serve)
         self.client = self.create_client(SetBool, "switch", callback_group=group)
@@ -28,6 +28,11 @@ class Tried(Node):
         time.sleep(0.05)
         self.lock.acquire()
         self.lock.release()
+
+    def enter(self):
+        time.sleep(0.05)
+        with self.lock:
+            pass
 
     def ask(self):
         self.client.call(SetBool.Request(data=True))
@@ -54,7 +59,7 @@ class Tried(Node):
 @programs.needs_ros
 @pytest.mark.parametrize("ground", ["model", "ros2"])
 def test_the_line_of_a_callback_is_seen(tmp_path: Path, ground: str) -> None:
-    executor = "MultiThreadedExecutor(num_threads=6)"
+    executor = "MultiThreadedExecutor(num_threads=7)"
     timeline = programs.run(tmp_path, LOCKS, executor, ground=ground, seconds=0.6).timeline
     seen = {
         (each.frames[-1].function, each.doing, each.call)
@@ -65,6 +70,7 @@ def test_the_line_of_a_callback_is_seen(tmp_path: Path, ground: str) -> None:
         ("keep", Doing.SLEEPS, "time.sleep"),
         ("take", Doing.SLEEPS, "time.sleep"),
         ("take", Doing.WAITS, "Lock.acquire"),
+        ("enter", Doing.WAITS, "Lock.acquire"),
         ("ask", Doing.CALLS_ROS, "Client.call"),
         ("serve", Doing.SLEEPS, "time.sleep"),
     } <= seen
