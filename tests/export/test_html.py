@@ -41,9 +41,11 @@ def test_what_a_program_prints_stays_data_and_nothing_comes_from_outside() -> No
 
 @pytest.mark.slow
 @pytest.mark.skipif(PROGRAM is None, reason="there is no Chromium")
-def test_a_browser_shows_what_waits_at_a_moment(tmp_path: Path) -> None:
+@pytest.mark.parametrize("width", ["auto", "0"])  # a frame or a tab that is not shown yet has none
+def test_a_browser_shows_what_waits_at_a_moment(width: str, tmp_path: Path) -> None:
     file = tmp_path / "run.html"
-    file.write_text(page(timeline_of(shared_group_run().events)), encoding="utf-8")
+    text = page(timeline_of(shared_group_run().events))
+    file.write_text(text.replace("</style>", f"main {{ width: {width}; }}</style>"), encoding="utf-8")
     command = [
         str(PROGRAM),
         "--headless",
