@@ -68,6 +68,7 @@ class ChoosingScreen(RunScreen[LiveRun]):
     def draw_pane(self, pane: Widget) -> None:
         """Show the moment on screen on one pane."""
         if isinstance(pane, ChoiceView):
+            self._choices.look()  # before it says that a run that is over has missed the goal
             pane.show(self._choices.sheet)
         else:
             super().draw_pane(pane)

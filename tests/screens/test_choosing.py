@@ -69,6 +69,22 @@ async def test_choices_are_moves_until_the_goal_is_reached_which_is_kept() -> No
         assert Progress().of(PUZZLE.id).passed
 
 
+async def test_a_goal_that_is_reached_is_at_no_moment_said_to_be_missed(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    told, show = [], ChoiceView.show
+    monkeypatch.setattr(ChoiceView, "show", lambda view, sheet: (told.append(sheet.news), show(view, sheet)))
+    app = console(Asking())
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        await pilot.press("2")
+        await settle(pilot)
+        await pilot.press("2")
+        await settle(pilot)
+    assert told[-1].startswith("✓ Done")
+    assert not any(news.startswith("✗") for news in told)
+
+
 async def test_a_choice_is_taken_back_by_a_run_up_to_it() -> None:
     sessions = Asking()
     app = console(sessions)
