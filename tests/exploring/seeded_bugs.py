@@ -62,6 +62,7 @@ _STEPS = {
         "self.n = self._plus(self.n)",
         "self.n == self.ones + self.twos",
     ),
+    "lost update within a line": ("n = 0", "self.n += abs(1)", "self.n == self.ones + self.twos"),
     "lost update of a global": (
         "global total\ntotal = 0",
         "global total\nn = total\ntotal = n + 1",

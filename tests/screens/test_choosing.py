@@ -10,7 +10,7 @@ from cbtui.app import CbtuiApp
 from cbtui.screens.choosing import ChoosingScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.run import RunScreen
-from cbtui.widgets.choice import ChoiceView, kept_of, options_of
+from cbtui.widgets.choice import ChoiceSheet, ChoiceView, kept_of, options_of
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.key_bar import KeyBar
 from lessons.progress import Progress
@@ -73,7 +73,12 @@ async def test_a_goal_that_is_reached_is_at_no_moment_said_to_be_missed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     told, show = [], ChoiceView.show
-    monkeypatch.setattr(ChoiceView, "show", lambda view, sheet: (told.append(sheet.news), show(view, sheet)))
+
+    def telling(view: ChoiceView, sheet: ChoiceSheet) -> None:
+        told.append(sheet.news)
+        show(view, sheet)
+
+    monkeypatch.setattr(ChoiceView, "show", telling)
     app = console(Asking())
     async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)

@@ -1,15 +1,18 @@
 """Lets threads switch in front of each line of the program that touches data which threads may share."""
 
+import ast
 import linecache
 import sys
 import threading
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from types import CodeType, FrameType
 from typing import Any
 
 from sim.clock import VirtualClock
 from sim.engine.exploration.conflicts import Conflicts
 from sim.engine.exploration.shared_data import SharedData, shared_data
+from sim.engine.exploration.split_lines import split_lines
+from sim.engine.programs import source
 from sim.marks import calls_the_program
 from sim.probes.own_code import is_library, is_own, outwards
 
@@ -17,7 +20,8 @@ from sim.probes.own_code import is_library, is_own, outwards
 class LineSwitches:
     """Traces the program's own code on every thread of the clock.
 
-    A line is atomic: CPython could leave it only where it calls something, and that has lines of its own.
+    A line is atomic, as CPython leaves it only where it calls something, and that has lines of its own; but
+    for the lines of ``SharedData.split``, of the program's own file, which have two steps.
     """
 
     def __init__(self, clock: VirtualClock, conflicts: Conflicts) -> None:
@@ -28,7 +32,8 @@ class LineSwitches:
         self._own: dict[CodeType, SharedData | None] = {}
 
     def start(self) -> None:
-        """Trace the calling thread, and each that starts from now on."""
+        """Trace the calling thread, and each that starts from now on; split lines of what is compiled."""
+        source.changes.append(self._split)
         threading.settrace(self._called)
         sys.settrace(self._called)
 
@@ -45,14 +50,28 @@ class LineSwitches:
         if file not in self._files:
             found = self._files[file] = shared_data("".join(linecache.getlines(file)))
             self._written |= found.written
+            found.split.clear()  # of a module that was imported, and not compiled here
         return self._files[file]
+
+    def _split(self, tree: ast.Module, text: str, file: str) -> ast.Module:
+        found = self._files[file] = shared_data(text)
+        self._written |= found.written
+        return split_lines(tree, found, self._come_to_write)
+
+    def _come_to_write(self, value: object, name: str) -> object:
+        """Let other threads go first in the middle of a split line."""
+        self._come_to(sys._getframe(1), {name: True})
+        return value
 
     def come_to_line(self, frame: FrameType, data: SharedData) -> None:
         """Let other threads go first if the line touches shared data, and note what it touches."""
+        later = data.split.get(frame.f_lineno)
+        found = data.lines.get(frame.f_lineno, {})
+        self._come_to(frame, {name: writes and name != later for name, writes in found.items()})
+
+    def _come_to(self, frame: FrameType, touched: Mapping[str, bool]) -> None:
         accesses: dict[Hashable, bool] = {
-            name: writes
-            for name, writes in data.lines.get(frame.f_lineno, {}).items()
-            if name in self._written
+            name: writes for name, writes in touched.items() if name in self._written
         }
         if not accesses:
             return

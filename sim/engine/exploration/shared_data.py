@@ -23,10 +23,14 @@ class SharedData:
     ``written`` are the names that functions other than ``__init__`` write, or change in place: others are
     constant once the program runs. What a local name stands for is not followed, but for objects that the
     function makes itself, which are left out.
+
+    ``split`` has the lines that read a name, then call something or read a field of an argument, which on
+    rclpy's messages is a call, too, and write the name after that: CPython can leave these in between.
     """
 
     lines: defaultdict[int, dict[str, bool]] = field(default_factory=lambda: defaultdict(dict))
     written: set[str] = field(default_factory=set)
+    split: dict[int, str] = field(default_factory=dict)
 
     def note(self, name: str, line: int, *, writes: bool, counts: bool) -> None:
         """Add an access; a write that ``counts`` makes the name one that changes."""
@@ -60,6 +64,7 @@ class _Accesses:
         declared = {
             name for each in self._nodes if isinstance(each, ast.Global | ast.Nonlocal) for name in each.names
         }
+        self._arguments = arguments - {"self"}
         self._locals = (stored | arguments) - declared
         self._made = {
             target.id
@@ -84,9 +89,30 @@ class _Accesses:
                     for changed in [called.value] if isinstance(called, ast.Attribute) else arguments[:1]:
                         self._note(changed, writes=True)
 
+        for node in self._nodes:
+            match node:
+                case ast.AugAssign(target=target, value=value) | ast.Assign(targets=[target], value=value):
+                    self._note_split(node, target, value)
+
+    def _note_split(self, node: ast.stmt, target: ast.expr, value: ast.expr) -> None:
+        shared = ast.unparse(_without_index(target))
+        is_read = isinstance(node, ast.AugAssign)
+        for each in _in_order(value):
+            if is_read and self._leaves(each):
+                for name in self._found.lines.get(target.end_lineno or target.lineno, ()):
+                    if shared.rpartition(".")[2] == name.removeprefix("."):
+                        self._found.split[target.end_lineno or target.lineno] = name
+                return
+            is_read = is_read or (isinstance(each, ast.Attribute | ast.Name) and ast.unparse(each) == shared)
+
+    def _leaves(self, node: ast.expr) -> bool:
+        """Whether CPython may go on with another thread there."""
+        if isinstance(node, ast.Attribute):
+            return isinstance(node.value, ast.Name) and node.value.id in self._arguments
+        return isinstance(node, ast.Call)
+
     def _note(self, node: ast.expr, *, writes: bool) -> None:
-        while isinstance(node, ast.Subscript):
-            node = node.value
+        node = _without_index(node)
         root: ast.expr = node
         while isinstance(root, ast.Attribute | ast.Subscript):
             root = root.value
@@ -97,6 +123,20 @@ class _Accesses:
             self._found.note(f".{node.attr}", line, writes=writes, counts=self._counts)
         elif isinstance(node, ast.Name) and node.id not in self._locals:
             self._found.note(node.id, line, writes=writes, counts=self._counts)
+
+
+def _without_index(node: ast.expr) -> ast.expr:
+    while isinstance(node, ast.Subscript):
+        node = node.value
+    return node
+
+
+def _in_order(node: ast.expr) -> Iterator[ast.expr]:
+    """An expression and those in it, in the order in which they are worked out."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.expr) and not isinstance(child, ast.Lambda):
+            yield from _in_order(child)
+    yield node
 
 
 def _inside(function: ast.AST) -> Iterator[ast.AST]:

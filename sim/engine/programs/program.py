@@ -18,7 +18,7 @@ from typing import Any
 from sim.engine.failures.advice import misplaced, silence
 from sim.engine.failures.failure import Failure, failure, place_of
 from sim.engine.programs.ending import run_thread_exit_functions
-from sim.engine.programs.source import NothingToRunError, read_source
+from sim.engine.programs.source import NothingToRunError, compiled, read_source
 from sim.engine.stdio.output import finish_lines
 from sim.error_text import error_line
 from sim.ros.context.signals import deliver_sigint
@@ -160,7 +160,7 @@ def _entry(program: ProgramSpec, function: Callable[..., object]) -> Callable[[]
 
 
 def _code(program: ProgramSpec, source: str) -> CodeType:
-    return compile(source, program.path, "exec", dont_inherit=True)
+    return compiled(source, program.path)
 
 
 def _namespace(program: ProgramSpec, name: str) -> dict[str, Any]:

@@ -1,13 +1,30 @@
 """Reads a learner's file as Python does, and says what keeps it from being a program."""
 
+import ast
 import importlib.util
+from collections.abc import Callable
 from pathlib import Path
+from types import CodeType
 
 from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
 
 
 class NothingToRunError(Exception):
     """A file that cannot be run as a program, whatever it does; the text says why and what to do."""
+
+
+changes: list[Callable[[ast.Module, str, str], ast.Module]] = []
+"""What a program's tree is led through as it is compiled, with its text and its file's name."""
+
+
+def compiled(text: str, file: str) -> CodeType:
+    """The code of a program; a syntax error is raised as Python does."""
+    if not changes:
+        return compile(text, file, "exec", dont_inherit=True)
+    tree = ast.parse(text, file)
+    for change in changes:
+        tree = change(tree, text, file)
+    return compile(tree, file, "exec", dont_inherit=True)
 
 
 def read_source(path: Path) -> str:

@@ -46,6 +46,24 @@ def test_what_only_init_writes_a_local_name_and_an_object_of_the_functions_own_d
     assert shared_data(SOURCE).written == {".n", ".items", ".table", ".heap", "total", "seen"}
 
 
+@pytest.mark.parametrize(
+    ("line", "name"),
+    [
+        ("self.n += message.data", ".n"),
+        ("self.n = self.n + float(message)", ".n"),
+        ("self.table[0] += abs(x)", ".table"),
+        ("self.stats.n += len(x)", ".n"),
+        ("self.n += 1", None),  # CPython cannot leave it
+        ("self.n = self.n + self.step", None),
+        ("self.n = message.data + self.n", None),  # read after the call
+        ("self.n = float(message)", None),
+    ],
+)
+def test_a_line_that_calls_between_reading_and_writing_is_split(line: str, name: str | None) -> None:
+    found = shared_data(f"def tick(self, message, x):\n    {line}\n")
+    assert found.split == ({} if name is None else {2: name})
+
+
 @pytest.mark.parametrize("source", ["", "def f(:\n", "x = 1\0"])
 def test_a_source_without_functions_or_sense_has_none(source: str) -> None:
     assert not shared_data(source).lines
