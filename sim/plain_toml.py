@@ -11,22 +11,30 @@ _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:\.[ \t]*+{_PART}){{{_DEEPEST}}}")
 """For each part of a key, ``tomllib`` keeps all parts before: 100 kB of them would take 10 GB."""
 
 
+class DeepTomlError(tomllib.TOMLDecodeError):
+    """A document is nested too deeply."""
+
+    def __init__(self, text: str) -> None:
+        # Python 3.14 wants the document and a position, which not everything here has.
+        ValueError.__init__(self, text)
+
+
 def load(text: str) -> dict[str, Any]:
     """The table that a text stands for.
 
     Raises:
-        tomllib.TOMLDecodeError: it is no TOML, or nested too deeply.
+        tomllib.TOMLDecodeError: it is no TOML, or nested too deeply (`DeepTomlError`).
         ValueError: it holds a number that Python does not read.
     """
     if found := _LONG_KEY.search(text):
         line = text.count("\n", 0, found.start()) + 1
-        raise tomllib.TOMLDecodeError(f"A key has more than {_DEEPEST} parts (at line {line}, column 1)")
+        raise DeepTomlError(f"A key has more than {_DEEPEST} parts (at line {line}, column 1)")
     try:
         document = tomllib.loads(text)
     except RecursionError:
         document = None
     if document is None or _is_deep(document):
-        raise tomllib.TOMLDecodeError("It is nested too deeply")
+        raise DeepTomlError("It is nested too deeply")
     return document
 
 

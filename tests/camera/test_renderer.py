@@ -13,6 +13,7 @@ from tests.camera.shots import SPHERE, WALLS, shot
 
 @pytest.fixture(scope="module")
 def renderer() -> Iterator[Renderer]:
+    pytest.importorskip("pybullet")
     renderer = Renderer(WALLS, SPHERE)
     yield renderer
     renderer.close()
