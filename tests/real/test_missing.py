@@ -1,10 +1,13 @@
 """What is said of packages that are missing on real ROS 2."""
 
 import pkgutil
+import sys
+from pathlib import Path
 
 import pytest
 
 import sim.ros_packages
+from cbtui.commands.options import changes
 from sim.real.missing import on_missing
 
 
@@ -41,3 +44,15 @@ def test_what_has_wheels_is_installed_with_pip() -> None:
 @pytest.mark.parametrize("other", ["ModuleNotFoundError: No module named 'mine'", "KeyError: 'tf2_ros'", ""])
 def test_nothing_is_said_of_others(other: str) -> None:
     assert on_missing(other, "") == ""
+
+
+def test_the_wheels_of_two_releases_in_one_python_are_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("rclpy", "ros_lyrical_rclpy-10.0.dist-info", "ros_rolling_rclpy-11.0.dist-info"):
+        (tmp_path / name).mkdir()
+    for folder in tmp_path.glob("*.dist-info"):
+        (folder / "METADATA").write_text(f"Name: {folder.name.partition('-')[0].replace('_', '-')}\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with pytest.raises(changes.NoRealRosError, match="lyrical and rolling, which have overwritten"):
+        changes.real_ros(sys.executable)

@@ -36,7 +36,7 @@ class Ticking:
         self.run = run = Run()
         self.thread: ThreadId = run.thread("MainThread")
         run.executor("SingleThreadedExecutor", 1)
-        group = run.exclusive(run.node("/n"))
+        group = self.group = run.exclusive(run.node("/n"))
         self.tick = run.timer(group, "tick", 0.2)
         self.hear = run.subscription(group, "/news", "hear")
         chance = random.Random(1)
@@ -85,6 +85,16 @@ def test_a_time_in_which_a_callback_runs_on_one_ground_alone_is_told_with_its_re
         f"on real rclpy hear does not run for 3.1 s from 3.9 s on {why}, on the model it does",
         "the diagnosis finds on real rclpy alone: hear waited 3.0 s: group A was held by tick",
     ]
+
+
+def test_which_of_several_waited_longest_for_the_same_is_no_difference() -> None:
+    model, real = Ticking(busy=(1, 2)), Ticking(busy=(1, 2))
+    for ran, since in ((model, (4.0, 4.02)), (real, (4.02, 4.0))):
+        keep = ran.run.timer(ran.group, "keep", 9.0)
+        ran.run.callback(keep, ran.thread, 4.0, 3.0)
+        for entity, at in zip((ran.tick, ran.hear), since, strict=True):
+            ran.run.wait(entity, at, 7.0, holder=keep)
+    assert told(model, real) == []
 
 
 def test_more_calls_are_told() -> None:
@@ -155,7 +165,7 @@ def test_the_order_in_which_a_thread_serves_what_it_kept_waiting_is_told() -> No
 def test_what_cannot_be_proved_is_refused_in_a_sentence(
     words: list[str], said: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(changes, "find_spec", lambda _: None)
+    monkeypatch.setattr(changes, "_wheels_of", lambda _: None)
     with pytest.raises(SystemExit) as ended:
         cli.main(["prove", *words])
     told = capsys.readouterr()

@@ -44,7 +44,7 @@ def lesson(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_what_cannot_be_checked_on_real_ros_is_refused_in_a_sentence(
     words: list[str], said: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(changes, "find_spec", lambda _: None)
+    monkeypatch.setattr(changes, "_wheels_of", lambda _: None)
     with pytest.raises(SystemExit) as ended:
         cli.main(["check", "split-groups", __file__, *words])
     told = capsys.readouterr()

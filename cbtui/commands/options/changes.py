@@ -2,8 +2,6 @@
 
 import argparse
 import sys
-from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cbtui.commands.options import values
@@ -174,10 +172,16 @@ def real_ros(chosen: str | None, option: str = "python") -> "RealRos":
     found = shutil.which(python)
     if found is None:
         raise NoRealRosError(f"{option} {python}: there is no such program")
-    if not _has_rclpy(found):
+    wheels = _wheels_of(found)
+    if wheels is None:
         raise NoRealRosError(
             f"{python} has no rclpy; name a Python that has it with {option}, where ROS is sourced, or "
             f"give cbtui's own one: {install_command('cbtui[ros]')}"
+        )
+    if len(wheels) > 1:
+        raise NoRealRosError(
+            f"{python} has the wheels of {' and '.join(wheels)}, which have overwritten each other; "
+            f"make a venv for each, and name its Python with {option}"
         )
     return RealRos(chosen or "")
 
@@ -207,13 +211,22 @@ print(f"{(wheels or [os.environ.get('ROS_DISTRO')])[0]}@{names.get('rclpy')}")
 """
 
 
-def _has_rclpy(python: str) -> bool:
-    if Path(python) == Path(sys.executable):
-        return find_spec("rclpy") is not None
+_WHEELS = """
+import re, sys
+from importlib.metadata import distributions
+from importlib.util import find_spec
+found = (re.fullmatch("ros-([a-z]+)-rclpy", each.name.replace("_", "-")) for each in distributions())
+print(*sorted({match[1] for match in found if match}))
+sys.exit(find_spec("rclpy") is None)
+"""
+
+
+def _wheels_of(python: str) -> list[str] | None:
+    """The releases whose wheels of rclpy a Python has, none for a sourced ROS 2; None without any rclpy."""
     import subprocess
 
-    code = "import importlib.util, sys; sys.exit(importlib.util.find_spec('rclpy') is None)"
-    return subprocess.run([python, "-c", code], check=False, capture_output=True).returncode == 0
+    asked = subprocess.run([python, "-c", _WHEELS], check=False, capture_output=True, text=True)
+    return None if asked.returncode else asked.stdout.split()
 
 
 def seeded_changes_of(options: argparse.Namespace) -> "Changes":

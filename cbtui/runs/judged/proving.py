@@ -291,13 +291,15 @@ def _of_diagnoses(model: Timeline, real: Timeline) -> Iterator[Difference]:
 def _problems(timeline: Timeline) -> Iterator[tuple[tuple[str, str], tuple[Nanoseconds, str]]]:
     """Rules and the callbacks in which they find a problem, with when and what.
 
-    Those of a deadlock wait for each other: who comes last into it may differ.
+    Those of a deadlock wait for each other, and several may wait for one: who is named first may differ.
     """
     for each in diagnose(timeline):
         entity = timeline.entities.get(each.subject)
         if each.rule.weigh(each, timeline) is Weight.PROBLEM and not (entity and _is_own(entity)):
             told = each.rule.explain(each, timeline)
-            name = "" if entity is None or told.for_ever else entity.spoken_name
+            culprit = timeline.entities.get(each.culprit) if each.rule.by_culprit else None
+            named = culprit or entity
+            name = "" if named is None or told.for_ever else named.spoken_name
             yield (each.rule.id, name), (each.at, told.what)
 
 
