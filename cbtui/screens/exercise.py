@@ -17,7 +17,6 @@ from cbtui.learning.lesson_page import page_of_exercise
 from cbtui.learning.stage import LessonStep
 from cbtui.looks.theme import Charset
 from cbtui.runs.judged.checking import ObservedRun, ended_run
-from cbtui.runs.judged.run_budget import RunBudget
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import of_exercise
@@ -102,11 +101,6 @@ class ExerciseScreen(RunScreen[LiveRun]):
         )
         runs.begin(speed=None)
 
-    @property
-    def is_judged(self) -> bool:
-        """Whether the run on screen has been judged."""
-        return self._judging.sheet is not None
-
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
         title = f"{self._judging.file.name}, run {self.runs.number}"
         setup = msgspec.structs.replace(self.subject.set_up(None, speed), title=title)
@@ -187,10 +181,6 @@ class ExerciseScreen(RunScreen[LiveRun]):
     def _judge_when_over(self, message: RunController.Over) -> None:
         if message.run == self.runs.number:
             self._start_judging(ended_run(self.runs.timeline, self._judging.file.name, message.trouble))
-
-    def allow(self, budget: RunBudget) -> None:
-        """Replace the budget of the run on screen."""
-        self._judging.budget = budget
 
     def check_budget(self) -> None:
         """Abort the run if it exceeds its budget."""

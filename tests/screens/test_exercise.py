@@ -26,6 +26,7 @@ from tests.support.exercises import (
     STARTER,
     Engines,
     ExerciseConsole,
+    is_judged,
     judged_run,
     until,
 )
@@ -67,7 +68,7 @@ async def console(
 async def judge(app: ExerciseConsole, engines: Engines, pilot: Pilot[None]) -> None:
     """Let the latest run be over and judged."""
     engines.finish()
-    await until(pilot, lambda: app.exercise.is_judged)
+    await until(pilot, lambda: is_judged(app.exercise))
     app.clear_notifications()
     await settle(pilot)
 
@@ -243,7 +244,7 @@ async def test_r_runs_it_again_and_w_at_the_pace_of_real_time() -> None:
             await settle(pilot)
         assert [session.setup.speed for session in engines.sessions] == [None, 1.0, None]
         assert [session.stopped for session in engines.sessions] == [True, True, False]
-        assert not app.exercise.is_judged
+        assert not is_judged(app.exercise)
 
 
 # saving
@@ -311,8 +312,8 @@ async def test_a_run_that_takes_too_much_is_ended_and_told_of() -> None:
     app = ExerciseConsole(engines)
     async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)
-        app.exercise.allow(RunBudget(limit=-1))
-        await until(pilot, lambda: app.exercise.is_judged and engines.latest.stopped)
+        app.exercise._judging.budget = RunBudget(limit=-1)
+        await until(pilot, lambda: is_judged(app.exercise) and engines.latest.stopped)
         await settle(pilot)
         assert "was given -1 s of real time" in text_of(app)
         assert not app.exercise.runs.run.alive
@@ -325,7 +326,7 @@ async def test_a_paused_run_may_stand_as_long_as_it_likes() -> None:
     async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)
         app.exercise.runs.run.pause()
-        app.exercise.allow(RunBudget(limit=0))
+        app.exercise._judging.budget = RunBudget(limit=0)
         app.exercise.check_budget()
         await settle(pilot)
         assert app.exercise.runs.run.alive
@@ -337,6 +338,6 @@ async def test_an_engine_that_is_lost_is_told_of_in_a_sentence() -> None:
     async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)
         engines.latest.end("the engine ended with exit code 3")
-        await until(pilot, lambda: app.exercise.is_judged)
+        await until(pilot, lambda: is_judged(app.exercise))
         await settle(pilot)
         assert f"{FILE} ended its whole process at 0.000 s" in text_of(app)

@@ -9,7 +9,7 @@ from cbtui.runs.judged.run_budget import RunBudget
 from lessons.progress import Progress
 from tests.commands.exercise_files import A_GIGABYTE, ENDLESS_CALLBACK, LEAVES, SYNTAX_ERROR
 from tests.support.console import NARROW, settle
-from tests.support.exercises import FILE, LESSON, SOLUTION, ExerciseConsole, until
+from tests.support.exercises import FILE, LESSON, SOLUTION, ExerciseConsole, is_judged, until
 from tests.support.pictures import text_of
 
 
@@ -24,7 +24,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 async def test_the_starter_fails_and_once_mended_it_passes(here: Path) -> None:
     app = ExerciseConsole()
     async with app.run_test(size=NARROW) as pilot:
-        await until(pilot, lambda: app.exercise.is_judged)
+        await until(pilot, lambda: is_judged(app.exercise))
         await settle(pilot)
         assert "✗ 1 of 5 pass" in text_of(app)
         assert not Progress().of(LESSON.id).passed
@@ -49,7 +49,7 @@ async def test_a_file_that_cannot_be_judged_is_told_of_and_left_as_it_is(
     (here / FILE).write_text(text)
     app = ExerciseConsole()
     async with app.run_test(size=NARROW) as pilot:
-        await until(pilot, lambda: app.exercise.is_judged)
+        await until(pilot, lambda: is_judged(app.exercise))
         await settle(pilot)
         assert sentence in text_of(app)
         assert "5 of 5" not in text_of(app)
@@ -62,8 +62,8 @@ async def test_a_file_that_goes_on_for_ever_is_ended(here: Path) -> None:
     app = ExerciseConsole()
     async with app.run_test(size=NARROW) as pilot:
         await until(pilot, lambda: app.exercise.runs.run.timeline.started is not None)
-        app.exercise.allow(RunBudget(limit=0.3))
-        await until(pilot, lambda: app.exercise.is_judged)
+        app.exercise._judging.budget = RunBudget(limit=0.3)
+        await until(pilot, lambda: is_judged(app.exercise))
         await settle(pilot)
         assert f"{FILE} was given 0.3 s of real time" in text_of(app)
         assert not app.exercise.runs.run.alive

@@ -24,6 +24,11 @@ _LIMIT = 60.0
 _FOREVER = 10**18
 
 
+def is_judged(screen: ExerciseScreen) -> bool:
+    """Whether the run on screen has been judged."""
+    return screen._judging.sheet is not None
+
+
 def judged_run(file: Path) -> list[AnyEvent]:
     """The events of the run that a file for the exercise is judged by."""
     return run_to_end(setup_to_judge(LESSON, file)).events

@@ -10,7 +10,7 @@ from lessons.progress import Progress
 from tests.screens.lesson.test_teaching import WITH_EXERCISE, Console, press, the_lessons_own_run, until_shown
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.daily import first_daily
-from tests.support.exercises import SOLUTION, STARTER, Engines, ExerciseConsole, judged_run, until
+from tests.support.exercises import SOLUTION, STARTER, Engines, ExerciseConsole, is_judged, judged_run, until
 from tests.support.runs import shared_group_run
 
 Compare = Callable[..., bool]
@@ -67,7 +67,7 @@ def test_the_checks_of_an_exercise_look_as_they_did(
     async def judged(pilot: Pilot[None]) -> None:
         await settle(pilot)
         engines.finish()
-        await until(pilot, lambda: app.exercise.is_judged)
+        await until(pilot, lambda: is_judged(app.exercise))
         app.clear_notifications()
         await settle(pilot)
 

@@ -31,7 +31,7 @@ from tests.screens.lesson.test_teaching import Console
 from tests.screens.pictures.test_real_lessons import events_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
-from tests.support.exercises import Engines, ExerciseConsole, until
+from tests.support.exercises import Engines, ExerciseConsole, is_judged, until
 from tests.support.fake_session import FakeEngines
 from tests.support.goldens import WIDGETS, hold
 from tests.support.pictures import picture_of
@@ -168,7 +168,7 @@ async def test_the_checks_of_an_exercise(
     async with app.run_test(size=(80, 40)) as pilot:
         await settle(pilot)
         engines.finish()
-        await until(pilot, lambda: app.exercise.is_judged)
+        await until(pilot, lambda: is_judged(app.exercise))
         await settle(pilot)
         pictures = pictures_of(app, [("checks", ChecksView)])
     hold(pictures, WIDGETS, pytestconfig)
