@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import ClassVar
 
-import msgspec
 from textual import on
 from textual.widget import Widget
 from textual.widgets import OptionList
@@ -57,8 +56,7 @@ class ChoosingScreen(RunScreen[LiveRun]):
         runs.begin(speed=None)
 
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
-        setup = msgspec.structs.replace(self.subject.set_up(None, speed), seed=self._choices.seed)
-        return LiveRun(setup, self._open_session, deliver, ended)
+        return LiveRun(self._choices.set_up(self.subject, speed), self._open_session, deliver, ended)
 
     def compose_panes(self) -> Iterator[Widget]:
         """Yield the panes, the choice first: it stands before the code."""

@@ -4,7 +4,6 @@ import asyncio
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-import msgspec
 from textual import on
 
 from cbtui.engines.session import Deliver, Ended, OpenSession
@@ -34,7 +33,6 @@ from cbtui.widgets.code import CodeView
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellView
 from lessons.lesson import Lesson
-from sim.engine.setup import Keyboard
 from sim.units import SECOND
 
 _TOUR_SPEED = 0.1
@@ -128,10 +126,7 @@ class LessonScreen(RunScreen[LiveRun]):
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
         if self._own_file is not None:
             self._own_file.begin()
-        changes = self.changes
-        setup = changes.applied(self.subject.set_up(changes.threads, speed))
-        setup = msgspec.structs.replace(setup, keyboard=Keyboard.LIVE, inputs=self.restarts.inputs)
-        return LiveRun(setup, self._open_session, deliver, ended)
+        return LiveRun(self.restarts.set_up(self.subject, speed), self._open_session, deliver, ended)
 
     # the lesson
 

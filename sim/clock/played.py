@@ -149,16 +149,16 @@ class Walked(Played):
         return self._random.randrange(len(choice.options))
 
 
-def moves_of(text: str) -> dict[int, int]:
-    """Read moves, as ``moves_text`` writes them.
+def moves_of(seed: str) -> dict[int, int]:
+    """Read the moves of a seed, with or without the strategy in front.
 
     Raises:
         ValueError: it is none.
     """
-    pairs = (each.partition("=") for each in text.split(",") if each)
+    pairs = (each.partition("=") for each in seed.rpartition(":")[2].split(",") if each)
     return {int(number): int(option) for number, _, option in pairs}
 
 
-def moves_text(moves: Moves) -> str:
+def moves_text(moves: Moves, strategy: str = "moves") -> str:
     """The seed of a schedule that plays moves, such as ``moves:3=1,9=2``."""
-    return "moves:" + ",".join(f"{number}={option}" for number, option in sorted(moves.items()))
+    return f"{strategy}:" + ",".join(f"{number}={option}" for number, option in sorted(moves.items()))

@@ -3,8 +3,6 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-import msgspec
-
 from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.keys.action import Scope
 from cbtui.runs.live.live_run import LiveRun
@@ -47,8 +45,7 @@ class ChoosingConsole(LinearConsole[LiveRun]):
         self.telling.begin()
 
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
-        setup = msgspec.structs.replace(self.subject.set_up(None, speed), seed=self._choices.seed)
-        return LiveRun(setup, self._open_session, deliver, ended)
+        return LiveRun(self._choices.set_up(self.subject, speed), self._open_session, deliver, ended)
 
     @property
     def is_ready(self) -> bool:

@@ -7,8 +7,6 @@ from functools import partial
 from threading import Event, Thread
 from typing import TypeAlias
 
-import msgspec
-
 from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.learning.lesson_page import introduction
 from cbtui.learning.outcome import Observe
@@ -31,7 +29,6 @@ from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.parts.restarts import Restarts
 from lessons.lesson import Lesson
 from sim.durations import timestamp
-from sim.engine.setup import Keyboard
 from sim.trace.figures.comparison import compare, first_difference
 from sim.trace.figures.comparison_text import comparison_lines
 from sim.trace.incremental import run_to_end
@@ -93,10 +90,7 @@ class LessonConsole(LinearConsole[LiveRun]):
         return teaching
 
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
-        changes = self.restarts.changes
-        setup = changes.applied(self.subject.set_up(changes.threads, speed))
-        setup = msgspec.structs.replace(setup, keyboard=Keyboard.LIVE, inputs=self.restarts.inputs)
-        return LiveRun(setup, self._open_session, deliver, ended)
+        return LiveRun(self.restarts.set_up(self.subject, speed), self._open_session, deliver, ended)
 
     def _open_choosing(self, subject: ShownProgram) -> None:
         """Let the learner choose who goes on, and come back to this run."""

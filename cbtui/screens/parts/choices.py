@@ -4,6 +4,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from itertools import chain
 
+import msgspec
+
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram, of_moment
@@ -13,7 +15,8 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.choice import ChoiceSheet, kept_of, options_of
 from lessons.catalogue import find
 from lessons.puzzles import Puzzle
-from sim.clock.played import Moves, moves_of
+from sim.clock.played import Moves, moves_of, moves_text
+from sim.engine.setup import RunSetup
 from sim.plural import counted
 from sim.trace.events import AnyEvent, ChoiceAsked
 
@@ -38,10 +41,9 @@ class Choices(ScreenPart):
     reached: bool = False
     """Whether the goal was reached."""
 
-    @property
-    def seed(self) -> str:
-        """The seed of a run that asks behind what was chosen so far."""
-        return "ask:" + ",".join(f"{number}={option}" for number, option in self.made.items())
+    def set_up(self, subject: ShownProgram, speed: float | None) -> RunSetup:
+        """The set-up of a run that asks behind what was chosen so far."""
+        return msgspec.structs.replace(subject.set_up(None, speed), seed=moves_text(self.made, "ask"))
 
     @property
     def moves(self) -> int:
@@ -148,7 +150,7 @@ class Choices(ScreenPart):
 
 def solution_of(puzzle: Puzzle) -> Moves:
     """The moves of a puzzle's solution."""
-    return moves_of(puzzle.solution.removeprefix("moves:"))
+    return moves_of(puzzle.solution)
 
 
 @dataclass

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+import msgspec
 from textual.screen import Screen
 
 from cbtui.runs.compared_runs import ComparedSide, compared_side
@@ -24,7 +25,7 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.windows.setup import SetupScreen
 from cbtui.screens.windows.setup_rows import GroupRow, SettingRow, ThreadsRow, ValueRow
-from sim.engine.setup import TimedInput
+from sim.engine.setup import Keyboard, RunSetup, TimedInput
 
 _TOLD = 2
 """The most statements of equivalent code in the notification of a restart."""
@@ -55,6 +56,11 @@ class Restarts(ScreenPart):
         is_over = not run.alive or run.state is RunState.SILENT
         repeats = is_over or self.at_any_time or (bool(run.setup.programs) and not has_robot(run))
         return repeats or action != "run_again"
+
+    def set_up(self, subject: ShownProgram, speed: float | None) -> RunSetup:
+        """The set-up of the next run: the program's, with the changes, a live keyboard and the inputs."""
+        setup = self.changes.applied(subject.set_up(self.changes.threads, speed))
+        return msgspec.structs.replace(setup, keyboard=Keyboard.LIVE, inputs=self.inputs)
 
     async def again(self, changes: Changes, inputs: tuple[TimedInput, ...] = ()) -> None:
         """Run again with these changes, and with inputs of a run before."""
