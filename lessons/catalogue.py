@@ -59,7 +59,7 @@ def is_built_in(lesson: Lesson) -> bool:
 
 
 def lessons_in(folder: Path) -> tuple[Lesson, ...]:
-    """Return the lessons that lie in a folder, or in folders in it, by their numbers; the folder may be one.
+    """Return the lessons of a folder and of folders in it, by their numbers; it may be a lesson itself.
 
     Raises:
         BadLesson: one of them is at fault.

@@ -277,7 +277,7 @@ class CompareScreen(SizedScreen[None]):
         self.draw()
 
     def action_window(self) -> None:
-        """Let the table tell of all that both runs have, or of the stretch on screen."""
+        """Switch the table between the whole of both runs and the stretch on screen."""
         self._whole = not self._whole
         self._forget_comparison()
         self.draw()

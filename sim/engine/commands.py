@@ -105,7 +105,7 @@ Command: TypeAlias = PaceCommand | WorldCommand
 INTERRUPT = "\x03"
 """What ctrl+c types."""
 END_OF_INPUT = "\x04"
-"""What ctrl+d types: it hands on a line that was begun, and is the end of the input where none was."""
+"""What ctrl+d types: it submits an unfinished line; on an empty line it ends the input."""
 
 _encoder = msgspec.msgpack.Encoder()
 _decoder: msgspec.msgpack.Decoder[Command] = msgspec.msgpack.Decoder(Command)

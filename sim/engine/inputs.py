@@ -14,10 +14,10 @@ class UnknownInputError(Exception):
 
 
 def inputs_of(events: Iterable[AnyEvent]) -> tuple[TimedInput, ...]:
-    """What was told to a run from outside, in order.
+    """The inputs that a run got from outside, in order.
 
-    A repetition on the virtual clock, with the same set-up besides, has the events of the run, but for those
-    that tell what was done to its time and what its prompt completed.
+    A repetition on the virtual clock, with these inputs and otherwise the same set-up, has the same events,
+    except those about changes of its pace and completions at its prompt.
 
     Raises:
         UnknownInputError: one of them is none that this version knows.

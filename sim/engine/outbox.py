@@ -33,7 +33,7 @@ _LINES = 256
 _PATIENCE = 1.0
 """Seconds for which a line is held up at most: nobody may be reading."""
 _TELL = 1.0
-"""Seconds of having held lines up after which a notice tells of it, once."""
+"""Seconds for which lines were held up until a notice reports it, once."""
 _IN_THE_PIPE = 1 << 12
 """Bytes that the pipe takes on the real clock before they are read: an answer comes after all of them."""
 

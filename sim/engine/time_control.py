@@ -171,7 +171,7 @@ _KINDS = {
 
 
 def given(now: int, command: PaceCommand) -> CommandGiven:
-    """Return what the trace tells of a command."""
+    """Return the text of a command on the trace."""
     return CommandGiven(now, in_words(command), _KINDS[type(command)])
 
 

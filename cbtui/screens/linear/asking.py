@@ -116,7 +116,7 @@ class FinishInLines:
     host: PostingHost
 
     def finish(self, finish: FinishFile | None) -> None:
-        """Finish a file, and tell of it; does nothing for None."""
+        """Finish a file, and report that; does nothing for None."""
 
         def write(finish: FinishFile) -> None:
             said = finish()

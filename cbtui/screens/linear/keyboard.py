@@ -16,9 +16,9 @@ _SEQUENCE = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.)")
 
 
 class KeyReader:
-    """Reads standard input on a thread of its own, and hands on lines, None at its end.
+    """Reads standard input on a thread of its own; ``give`` gets each line, and None at the end.
 
-    On a terminal each key counts as a line, and is not shown, unless lines are wanted. ``give`` takes them.
+    On a terminal each key counts as a line, and is not echoed, unless lines are wanted.
     """
 
     def __init__(self) -> None:

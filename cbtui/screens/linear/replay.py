@@ -39,7 +39,7 @@ class ReplayConsole(LinearConsole[RecordedRun]):
         yield from ()
 
     def turn(self) -> None:
-        """Play on, and tell what is new by then."""
+        """Play on for a while, and tell what is new."""
         if self.is_ready:
             if self._playback.play():
                 self.telling.tell_news()

@@ -1,4 +1,4 @@
-"""What is told of a run: its news as it goes on, and the moments that are gone to."""
+"""Tells a run in lines: its news as it goes on, and the moments that the person goes to."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field

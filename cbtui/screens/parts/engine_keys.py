@@ -79,7 +79,7 @@ class Finisher(Protocol):
     """Finishes files in the background."""
 
     def finish(self, finish: FinishFile | None) -> None:
-        """Finish a file, and tell of it; does nothing for None."""
+        """Finish a file, and report that; does nothing for None."""
 
 
 @dataclass

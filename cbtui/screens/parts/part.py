@@ -40,7 +40,7 @@ class DrawnHost(Protocol):
 
 
 class RunHost(DrawnHost, Protocol):
-    """What shows a run, and tells of it."""
+    """What shows a run, and notifies the person."""
 
     @property
     def console(self) -> LessonOpener:

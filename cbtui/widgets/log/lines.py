@@ -258,7 +258,7 @@ class LogLines(FollowingView):
         return _COLUMNS if self.scrollable_content_region.width >= COLUMNS_FROM else 0
 
     def below(self) -> int:
-        """A row that tells of later lines, if there are any."""
+        """A row with the number of later lines, if there are any."""
         return 1 if self._later else 0
 
     def render_line(self, y: int) -> Strip:

@@ -25,11 +25,11 @@ class _Access:
 
 
 class Conflicts:
-    """Takes all accesses to shared data, and records each three places that conflict once.
+    """Takes all accesses to shared data, and records each triple of conflicting places once.
 
-    The accesses of a ``unit``, such as one call of a callback, are meant to come as if at once. They did not
-    if another one's came between two of them and one of the neighbours saw what the other wrote: no order of
-    whole units gives the same.
+    The accesses of a ``unit``, such as one call of a callback, should be atomic. They were not if another
+    unit's access came between two of them so that one saw what the other wrote: no order of whole units gives
+    the same result.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""Sets a run up for exploring: where its program's own lines switch threads, and what is told of that."""
+"""Sets a run up for exploring: its program's own lines become switch points, and choices are recorded."""
 
 from collections.abc import Callable
 

@@ -66,8 +66,8 @@ def timed_out(crash_dump: str) -> bool:
 def place_in(crash_dump: str, programs: Iterable[str]) -> str:
     """Where in the learner's own files a thread stood, as "node.py:42, in tick"; "" if nowhere.
 
-    ``programs`` are the paths of the programs. The thread that crashed comes first, of the others one that
-    was computing in a file of theirs.
+    ``programs`` are the paths of the programs. The thread that crashed takes precedence, then one that was
+    computing in a file of theirs.
     """
     paths = [Path(each) for path in programs for each in (path, os.path.realpath(path))]
     folders = tuple(f"{path.parent}{os.sep}" for path in paths)

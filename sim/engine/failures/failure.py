@@ -29,7 +29,7 @@ class Failure:
 
 
 def failure(error: BaseException, path: str, folder: str) -> Failure:
-    """What to tell of an exception that a program did not catch.
+    """Describe an exception that a program did not catch.
 
     ``path`` is the program's file; files in ``folder`` count as the learner's own too.
     """

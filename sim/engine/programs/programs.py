@@ -187,7 +187,7 @@ class ProgramSupervisor:
 
     @property
     def processes(self) -> list[Process]:
-        """Those of the programs that run; that of an only one also as it ends."""
+        """The processes of running programs; a single program's also while it ends."""
         return [*(running.process for running in self._running), *self._only]
 
     def interrupt_all(self) -> None:

@@ -54,9 +54,9 @@ class Descriptors:
 
 
 def leave_terminal() -> None:
-    """Have a session of one's own: it has no ``/dev/tty`` to be written to, and Ctrl-C is the console's.
+    """Start a session without a terminal: programs have no ``/dev/tty``, and Ctrl-C goes to the console.
 
-    The console starts engines with SIGINT blocked; what came of it until now was not meant for them.
+    The console starts engines with SIGINT blocked; a SIGINT that is pending by now is dropped.
     """
     os.setsid()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # forgets what waits

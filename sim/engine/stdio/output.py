@@ -53,7 +53,7 @@ class _ByteStream(io.RawIOBase):
 
 
 class LineSink(_TextStream):
-    """A text stream that hands on whole lines; these may end as in a terminal in raw mode, by CR and LF."""
+    """A text stream that passes on whole lines, ended by LF, or by CR and LF as in a raw terminal."""
 
     def __init__(self, take: Callable[[str], None]) -> None:
         self._take = take

@@ -1,7 +1,7 @@
-"""A pseudo-terminal for programs: what is typed at its far end is handed on as programs read.
+"""A pseudo-terminal for programs: text typed at its far end reaches them as they read.
 
-The kernel's line discipline does what it does for any terminal: it gathers lines, or hands on each key where
-a program has asked for that.
+The kernel's line discipline works as for any terminal: it collects lines, or passes on each key if a program
+has set that mode.
 """
 
 import fcntl
@@ -29,7 +29,7 @@ _LONGEST = 4000
 class PseudoTerminal:
     """``near`` is the descriptor that programs read from. Not thread-safe.
 
-    Where the system gives none, as without ``/dev/pts``, it is a pipe that hands on lines.
+    Where the system has no pseudo-terminals (no ``/dev/pts``), it is a pipe that passes on lines.
     """
 
     def __init__(self) -> None:

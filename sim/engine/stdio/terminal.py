@@ -202,7 +202,7 @@ class Terminal:
 
     @contextmanager
     def _awaited(self, live: bool) -> Iterator[None]:
-        """Meanwhile a run that goes as fast as it can waits for whoever types."""
+        """Meanwhile a run that goes as fast as it can waits for the person who types."""
         if isinstance(self._clock, VirtualClock) and live and self._keyboard is Keyboard.LIVE:
             self._clock.time.pace.awaits += 1
             try:

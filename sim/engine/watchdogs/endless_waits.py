@@ -13,7 +13,7 @@ from sim.ros.middleware.process import Process, current_process, process_of
 from sim.trace.events import AnyEvent, EntityId
 
 _PATIENCE = 3_000_000_000
-"""Virtual nanoseconds after which the person is told of a callback's wait that somebody might still end."""
+"""Virtual nanoseconds after which a callback's wait is reported although something might still end it."""
 _SETTLES = 100_000_000
 """Virtual nanoseconds that a circle of what could be signals must have lasted when the run ends."""
 

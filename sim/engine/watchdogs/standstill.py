@@ -18,10 +18,10 @@ _LAST_PATIENCE = 3.5
 
 
 class StandstillDetector:
-    """Counts the recesses of a moment; the person is told once a run.
+    """Counts the recesses of a moment; warns once per run.
 
-    Threads that hand something to each other, and so come to ever new waits, may still do so to an end: they
-    are told of only when they are given up.
+    Threads that pass something on to each other always come to new waits, and may still come to an end: they
+    are reported only when the run is given up.
     """
 
     def __init__(

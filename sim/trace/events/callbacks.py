@@ -26,7 +26,7 @@ class Reason(StrEnum):
     NO_FREE_WORKER = "no free worker"
     """Its group would let it in, but every thread of its executor is running a callback."""
     EVENT_QUEUE = "behind others in the event queue"
-    """Its EventsExecutor, which asks no group, is running what came before it."""
+    """Its EventsExecutor, which asks no group, is running an earlier event."""
     NOBODY_SPINS = "nobody spins"
     """Its node is in no executor, or that executor is not spinning."""
 

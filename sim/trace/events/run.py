@@ -47,7 +47,7 @@ class RunEnded(TraceEvent, frozen=True, tag="run_end"):
     place: WireOnly[SourcePlace] = ("", 0)
     """Where in the program's own code that came up, or is to be mended."""
     problem: WireOnly[str] = ""
-    """The part of ``reason`` that says what came up."""
+    """The part of ``reason`` that says what went wrong."""
     advice: WireOnly[str] = ""
     """The part of ``reason`` that says what to do about it."""
 

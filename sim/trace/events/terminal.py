@@ -77,7 +77,7 @@ class NoticeKind(StrEnum):
     OVERRULED = "overruled"
     """A parameter callback sets what is being set; what was asked for is stored after that."""
     FORGED = "forged"
-    """A program tells of itself what only the run can know."""
+    """A program records events that only the run may record."""
 
 
 class Notice(TraceEvent, frozen=True, tag="notice"):

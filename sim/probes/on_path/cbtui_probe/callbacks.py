@@ -55,7 +55,7 @@ class Calls:
         self._entity = entity
 
     def traced(self, callback: Callable[..., Any], start: Callable[..., None] | None = None) -> Any:
-        """A callback that does the same and is told of; ``start`` gets its arguments as it starts."""
+        """Wrap a callback so that its calls are recorded; ``start`` gets its arguments as it starts."""
         return self._wrapped(callback, start or self.begin, None)
 
     def traced_with_info(self, callback: Callable[..., Any]) -> Any:
@@ -71,7 +71,7 @@ class Calls:
         return traced
 
     def _wrapped(self, callback: Callable[..., Any], begin: Callable[..., None], takes: int | None) -> Any:
-        """A callback that is told of, and hands on so many of its arguments, None: all."""
+        """Wrap a callback so that its calls are recorded; it gets so many of its arguments, None: all."""
         local, enter, leave = self._recorder.local, self._enter, self._leave
         if inspect.iscoroutinefunction(callback):
 

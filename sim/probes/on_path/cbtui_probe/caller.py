@@ -1,7 +1,7 @@
-"""Takes part in a ROS graph for the person who watches it: ``python -m cbtui_probe.caller``.
+"""Calls services on a ROS graph for the person at the console: ``python -m cbtui_probe.caller``.
 
-Each line of standard input is a service call: the service's type, the names of services of which the first of
-that type is called, and the request's fields. Standard output tells of the calls as a probe does.
+Each line of standard input is a service call: the service's type, candidate names (the first service of that
+type is called), and the request's fields. Standard output has the calls in the probe's format.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class _Caller:
             return
 
     def call(self, service_type: str, names: list[str], fields: dict[str, Any]) -> None:
-        """Make one call, and tell of it."""
+        """Make one call, and report it."""
         name = self._offered(service_type, names)
         package, _, class_name = service_type.split("/")
         service = getattr(importlib.import_module(f"{package}.srv"), class_name)

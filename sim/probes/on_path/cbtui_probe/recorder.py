@@ -61,7 +61,7 @@ class Recorder:
 
     @property
     def here(self) -> Here:
-        """What runs on the calling thread; whoever cannot afford a call asks ``local``."""
+        """What runs on the calling thread; code that cannot afford a call reads ``local``."""
         return self.local.here
 
     def new_id(self) -> int:

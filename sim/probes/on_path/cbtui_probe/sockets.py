@@ -239,7 +239,7 @@ class Server:
                 self._consoles.remove(console)
 
     def close(self) -> None:
-        """Say farewell, hand on what is left, and listen no more; a child made by fork has nothing to say."""
+        """Send the rest and the farewell, and stop listening; a child made by fork sends nothing."""
         if os.getpid() != self._pid:
             return
         self._ends.set()

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
 
 
 class Tuning:
-    """The changes that the environment tells of, made where the program makes what they are about.
+    """The set-up's changes, read from the environment and applied as the program creates its entities.
 
-    A change for a node goes before one for any node.
+    A change for one node takes precedence over one for any node.
     """
 
     def __init__(self, recorder: Recorder) -> None:

@@ -22,9 +22,9 @@ GROUP_HELD, NO_FREE_WORKER, NOBODY_SPINS = "group held", "no free worker", "nobo
 EVENT_QUEUE = "behind others in the event queue"
 
 _KINDS = ("subscription", "client", "service")
-"""What a wait set tells of. Timers tell themselves, and guard conditions are watched as they are
-triggered. An action's waitable remembers its place in the latest wait set, so that a second one would confuse
-its executor: only that it was taken out and has not run yet can be told."""
+"""The kinds that a wait set of the probe's own finds ready. A timer itself says whether it is due, and guard
+conditions are watched as they are triggered. An action's waitable remembers its place in the latest wait set;
+a second one would confuse its executor, so it counts as waiting from being taken out until it runs."""
 
 
 class Waits:
