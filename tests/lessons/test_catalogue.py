@@ -83,12 +83,13 @@ def test_an_id_like_no_other_still_gets_one_line(asked: str) -> None:
 def test_a_guide_fits_beside_the_lanes(lesson: Lesson) -> None:
     lines = lesson.guide.splitlines()
     assert lines[0] == f"# {lesson.title}"
-    assert 23 <= len(lines) <= 40
+    assert 23 <= len(lines) <= 40, f"guide.md has {len(lines)} lines, and 23 to 40 fill its pane"
 
 
 def test_each_lesson_announces_the_next() -> None:
     for lesson, following in pairwise(lessons()):
-        assert lesson.following == f"*{following.title}* {following.teaser}"
+        told = f"lesson.toml of {following.id} needs a teaser, which {lesson.id} ends with"
+        assert lesson.following == f"*{following.title}* {following.teaser}", told
     assert lessons()[-1].following == ""
 
 

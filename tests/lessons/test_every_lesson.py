@@ -27,18 +27,19 @@ def test_a_lesson_is_as_it_says(folder: Path) -> None:
 @every_lesson
 def test_a_lesson_asks_gives_a_task_and_explains(lesson: Lesson) -> None:
     assert 1 <= len(lesson.predictions) <= 2
-    assert lesson.task
-    assert 8 <= len(lesson.explanation.splitlines()) <= 30
+    assert lesson.task, "lesson.toml needs a task"
+    lines = len(lesson.explanation.splitlines())
+    assert 8 <= lines <= 30, f"explain.md has {lines} lines, and 8 to 30 fill its pane"
 
 
 @every_lesson
 def test_the_lesson_before_announces_it(lesson: Lesson) -> None:
-    assert lesson.number == 1 or lesson.teaser
+    assert lesson.number == 1 or lesson.teaser, "lesson.toml needs a teaser"
 
 
 @every_lesson
 def test_a_lesson_has_a_robot_that_moves_or_a_scene(lesson: Lesson) -> None:
-    assert lesson.scene or lesson.unit.startswith("5")
+    assert lesson.scene or lesson.unit.startswith("5"), "lesson.toml needs a [[scene]]: no robot moves"
 
 
 @every_lesson
