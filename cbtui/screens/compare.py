@@ -196,6 +196,8 @@ class CompareScreen(SizedScreen[None]):
         at = self._first_difference
         where = "No call differs" if at is None else f"They differ from {timestamp(at)} on"
         told = f"{where}; {self._verdict[0].lower()}{self._verdict[1:]}"
+        if at is None and any(side.alive() for side in self._sides):
+            told = f"No call differs so far: {_shorter(*self._sides)}"
         self.query_one("#verdict", Static).update(told)
         if at is not None and not self._has_moved:
             self.navigation.seek(at)
