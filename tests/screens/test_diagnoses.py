@@ -40,6 +40,7 @@ from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.daily import first_daily
 from tests.support.engine_runs import run_lesson
+from tests.support.exercises import until
 from tests.support.fake_session import FakeEngines
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import shared_group_run
@@ -256,6 +257,19 @@ async def test_what_there_is_to_say_is_whole_as_the_window_opens() -> None:
         await settle(pilot)
         told = app.screen.query_one(".told")
         assert told.size.height > 3
+        assert "A mutually exclusive group lets one callback in at a time" in text_of(app)
+
+
+async def test_a_problem_that_comes_while_the_window_is_open_is_listed() -> None:
+    async with console() as (app, pilot):
+        found = told_of(shared_group_run().until(TURNED))
+        latest: list[ExplainedFinding] = []
+        screen = DiagnosesScreen((), Charset.BRAILLE, latest=lambda: tuple(latest))
+        await app.push_screen(screen)
+        await settle(pilot)
+        assert "Nothing has gone wrong so far" in text_of(app)
+        latest.extend(found)
+        await until(pilot, lambda: title_of(found) in text_of(app))
         assert "A mutually exclusive group lets one callback in at a time" in text_of(app)
 
 

@@ -109,7 +109,9 @@ class LaneSelection(ScreenPart):
         monitor.look()
         self.host.redraw()
         trial = None if self.cures is None else self.cures.begin()
-        screen = DiagnosesScreen(monitor.findings, self.host.charset, trial, self._lesson_on)
+        screen = DiagnosesScreen(
+            monitor.findings, self.host.charset, trial, self._lesson_on, lambda: monitor.findings
+        )
         self.host.ask(screen, self._take)
 
     def _lesson_on(self, told: ExplainedFinding) -> Lesson | None:

@@ -29,6 +29,8 @@ from sim.plural import counted
 
 _ALL_IS_WELL = "✓ Nothing has gone wrong so far: no rule has found a problem."
 _TIME = 10
+_LOOK = 0.5
+"""Seconds between two looks for what is new."""
 
 
 class Trial(Protocol):
@@ -76,7 +78,7 @@ class DiagnosesScreen(WindowScreen[Chosen]):
     """Lists findings, problems first, each with the ways on; its result is the chosen one, None to stay.
 
     A cure is offered once ``trial`` has found that it helps. ``lesson_on`` returns the lesson that shows a
-    problem.
+    problem. ``latest`` is asked for what is found meanwhile: a new problem has all listed anew.
     """
 
     SCOPE = Scope.DIAGNOSES
@@ -87,11 +89,20 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         charset: Charset,
         trial: Trial | None = None,
         lesson_on: Callable[[ExplainedFinding], Lesson | None] = lambda _: None,
+        latest: Callable[[], Sequence[ExplainedFinding]] | None = None,
     ) -> None:
         super().__init__(charset)
-        self._findings = findings
         self._trial = trial
-        self._lessons = [lesson_on(each) for each in findings]
+        self._lesson_on = lesson_on
+        self._latest = latest
+        self._given_up = Event()
+        self._list(findings)
+
+    def _list(self, findings: Sequence[ExplainedFinding]) -> None:
+        """Begin with these findings."""
+        trial = self._trial
+        self._findings = findings
+        self._lessons = [self._lesson_on(each) for each in findings]
         cures = [() if trial is None else trial.cures(each) for each in findings]
         self._untried = [len(each) for each in cures]
         """How many cures of each finding are not yet tried."""
@@ -100,6 +111,7 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         self._percent: dict[int, int] = {}
         """How much of the trial that goes on is done."""
         self._rows = tuple(self._ways())
+        self._given_up.set()
         self._given_up = Event()
         self.heading = title_of(findings)
 
@@ -113,11 +125,24 @@ class DiagnosesScreen(WindowScreen[Chosen]):
             yield Static(_ALL_IS_WELL, classes="well", markup=False)
 
     def on_mount(self) -> None:
-        """Highlight the worst."""
+        """Highlight the worst, and look out for what is new."""
+        self._begin()
+        if self._latest is not None:
+            self.set_interval(_LOOK, self._look_for_more)
+
+    def _begin(self) -> None:
         for listed in self.query(FindingList):
             listed.highlighted = 0
         if self._trial is not None:
-            self.run_worker(partial(self._try_all, self._trial), thread=True)
+            self.run_worker(partial(self._try_all, self._trial, self._given_up), thread=True)
+
+    async def _look_for_more(self) -> None:
+        assert self._latest is not None
+        findings = self._latest()
+        if not _problems(findings) <= _problems(self._findings):
+            self._list(findings)
+            await self.recompose()
+            self._begin()
 
     def on_unmount(self) -> None:
         """Stop trying cures."""
@@ -140,16 +165,16 @@ class DiagnosesScreen(WindowScreen[Chosen]):
             else:
                 yield Option(row_of(self._findings[row.place], self._charset))
 
-    def _try_all(self, trial: Trial) -> None:
+    def _try_all(self, trial: Trial, given_up: Event) -> None:
+        findings = self._findings
         for place, cure in self._cures:
-            answer = not self._given_up.is_set() and trial.helps(
-                self._findings[place], cure, self._given_up, partial(self._note_progress, place)
-            )
-            if not self._given_up.is_set():
+            note = partial(self._note_progress, place, given_up)
+            answer = not given_up.is_set() and trial.helps(findings[place], cure, given_up, note)
+            if not given_up.is_set():
                 self.app.call_from_thread(self._note_tried, place, cure, answer)
 
-    def _note_progress(self, place: int, percent: int) -> None:
-        if percent != self._percent.get(place) and not self._given_up.is_set():
+    def _note_progress(self, place: int, given_up: Event, percent: int) -> None:
+        if percent != self._percent.get(place) and not given_up.is_set():
             self._percent[place] = percent
             self.app.call_from_thread(self._tell_highlighted)
 
@@ -234,6 +259,10 @@ class DiagnosesScreen(WindowScreen[Chosen]):
 
 class FindingList(OptionList, inherit_bindings=False):
     """The list of findings; its highlight is moved by the screen's keys and by clicks."""
+
+
+def _problems(findings: Sequence[ExplainedFinding]) -> frozenset[object]:
+    return frozenset(each.finding.key for each in findings if each.is_problem)
 
 
 def title_of(findings: Sequence[ExplainedFinding]) -> str:
