@@ -65,8 +65,8 @@ class Diagnoses:
         What is part of another finding follows that.
         """
         found = tuple(found)
-        stuck = frozenset[EntityId]().union(*(each.stuck for each in found if each.until >= timeline.end))
-        left = [each for each in found if not (each.rule.is_effect and _is_due_to(stuck, each))]
+        lasting = [each for each in found if each.until >= timeline.end and each.stuck]
+        left = [each for each in found if not (each.rule.is_effect and _is_due_to(lasting, each))]
         left.sort(key=self._rank, reverse=True)
         # Of several findings with one culprit the first by rank is the cause.
         causes = {each.culprit: each for each in left if each.rule.by_culprit}
@@ -83,8 +83,12 @@ class Diagnoses:
         return self._rules.index(found.rule), found.at, found.subject, found.about, found.culprit
 
 
-def _is_due_to(stuck: frozenset[EntityId], found: Finding) -> bool:
-    """Whether a finding is what callbacks that can never go on bring about; of the whole run, it may be."""
+def _is_due_to(lasting: Iterable[Finding], found: Finding) -> bool:
+    """Whether a finding is what callbacks that can never go on bring about, as others tell.
+
+    A finding of the whole run may be.
+    """
+    stuck = frozenset[EntityId]().union(*(each.stuck for each in lasting if each is not found))
     return bool(stuck) and (not found.at or found.culprit in stuck or found.subject in stuck)
 
 

@@ -145,6 +145,12 @@ def place_of(entity: EntityId, timeline: Timeline) -> CodeLocation | None:
     return CodeLocation(known.file, known.first_line, known.last_line)
 
 
+def made_at(entity: EntityInfo) -> CodeLocation | None:
+    """The program's own line that made an entity; None if it is unknown."""
+    file, line = entity.made_at
+    return CodeLocation(file, line, line) if file else None
+
+
 def line_of(entity: EntityId, window: Window, timeline: Timeline) -> CodeLocation | None:
     """The line at which a callback was longest in a window; all of its lines if that is unknown."""
     lasted: Counter[tuple[str, int]] = Counter()

@@ -24,8 +24,8 @@ from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, Rea
 from sim.trace.model import Call, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.timeline import Timeline
 
-_SETTLES: Nanoseconds = 100_000_000
-"""How long a callback must have been at its line until that counts as a wait."""
+SETTLES: Nanoseconds = 100_000_000
+"""How long a callback must have been at its line, or in its loop, until that counts as a wait."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +78,15 @@ class StuckCallback:
     entity: EntityId
     since: Nanoseconds
     obstacle: Obstacle
+
+
+def stands(position: Position, timeline: Timeline, at: Nanoseconds) -> bool:
+    """Whether a callback has been at its line, or in the loop around it, for long enough at ``at``."""
+    if at - position.start >= SETTLES:
+        return True
+    before = timeline.positions_on(position.thread, Window(max(0, at - SETTLES), at + 1))
+    is_here = ((each.entity, each.loop) == (position.entity, position.loop) for each in before)
+    return position.loop[0] != "" and before[0].start <= at - SETTLES and all(is_here)
 
 
 class WaitForGraph:
@@ -147,14 +156,13 @@ class WaitForGraph:
                 )
         for thread, span in self._moment.running.items():
             position = self._timeline.position_on(thread, self._at)
-            if thread in self._moment.blocked or position is None or self._at - position.start < _SETTLES:
+            if thread in self._moment.blocked or position is None:
                 continue
-            obstacle = self._obstacle_at(position, span)
+            is_still = stands(position, self._timeline, self._at)
+            obstacle = self._obstacle_at(position, span) if is_still else None
             if obstacle is not None:
-                yield (
-                    OnThread(thread),
-                    StuckCallback(OnThread(thread), span.entity, position.start, obstacle),
-                )
+                since = span.start if position.loop[0] else position.start
+                yield OnThread(thread), StuckCallback(OnThread(thread), span.entity, since, obstacle)
         for entity in self._suspended():
             calls = [call for call in self._outstanding() if call.caller == entity]
             obstacles = [self._obstacle(call, entity) for call in calls]

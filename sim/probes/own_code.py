@@ -58,6 +58,17 @@ def call_into_ros() -> tuple[str, str, int]:
     return function, "", 0
 
 
+def has_timeout() -> bool:
+    """Whether the function of rclpy's that the learner's code called on this thread got a ``timeout_sec``."""
+    called: FrameType | None = None
+    for frame in outwards(sys._getframe(1)):
+        if is_own(frame):
+            break
+        called = frame
+    timeout = None if called is None else called.f_locals.get("timeout_sec")
+    return timeout is not None and timeout >= 0
+
+
 def place_of_caller() -> str:
     """Where the learner's own code called from, on the calling thread; "" where it did not."""
     return place_of(sys._getframe(1))

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from sim.error_text import error_line
 from sim.marks import sends_responses
 from sim.probes.callbacks import callback_name, written_at
-from sim.probes.own_code import call_into_ros, place_of_caller, raised_at
+from sim.probes.own_code import call_into_ros, has_timeout, place_of_caller, raised_at
 from sim.probes.traced import MessageContents, TracedEntity
 from sim.trace import events
 from sim.trace.events import (
@@ -120,6 +120,7 @@ class Probe:
                 entity.depth,
                 entity.period,
                 entity.interface_type,
+                self.place_of_call(),
             )
         )
 
@@ -225,7 +226,8 @@ class Probe:
 
     def spin_clashed(self, node: int = 0) -> None:
         """The calling thread asked to spin what is being spun; ``node`` was taken from who spins it."""
-        self._sink(events.SpinClashed(self._now(), self._here.entity, node, *call_into_ros()))
+        here, endless = self._here.entity, not has_timeout()
+        self._sink(events.SpinClashed(self._now(), here, node, *call_into_ros(), endless))
 
     def callback_suspended(self, entity: TracedEntity, outer: int) -> None:
         """A coroutine callback awaits something and leaves the calling thread."""

@@ -87,6 +87,8 @@ class EntityInfo:
     depth: int
     period: Nanoseconds
     interface_type: str = ""
+    made_at: tuple[str, int] = ("", 0)
+    """File and line of the program's own that made it; empty for none."""
 
     @property
     def label(self) -> str:

@@ -8,7 +8,8 @@ import pytest
 from sim.diagnosis.edits.code_edit import CodeEdit, diff
 from sim.diagnosis.edits.functions import fit_parameters, return_response
 from sim.diagnosis.edits.locks import make_reentrant, take_together
-from sim.diagnosis.edits.polling import look_again
+from sim.diagnosis.edits.names import rename
+from sim.diagnosis.edits.polling import go_on_where_set, leave_out, look_again, step_by_step
 from sim.diagnosis.edits.profiles import match_quality
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
 
@@ -173,6 +174,104 @@ def test_what_a_loop_logs_while_it_waits_is_logged_before_the_return() -> None:
 )
 def test_a_loop_that_does_more_than_to_wait_stays(wait: str) -> None:
     assert changed(node(f"def tick(self):\n{indent(wait, '    ')}"), look_again) is None
+
+
+def test_what_would_begin_anew_at_each_call_is_not_looked_at_again() -> None:
+    methods = "def tick(self):\n    self.answer = None\n    while self.answer is None:  # here\n        pass"
+    assert changed(node(methods), look_again) is None
+
+
+ASKS = """
+def on_answer(self, message):
+    self.answer = message
+
+def tick(self):
+    self.answer = None
+    while self.answer is None:  # here
+        rclpy.spin_once(self)
+    self.log(self.answer)
+"""
+
+
+def test_what_follows_a_wait_goes_on_in_the_method_that_sets_what_is_waited_for() -> None:
+    assert changed(node(ASKS), go_on_where_set) == [
+        "+        self.log(self.answer)",
+        "-        while self.answer is None:  # here",
+        "-            rclpy.spin_once(self)",
+        "-        self.log(self.answer)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("def on_answer", "def reset(self):\n    self.answer = 0\n\ndef on_answer"),
+        ("= message", "= message\n    return True"),
+        ("    self.log", "    return self.log"),
+        ("        rclpy.spin_once(self)", "        self.ask()"),
+    ],
+)
+def test_a_wait_for_what_is_set_in_several_places_or_that_does_more_stays(old: str, new: str) -> None:
+    assert changed(node(ASKS.replace(old, new)), go_on_where_set) is None
+
+
+def test_an_endless_loop_becomes_one_step_a_call() -> None:
+    loop = (
+        "while True:  # here\n        if self.level < 1:\n            self.log('low')\n        time.sleep(1)"
+    )
+    assert changed(node(f"def tick(self):\n    {loop}"), step_by_step) == [
+        "-        while True:  # here",
+        "-            if self.level < 1:",
+        "-                self.log('low')",
+        "-            time.sleep(1)",
+        "+        if self.level < 1:",
+        "+            self.log('low')",
+    ]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "n = 0\nwhile True:  # here\n    n += 1",
+        "while True:  # here\n    if self.ready:\n        break",
+        "while True:  # here\n    self.log()\nself.log()",
+        "while self.busy:  # here\n    self.log()",
+        "while True:  # here\n    self.log('''a\n    b''')",
+    ],
+)
+def test_a_loop_that_ends_or_remembers_stays(body: str) -> None:
+    assert changed(node(f"def tick(self):\n{indent(body, '    ')}"), step_by_step) is None
+
+
+def test_a_spin_is_left_out_and_a_body_is_never_empty() -> None:
+    assert changed(node("def tick(self):\n    rclpy.spin_once(self)  # here\n    self.log()"), leave_out) == [
+        "-        rclpy.spin_once(self)  # here"
+    ]
+    assert changed(node("def tick(self):\n    rclpy.spin_once(self)  # here"), leave_out) == [
+        "-        rclpy.spin_once(self)  # here",
+        "+        pass",
+    ]
+    assert changed(node("def tick(self):\n    done = rclpy.spin_once(self)  # here"), leave_out) is None
+
+
+@pytest.mark.parametrize(
+    ("written", "new", "renamed"),
+    [
+        ("'chattr'", "/chatter", "'chatter'"),
+        ('"/chattr"', "/chatter", '"/chatter"'),
+        ("'chattr'", "/robot/chatter", "'/robot/chatter'"),
+    ],
+)
+def test_a_name_is_replaced_as_it_was_written(written: str, new: str, renamed: str) -> None:
+    made = f"def __init__(self):\n    self.create_subscription(String, {written}, self.hear, 10)  # here"
+    lines = changed(node(made), rename, "/chattr", new)
+    assert lines is not None
+    assert f"String, {renamed}, self.hear" in lines[1]
+
+
+def test_a_name_that_is_not_written_at_the_line_stays() -> None:
+    made = "def __init__(self):\n    self.create_subscription(String, TOPIC, self.hear, 10)  # here"
+    assert changed(node(made), rename, "/chattr", "/chatter") is None
 
 
 @pytest.mark.parametrize(

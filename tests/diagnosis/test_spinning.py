@@ -41,6 +41,10 @@ EXPLICIT = "executor = {}\nexecutor.add_node(caller)\nexecutor.spin()"
 SINGLE = EXPLICIT.format("SingleThreadedExecutor()")
 MULTI = EXPLICIT.format("MultiThreadedExecutor(3)")
 REFUSED = "tick spins the executor that runs tick, by {}(): RuntimeError: Executor is already spinning"
+FOR_EVER = (
+    "deadlock: tick waits in spin_until_future_complete() for ever; "
+    "all callbacks of its node are in group A, which tick holds"
+)
 TAKEN = "tick takes /caller from the executor that runs tick, by {}(): that serves it no more"
 
 
@@ -72,12 +76,18 @@ def found_in(run: Run) -> list[Finding]:
         (
             "rclpy.spin_until_future_complete(self, future)",
             SINGLE,
-            TAKEN.format("spin_until_future_complete"),
+            FOR_EVER,
             "after call_async() let tick return",
         ),
         (
             "rclpy.spin_until_future_complete(self, future)",
             MULTI,
+            FOR_EVER,
+            "after call_async() let tick return",
+        ),
+        (
+            "rclpy.spin_until_future_complete(self, future, timeout_sec=0.3)",
+            SINGLE,
             TAKEN.format("spin_until_future_complete"),
             "after call_async() let tick return",
         ),
@@ -95,6 +105,14 @@ def test_a_callback_that_spins_what_runs_it_is_told_with_its_line(
     assert told.what == what
     assert cure in told.cure
     assert str(told.place) == "node.py:22"
+
+
+def test_a_spin_without_end_inside_a_callback_is_a_ring_and_nothing_moves(tmp_path: Path) -> None:
+    run = run_program(tmp_path, program("rclpy.spin_until_future_complete(self, future)", SINGLE), 4.0)
+    (found,) = found_in(run)
+    assert found.ring == ("tick", "spin_until_future_complete()", "group A", "tick")
+    assert found.rule.explain(found, run.timeline).for_ever
+    assert [each.rule.id for each in diagnose(run.timeline)] == ["nested-spin"]
 
 
 def test_a_node_of_its_own_may_be_spun_inside_a_callback(tmp_path: Path) -> None:

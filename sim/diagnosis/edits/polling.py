@@ -1,23 +1,25 @@
-"""Edits of callbacks that wait for a condition: they return, and look again when they are called again."""
+"""Edits of callbacks that wait or go round in a loop: they return, and go on when they are called again."""
 
 import ast
+from textwrap import dedent, indent
 
-from sim.diagnosis.edits.replies import is_idle
+from sim.diagnosis.edits.replies import check_rest, is_idle
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
 
 _WAIT = "wait_for_service"
 
 
 def look_again(source: SourceEditor, line: int) -> None:
-    """Have a timer's callback return where it would wait at a line, if what it waits for is not there yet.
+    """Have a callback return where it would wait at a line, if what it waits for is not there yet.
 
     Only for a statement of the callback's body that does nothing but wait, or log meanwhile.
     """
     callback = source.callback_at(line)
-    wait = next((each for each in callback.body if each.lineno <= line <= (each.end_lineno or 0)), None)
-    if wait is None:
-        raise NotSimpleError
+    wait = _statement_at(callback, line)
     missing, meanwhile = _condition(source, wait)
+    before = callback.body[: callback.body.index(wait)]
+    if any(_stores(part) & _attributes(wait) for part in before):
+        raise NotSimpleError  # it would begin anew at each call
     local = {each.id for each in source.nodes(ast.Name, callback) if isinstance(each.ctx, ast.Store)}
     used = {each.id for each in source.nodes(ast.Name, wait)}
     if used & local or any(each.lineno == wait.lineno for each in meanwhile):
@@ -26,6 +28,48 @@ def look_again(source: SourceEditor, line: int) -> None:
     step = " " * (wait.col_offset - callback.col_offset)
     logs = "".join(source.lines_behind(each.lineno - 1, each) for each in meanwhile)
     source.replace_lines(wait, wait, f"{blank}if {missing}:\n{logs}{blank}{step}return\n")
+
+
+def go_on_where_set(source: SourceEditor, line: int) -> None:
+    """Move what follows the wait at a line to the method that sets what the callback waits for.
+
+    Only for a loop that does nothing but wait for an attribute that one other method sets.
+    """
+    callback = source.callback_at(line)
+    wait = _statement_at(callback, line)
+    place = callback.body.index(wait)
+    rest, awaited = callback.body[place + 1 :], _attributes(wait)
+    if not isinstance(wait, ast.While) or wait.orelse or not all(map(is_idle, wait.body)):
+        raise NotSimpleError
+    check_rest(callback, callback.body[:place], rest, "")
+    methods = (each for each in source.nodes(ast.FunctionDef) if each.name != "__init__")
+    setters = [each for each in methods if each is not callback and awaited & _stores(each)]
+    if len(setters) != 1 or not rest or setters[0].args.args[0].arg != callback.args.args[0].arg:
+        raise NotSimpleError
+    last = setters[0].body[-1]
+    if isinstance(last, ast.Return) or source.callback_at(last.lineno) is not setters[0]:
+        raise NotSimpleError
+    moved = source.lines_behind(wait.end_lineno or 0, rest[-1])
+    source.replace_lines(wait, rest[-1], "" if place else f"{indentation(wait)}pass\n")
+    source.replace_lines(last, last, source.lines_behind(last.lineno - 1, last) + moved)
+
+
+def _statement_at(callback: ast.FunctionDef, line: int) -> ast.stmt:
+    found = [each for each in callback.body if each.lineno <= line <= (each.end_lineno or 0)]
+    if len(found) != 1:
+        raise NotSimpleError
+    return found[0]
+
+
+def _attributes(part: ast.AST) -> set[str]:
+    """The attributes of ``self`` that a loop's condition asks for, or a part of it."""
+    inside = ast.walk(part.test if isinstance(part, ast.While) else part)
+    return {ast.unparse(each) for each in inside if isinstance(each, ast.Attribute)}
+
+
+def _stores(part: ast.AST) -> set[str]:
+    inside = (each for each in ast.walk(part) if isinstance(each, ast.Attribute))
+    return {ast.unparse(each) for each in inside if isinstance(each.ctx, ast.Store)}
 
 
 def _condition(source: SourceEditor, wait: ast.stmt) -> tuple[str, list[ast.stmt]]:
@@ -46,7 +90,9 @@ def _condition(source: SourceEditor, wait: ast.stmt) -> tuple[str, list[ast.stmt
             orelse=[],
         ) if all(map(is_idle, more)):
             return _negated(source, found), []
-        case ast.While(test=ast.UnaryOp(op=ast.Not()), orelse=[]) if all(map(is_idle, wait.body)):
+        case ast.While(test=ast.UnaryOp(op=ast.Not()) | ast.Compare(), orelse=[]) if all(
+            map(is_idle, wait.body)
+        ):
             return source.code_of(wait.test), []
     raise NotSimpleError
 
@@ -58,3 +104,40 @@ def _negated(source: SourceEditor, condition: ast.expr) -> str:
         case ast.Name() | ast.Attribute() | ast.Call() | ast.Subscript():
             return f"not {source.code_of(condition)}"
     return f"not ({source.code_of(condition)})"
+
+
+def leave_out(source: SourceEditor, line: int) -> None:
+    """Take away the statement at a line of a callback that does nothing but call a function."""
+    statement = source.statement_at(line)
+    around = [each for each in ast.walk(source.callback_at(line)) if statement in getattr(each, "body", ())]
+    if not around or not isinstance(statement, ast.Expr) or not isinstance(statement.value, ast.Call):
+        raise NotSimpleError
+    is_alone = len(getattr(around[-1], "body", ())) == 1
+    source.replace_lines(statement, statement, f"{indentation(statement)}pass\n" if is_alone else "")
+
+
+def step_by_step(source: SourceEditor, line: int) -> None:
+    """Have a callback do one step of the endless loop at a line, which ends its body, and return.
+
+    Only where no step needs a variable from before the loop, and nothing leaves the loop.
+    """
+    callback = source.callback_at(line)
+    loop = callback.body[-1]
+    if not isinstance(loop, ast.While) or loop.lineno != line or loop.orelse or not _is_endless(loop.test):
+        raise NotSimpleError
+    inside = [each for part in loop.body for each in ast.walk(part)]
+    if any(isinstance(each, ast.Break | ast.Continue | ast.Yield | ast.Await) for each in inside):
+        raise NotSimpleError
+    before = (each for part in callback.body[:-1] for each in ast.walk(part))
+    local = {each.id for each in before if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)}
+    if local & {each.id for each in inside if isinstance(each, ast.Name)} or loop.body[0].lineno == line:
+        raise NotSimpleError
+    if any(isinstance(each, ast.Constant) and "\n" in str(each.value) for each in inside):
+        raise NotSimpleError  # the lines of a text are not to move
+    steps = [each for each in loop.body if not is_idle(each)]
+    text = "".join(source.lines_behind(each.lineno - 1, each) for each in steps)
+    source.replace_lines(loop, loop, indent(dedent(text), indentation(loop)) or f"{indentation(loop)}pass\n")
+
+
+def _is_endless(test: ast.expr) -> bool:
+    return bool(isinstance(test, ast.Constant) and test.value) or ast.unparse(test) == "rclpy.ok()"

@@ -22,7 +22,7 @@ def go_on_in_done_callback(source: SourceEditor, line: int) -> None:
     if rest and rest[0].lineno == wait.end_lineno:
         raise NotSimpleError
     future, begin, first = _handed_over(source, wait, callback)
-    _check_rest(callback, callback.body[:place], rest, future)
+    check_rest(callback, callback.body[:place], rest, future)
     inner, outer = indentation(wait), indentation(callback)
     comment = source.comment_behind(wait)
     if not rest and not first:
@@ -137,7 +137,7 @@ def is_idle(statement: ast.stmt) -> bool:
     return False
 
 
-def _check_rest(callback: ast.FunctionDef, before: list[ast.stmt], rest: list[ast.stmt], future: str) -> None:
+def check_rest(callback: ast.FunctionDef, before: list[ast.stmt], rest: list[ast.stmt], future: str) -> None:
     """Raise if what follows the wait cannot stand in a method of its own."""
     me = callback.args.args[0].arg
     names = [each for part in before for each in ast.walk(part) if isinstance(each, ast.Name)]

@@ -6,6 +6,7 @@ from sim.diagnosis.rules.endless import EndlessWait, StillComputing
 from sim.diagnosis.rules.errors import ExceptionSwallowed, ProgramRaised
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
+from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.parameters import ParameterOverruled
 from sim.diagnosis.rules.services import NobodyOffers, ServiceNeverComes, UnreturnedResponse
 from sim.diagnosis.rules.spinning import NestedSpin
@@ -24,6 +25,7 @@ RULES: tuple[Rule, ...] = (
     NodeNeverSpins(),
     NobodyOffers(),
     QosMismatch(),
+    MisspeltTopic(),
     ParameterOverruled(),
     ExceptionSwallowed(),
     UnreturnedResponse(),

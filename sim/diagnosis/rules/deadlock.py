@@ -7,14 +7,11 @@ from sim.diagnosis.edits.locks import make_reentrant, take_together
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, WaitedFor, by_edit, line_of
 from sim.diagnosis.rules.edits import edits_for_reply
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.wait_for_graph import StuckCallback, WaitForGraph
+from sim.diagnosis.wait_for_graph import SETTLES, StuckCallback, WaitForGraph, stands
 from sim.diagnosis.words import often, threads_for, who, with_threads
 from sim.trace.events import EntityId, EntityKind, Reason
-from sim.trace.model import Blocked, Nanoseconds, Position, Window
+from sim.trace.model import Blocked, Nanoseconds, Window
 from sim.trace.timeline import Timeline
-
-_SETTLES: Nanoseconds = 100_000_000
-"""Shorter waits for a reply are the ordinary time that a call takes."""
 
 
 class SelfMadeDeadlock(Rule):
@@ -170,16 +167,16 @@ def _moments(view: TimelineView) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
 
     The latest comes first, since it tells how long a cycle lasted.
     """
-    waits: list[Blocked | Position] = [*view.blocked, *view.positions]
-    stands = any(each.end is None and _is_long(each, view.end) for each in waits)
-    if stands or _call_waits_for_group(view):
+    blocked = any(each.end is None and _is_long(each, view.end) for each in view.blocked)
+    still = any(stands(each, view.timeline, view.end) for each in view.positions)
+    if blocked or still or _call_waits_for_group(view):
         yield view.end, view.end
     ended = {each.end for each in view.blocked if each.end is not None and _is_long(each, each.end)}
     yield from ((end - 1, end) for end in sorted(ended, reverse=True))
 
 
-def _is_long(blocked: Blocked | Position, until: Nanoseconds) -> bool:
-    return until - blocked.start >= _SETTLES
+def _is_long(blocked: Blocked, until: Nanoseconds) -> bool:
+    return until - blocked.start >= SETTLES
 
 
 def _call_waits_for_group(view: TimelineView) -> bool:
@@ -187,7 +184,7 @@ def _call_waits_for_group(view: TimelineView) -> bool:
     for entity in view.entities(EntityKind.CLIENT, EntityKind.SERVICE):
         for wait in view.waits(entity.id)[-1:]:
             held = wait.parts[-1].reason is Reason.GROUP_HELD
-            if wait.is_open and held and wait.until - wait.since >= _SETTLES:
+            if wait.is_open and held and wait.until - wait.since >= SETTLES:
                 return True
     return False
 

@@ -1,7 +1,7 @@
 """The edits that several rules advise."""
 
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.edits.polling import look_again
+from sim.diagnosis.edits.polling import go_on_where_set, leave_out, look_again, step_by_step
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
 from sim.diagnosis.rule import CodeLocation, by_edit
 from sim.diagnosis.words import who
@@ -19,7 +19,24 @@ def edits_for_reply(place: CodeLocation | None, entity: EntityId, timeline: Time
 
 
 def edits_for_waiting(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
-    """Edits of a timer's callback that waits at a place for something to come true."""
-    if timeline.entities[entity].kind is not EntityKind.TIMER:
+    """Edits of a callback that waits at a place for something to come true, or is in a loop there."""
+    if timeline.entities[entity].kind not in (EntityKind.TIMER, EntityKind.SUBSCRIPTION):
         return ()
-    return by_edit(place, f"return from {who(entity, timeline)}, and look again at its next call", look_again)
+    subject = who(entity, timeline)
+    return (
+        *by_edit(place, f"return from {subject}, and go on where what it waits for is set", go_on_where_set),
+        *by_edit(place, f"return from {subject}, and look again at its next call", look_again),
+        *by_edit(place, f"do one step of the loop at each call of {subject}", step_by_step),
+    )
+
+
+def edits_for_spinning(
+    place: CodeLocation | None, entity: EntityId, function: str, timeline: Timeline
+) -> tuple[Remedy, ...]:
+    """Edits of a callback that spins at a place, by a function that waits for no future."""
+    subject = who(entity, timeline)
+    return (
+        *by_edit(place, f"return from {subject}, and go on where what it waits for is set", go_on_where_set),
+        *by_edit(place, f"return from {subject}, and look again at its next call", look_again),
+        *by_edit(place, f"leave {function}() out", leave_out),
+    )

@@ -2,23 +2,25 @@
 
 from collections.abc import Iterator
 
+from sim.diagnosis.cures import remedy_for_waits
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_of
-from sim.diagnosis.rules.edits import edits_for_waiting
+from sim.diagnosis.rules.edits import edits_for_reply, edits_for_waiting
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import often, who
-from sim.trace.events import Doing, Notice, NoticeKind, Severity
+from sim.diagnosis.words import listed, often, who
+from sim.trace.descriptions import doing_of
+from sim.trace.events import Doing, EntityId, Notice, NoticeKind, Severity
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 
 _ADVICE = "wait with a timeout, and see that something ends the wait"
-"""For recordings whose notices have no advice."""
+"""For notices without advice, as of waits on the real clock, and in old recordings."""
 
 
 class EndlessWait(Rule):
     """A callback waits without a timeout, and what it waits for does not come.
 
-    The engine reports it on virtual time, where it sees what all threads of a program wait for. A deadlock is
-    final; any other wait is reported until the callback returns.
+    On virtual time the engine sees what all threads of a program wait for: a deadlock is final. Any other
+    wait, and on the real clock every one, is reported until the callback returns.
     """
 
     id = "endless-wait"
@@ -28,20 +30,32 @@ class EndlessWait(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each wait that the engine reported."""
         for notice in view.timeline.notices:
-            if notice.entity and notice.kind not in (NoticeKind.NO_PROGRESS, NoticeKind.OVERRULED):
-                until = _until(notice, view)
-                yield Finding(self, notice.t, until, notice.entity, detail=notice.text)
+            if not notice.entity or notice.kind is NoticeKind.OVERRULED:
+                continue
+            if notice.kind is not NoticeKind.NO_PROGRESS or not _computes(notice, view):
+                stuck, until = frozenset([notice.entity]), _until(notice, view)
+                yield Finding(self, notice.t, until, notice.entity, detail=notice.text, stuck=stuck)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Repeat the engine's notice."""
+        """Repeat the engine's notice, and tell who waits for the callback meanwhile."""
         notice = _notice_of(found, timeline)
+        at = timeline.positions_of(found.subject, _moment(found))
         how = "is in a deadlock" if _is_deadlock(notice) else "stands still"
         what = f" {how}: {notice.problem}" if notice.problem else f": {notice.text}"
+        if notice.kind is NoticeKind.NO_PROGRESS and at:
+            what = f" {doing_of(at[-1])} and {notice.problem}"
+        cure, kept = notice.advice or _ADVICE, _kept_waiting(found, timeline)
+        room = remedy_for_waits(kept, found.subject, Window(found.at, found.until + 1), timeline)
+        if room.words(timeline):
+            what += f"; {listed(who(each, timeline) for each in kept)} can run only when it is over"
+            cure = f"{cure}: {room.words(timeline)}"
         return Explanation(
             f"{who(found.subject, timeline)}{what}{often(found.count)}",
             "a thread that waits serves nothing else, and without a timeout it may do so for ever",
-            notice.advice or _ADVICE,
+            cure,
             line_of(found.subject, _moment(found), timeline),
+            for_ever=found.until >= timeline.end,
+            remedies=(room,) if kept else (),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
@@ -86,7 +100,10 @@ class StillComputing(Rule):
             "each call of a timer",
             place,
             for_ever=found.until >= timeline.end,
-            remedies=edits_for_waiting(place, found.subject, timeline),
+            remedies=(
+                *edits_for_waiting(place, found.subject, timeline),
+                *edits_for_reply(place, found.subject, timeline),
+            ),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
@@ -94,9 +111,15 @@ class StillComputing(Rule):
         return self.weight if found.until >= timeline.end else None
 
 
+def _kept_waiting(found: Finding, timeline: Timeline) -> list[EntityId]:
+    """The callbacks that wait for a callback's group or thread at the end of its wait."""
+    waiting = timeline.moment(found.until).waiting
+    return [each for each, wait in waiting.items() if wait.holder == found.subject != each]
+
+
 def _computes(notice: Notice, view: TimelineView) -> bool:
     at = view.timeline.positions_of(notice.entity, Window(notice.t, notice.t + 1))
-    return all(each.doing is Doing.COMPUTES for each in at)
+    return all(each.doing is not Doing.WAITS for each in at)
 
 
 def _moment(found: Finding) -> Window:

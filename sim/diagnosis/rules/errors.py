@@ -26,7 +26,13 @@ class ProgramRaised(Rule):
         last = (span for each in view.entities(EntityKind.SERVICE) for span in view.spans(each.id)[-1:])
         if any(span.no_response and span.error == ended.error for span in last):
             return
-        yield Finding(self, ended.t, ended.t)
+        latest = (span for each in view.entities() for span in view.spans(each.id)[-1:])
+        raised = (span.entity for span in latest if span.error and span.error == ended.error)
+        yield Finding(self, ended.t, ended.t, next(raised, 0))
+
+    def kind(self, found: Finding) -> str:
+        """Tell exceptions of callbacks from those of the rest of the program."""
+        return self.id if found.subject else "program-failed"
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Repeat what the engine says of it."""
@@ -36,7 +42,7 @@ class ProgramRaised(Rule):
         place = CodeLocation(file, line, line) if line else None
         return Explanation(
             ended.problem,
-            "an exception that no except clause takes ends spin(), and with it the program",
+            "an exception that no except clause takes ends the program, and spin() with it",
             ended.advice or "mend the line, or catch the exception there",
             place,
             remedies=by_edit(place, "define it with the parameters it is called with", fit_parameters),

@@ -4,12 +4,23 @@ from collections.abc import Iterator
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.functions import return_response
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, entity_of, line_of, place_of
+from sim.diagnosis.rule import (
+    Explanation,
+    Finding,
+    Rule,
+    Weight,
+    by_edit,
+    entity_of,
+    line_of,
+    made_at,
+    place_of,
+)
 from sim.diagnosis.rules.edits import edits_for_waiting
+from sim.diagnosis.rules.names import offer
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, who
 from sim.trace.events import EntityKind
-from sim.trace.model import Span, Window
+from sim.trace.model import EntityInfo, Span, Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
@@ -72,21 +83,37 @@ class NobodyOffers(Rule):
                 yield Finding(self, call.sent, call.sent, call.caller, about=call.service)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Say whether there is such a service at other times."""
+        """Say whether there is such a service at other times, of another type or by another name."""
         caller = f"{who(found.subject, timeline)} called" if found.subject else "somebody called"
-        known = [each for each in timeline.entities.values() if each.kind is EntityKind.SERVICE]
-        if any(each.name == found.about for each in known):
-            cure = "call wait_for_service() first, and look whether both ends name the same service type"
-        else:
+        client = _client_of(found, timeline)
+        differs, cure, remedies = ("", "", ()) if client is None else offer(client, timeline)
+        why = "a request is not kept for a service that comes later"
+        if differs:
+            why = "a client and a service meet only if they have the same name and the same type"
+        elif not cure and any(
+            each.kind is EntityKind.SERVICE and each.name == found.about
+            for each in timeline.entities.values()
+        ):
+            cure = "call wait_for_service() first"
+        elif not cure:
             cure = (
                 "look at the service's name, start the node that offers it, and call wait_for_service() first"
             )
         return Explanation(
-            f"{caller} {found.about}, which nobody offered: no reply will come{often(found.count)}",
-            "a request is not kept for a service that comes later",
+            f"{caller} {found.about}{f' {differs}' if differs else ', which nobody offered'}: "
+            f"no reply will come{often(found.count)}",
+            why,
             cure,
-            place_of(found.subject, timeline),
+            (client and made_at(client)) or place_of(found.subject, timeline),
+            remedies=remedies,
         )
+
+
+def _client_of(found: Finding, timeline: Timeline) -> EntityInfo | None:
+    """The client of a service that a callback's node has; that of another node if the caller is unknown."""
+    node = timeline.entities[found.subject].node if found.subject else 0
+    clients = (each for each in timeline.entities.values() if each.kind is EntityKind.CLIENT)
+    return next((each for each in clients if each.name == found.about and node in (0, each.node)), None)
 
 
 class ServiceNeverComes(Rule):

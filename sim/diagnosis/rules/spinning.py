@@ -2,11 +2,14 @@
 
 from collections.abc import Iterator
 
+from sim.diagnosis.cures import Remedy
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule
-from sim.diagnosis.rules.edits import edits_for_reply
+from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning
 from sim.diagnosis.timeline_view import TimelineView
+from sim.diagnosis.wait_for_graph import SETTLES
 from sim.diagnosis.words import often, threads_for, who, with_threads
-from sim.trace.events import SpinClashed
+from sim.trace.events import Doing, GroupKind, SpinClashed
+from sim.trace.model import Position
 from sim.trace.timeline import Timeline
 
 
@@ -21,11 +24,27 @@ class NestedSpin(Rule):
     summary = "a callback spins the executor that runs it"
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield each attempt."""
+        """Yield each attempt, and one that cannot end as long as it lasts."""
+        spinning = {each.entity for each in view.positions if _SPIN in each.call and _lasts(each, view)}
+        latest = {each.entity: each for each in view.timeline.spin_clashes}
         for clash in reversed(view.timeline.spin_clashes):
-            if clash.t <= view.window.start:
-                return
-            yield Finding(self, clash.t, clash.t, clash.entity, clash.entity, about=clash.function)
+            ring = _ring(clash, view.timeline) if latest[clash.entity] is clash else ()
+            if ring and clash.entity in spinning:
+                stuck, until = frozenset([clash.entity]), view.end
+            elif clash.t > view.window.start:
+                stuck, until, ring = frozenset(), clash.t, ()
+            else:
+                continue
+            yield Finding(
+                self,
+                clash.t,
+                until,
+                clash.entity,
+                clash.entity,
+                about=clash.function,
+                stuck=stuck,
+                ring=ring,
+            )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Say what it led to, and how to do without it."""
@@ -48,10 +67,45 @@ class NestedSpin(Rule):
                 f"{subject} spins {runner}, by {clash.function}(): RuntimeError: Executor is already spinning"
             )
             why = "an executor is spun once at a time; rclpy before Jazzy 7.1.9 tells nobody, and may hang"
+        for_ever = bool(found.ring) and found.until >= timeline.end
+        if for_ever:
+            held = f"all callbacks of its node are in {found.ring[2]}, which {subject} holds"
+            what = f"deadlock: {subject} waits in {found.ring[1]} for ever; {held}"
+            why = "it comes back when a callback of the node has run, and their group lets none of them in"
         place = CodeLocation(clash.file, clash.line, clash.line) if clash.file else None
-        remedies = edits_for_reply(place, clash.entity, timeline) if clash.entity else ()
-        cure = _cure(clash, subject, timeline)
-        return Explanation(f"{what}{often(found.count)}", why, cure, place, remedies=remedies)
+        cure, remedies = _cure(clash, subject, timeline), _remedies(clash, place, timeline)
+        return Explanation(
+            f"{what}{often(found.count)}", why, cure, place, for_ever=for_ever, remedies=remedies
+        )
+
+
+_SPIN = "spin"
+"""What the names of all functions that spin have in them."""
+
+
+def _lasts(position: Position, view: TimelineView) -> bool:
+    return position.doing is Doing.CALLS_ROS and view.end - position.start >= SETTLES
+
+
+def _ring(clash: SpinClashed, timeline: Timeline) -> tuple[str, ...]:
+    """What a callback that spins its own node without a timeout waits for, if it keeps all of that itself."""
+    known = timeline.entities.get(clash.entity)
+    group = None if known is None else timeline.groups.get(known.group)
+    if known is None or group is None or not clash.endless or clash.node != known.node:
+        return ()
+    groups = {each.group for each in timeline.entities.values() if each.node == clash.node}
+    if groups != {group.id} or group.kind is not GroupKind.EXCLUSIVE:
+        return ()
+    subject = who(clash.entity, timeline)
+    return subject, f"{clash.function}()", f"group {group.letter}", subject
+
+
+def _remedies(clash: SpinClashed, place: CodeLocation | None, timeline: Timeline) -> tuple[Remedy, ...]:
+    if not clash.entity:
+        return ()
+    if clash.function.endswith("future_complete"):
+        return edits_for_reply(place, clash.entity, timeline)
+    return edits_for_spinning(place, clash.entity, clash.function, timeline)
 
 
 def _cure(clash: SpinClashed, subject: str, timeline: Timeline) -> str:

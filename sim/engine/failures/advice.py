@@ -12,6 +12,7 @@ from types import FrameType, ModuleType
 
 from sim.engine.failures.missing_names import on_missing_name
 from sim.probes.own_code import is_own
+from sim.ros.exceptions import NotInitializedException
 from sim.ros.middleware.process import current_process
 from sim.trace.events import EntityKind
 
@@ -32,6 +33,8 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
             advice = on_missing_name(module.__name__, name) or _nearest(name, dir(module))
         case AttributeError(name=str(name), obj=obj):
             advice = _on_unready_node(name, obj) or _nearest(name, dir(obj))
+        case NotInitializedException():
+            advice = "call rclpy.init() before the first node is made, at the beginning of main()"
         case _ if type(error).__module__ == "_curses":
             advice = "curses draws on a whole terminal, which no run has; print, and read keys with termios"
         case _:

@@ -12,6 +12,7 @@ from sim.trace.events.fields import (
     Nanoseconds,
     NodeId,
     ProcessId,
+    SourcePlace,
     ThreadId,
     ThreadName,
     TypeName,
@@ -118,6 +119,8 @@ class EntityAppeared(TraceEvent, frozen=True, tag="entity"):
     """Time between a timer's calls; 0 for others."""
     interface_type: Maybe[TypeName] = ""
     """Type of the topic or service (``std_srvs/srv/SetBool``); empty where there is neither."""
+    made_at: Maybe[SourcePlace] = ("", 0)
+    """Where the program makes it, as ``file:line``."""
 
 
 class EntityGone(TraceEvent, frozen=True, tag="entity_gone"):
@@ -141,3 +144,5 @@ class SpinClashed(TraceEvent, frozen=True, tag="spin_clash"):
     """File of the program in which it was called."""
     line: Maybe[int]
     """Line at which it was called."""
+    endless: WireOnly[bool] = False
+    """Whether it was called without a timeout."""

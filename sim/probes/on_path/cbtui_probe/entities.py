@@ -200,9 +200,10 @@ class Entities:
                 bound.arguments["callback"] = self._traced(entity, callback)
             with UNSEEN:
                 made = make(*bound.args, **bound.kwargs)
-            self._know(node, made, entity, callback)
+            place = _place(sys._getframe(1))
+            self._know(node, made, entity, callback, place=place)
             if kind == "subscription":
-                self._watch_matching(made, entity.number, _place(sys._getframe(1)))
+                self._watch_matching(made, entity.number, place)
             if kind == "guard_condition":
                 _watch_triggering(made, entity)
             return made
@@ -217,7 +218,13 @@ class Entities:
         return calls.traced(callback, begin.get(entity.kind))
 
     def _know(
-        self, node: Any, made: Any, entity: WatchedEntity, callback: Callable[..., Any] | None, name: str = ""
+        self,
+        node: Any,
+        made: Any,
+        entity: WatchedEntity,
+        callback: Callable[..., Any] | None,
+        name: str = "",
+        place: tuple[str, int] = ("", 0),
     ) -> None:
         recorder = self._recorder
         group = self._group_id(made.callback_group, self.node_made(node))
@@ -236,6 +243,7 @@ class Entities:
             0 if entity.kind == "timer" else depth,
             entity.period,
             _type_of(made),
+            place,
         )
         if entity.kind == "timer" and not made.is_canceled():
             entity.due = now() + made.time_until_next_call()

@@ -179,16 +179,19 @@ class Executors:
         return begin
 
 
-def _call_into_rclpy() -> tuple[str, str, int]:
-    """Which function of rclpy's the program called on this thread, and file and line of the call."""
-    function, frame = "", sys._getframe(1)
+def _call_into_rclpy() -> tuple[str, str, int, bool]:
+    """Which function of rclpy's the program called on this thread, from which file and line.
+
+    Last, whether it got no ``timeout_sec``.
+    """
+    function, timeout, frame = "", None, sys._getframe(1)
     while not is_own(frame):
         if frame.f_globals["__name__"].startswith("rclpy"):
-            function = frame.f_code.co_name
+            function, timeout = frame.f_code.co_name, frame.f_locals.get("timeout_sec")
         if frame.f_back is None:
-            return function, "", 0
+            return function, "", 0, False
         frame = frame.f_back
-    return function, frame.f_code.co_filename, frame.f_lineno
+    return function, frame.f_code.co_filename, frame.f_lineno, timeout is None or timeout < 0
 
 
 def _itself(executor: Any, *_args: Any, **_kwargs: Any) -> Any:

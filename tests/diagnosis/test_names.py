@@ -1,0 +1,118 @@
+"""Topics and services whose two ends do not meet, as their names or their types differ."""
+
+from pathlib import Path
+
+import pytest
+
+from sim.diagnosis.rules.names import nearest
+from sim.interfaces import service
+from sim.ros.node.node import Node
+from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, spin
+from tests.support.simulation import Simulation
+
+Trigger = service("std_srvs", "Trigger")
+
+
+def talk(published: str, heard: str, until: float = 3.0) -> Diagnosed:
+    """A timer that publishes, and a subscription."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        publisher = node.create_publisher(Int32, published, 10)
+
+        def tick() -> None:
+            publisher.publish(Int32(data=1))
+
+        def hear(_: object) -> None: ...
+
+        node.create_timer(0.5, tick)
+        node.create_subscription(Int32, heard, hear, 10)
+        spin(node, None)
+
+    return diagnosed(program, until)
+
+
+def ask(offered: tuple[type, str], called: tuple[type, str]) -> Diagnosed:
+    """A service, and a timer that calls one."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_service(*offered, lambda _, response: response)
+        client = node.create_client(*called)
+        request = called[0].Request  # type: ignore[attr-defined]
+
+        def tick() -> None:
+            client.call_async(request())
+
+        node.create_timer(1.0, tick)
+        spin(node, None)
+
+    return diagnosed(program, 1.5)
+
+
+def line_with(text: str) -> int:
+    lines = Path(__file__).read_text().splitlines()
+    return next(number for number, line in enumerate(lines, 1) if text in line)
+
+
+def test_a_subscription_on_a_misspelt_topic_is_told_of_at_the_line_that_makes_it() -> None:
+    run = talk("chatter", "chattr")
+    assert run.problems() == {("misspelt-topic", "hear")}
+    told = run.explained("misspelt-topic")
+    assert told.what == (
+        "hear hears nothing: nobody publishes on /chattr, "
+        "and nobody hears /chatter, which is published by tick"
+    )
+    assert "subscribe to /chatter, or publish on /chattr" in told.cure
+    assert told.place is not None
+    assert told.place.first_line == line_with("create_subscription(Int32, heard")
+
+
+def test_it_is_told_within_half_a_second_of_the_first_message() -> None:
+    assert talk("chatter", "chattr", 0.9).told() == set()
+    assert talk("chatter", "chattr", 1.1).problems() == {("misspelt-topic", "hear")}
+
+
+def test_topics_of_different_names_and_one_that_is_heard_are_well() -> None:
+    assert talk("speed", "scan").told() == set()
+    assert talk("chatter", "chatter").told() == set()
+
+
+@pytest.mark.parametrize(
+    ("name", "near"),
+    [
+        ("/chattr", "/chatter"),
+        ("/Scan", "/scan"),
+        ("/scan", "/robot/scan"),
+        ("/laser_scan", "/scan"),
+        ("/cmd_vell", "/cmd_vel"),
+        ("/left", ""),
+        ("/imu", ""),
+    ],
+)
+def test_names_are_alike_but_for_a_letter_their_case_or_their_namespace(name: str, near: str) -> None:
+    assert nearest(name, ["/chatter", "/scan" if near == "/scan" else "/robot/scan", "/cmd_vel"]) == near
+
+
+def test_a_service_of_another_type_is_named_with_both_types_and_lines() -> None:
+    run = ask((SetBool, "lamp"), (Trigger, "lamp"))
+    told = run.explained("nobody-offers")
+    assert told.what.startswith(
+        "tick called /lamp as std_srvs/srv/Trigger, but it is offered as std_srvs/srv/SetBool"
+    )
+    ends = line_with("create_client(*called"), line_with("create_service(*offered")
+    assert "client of test_names.py:{} and the service of test_names.py:{}".format(*ends) in told.cure
+    assert told.place is not None
+    assert told.place.first_line == ends[0]
+
+
+def test_a_misspelt_service_is_told_with_the_one_that_is_offered() -> None:
+    told = ask((SetBool, "lamp"), (SetBool, "lampe")).explained("nobody-offers")
+    assert told.cure.startswith("call /lamp, which is offered (test_names.py:")
+    assert len(told.remedies) == 1
+
+
+def test_a_service_that_nothing_resembles_is_to_be_started() -> None:
+    told = ask((SetBool, "lamp"), (SetBool, "door")).explained("nobody-offers")
+    assert "start the node that offers it" in told.cure
+    assert told.remedies == ()
