@@ -32,7 +32,7 @@ from cbtui.widgets.lanes.keys import lane_keys
 from sim.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
 from sim.trace.figures.comparison import compare_incrementally, first_difference
-from sim.trace.figures.comparison_rows import RUNS, Section, extent, sections, stretch, verdict
+from sim.trace.figures.comparison_rows import RUNS, Section, extent, is_tie, sections, stretch, verdict
 from sim.trace.incremental import Incremental
 from sim.trace.model import Nanoseconds, Window
 
@@ -196,8 +196,8 @@ class CompareScreen(SizedScreen[None]):
         at = self._first_difference
         where = "No call differs" if at is None else f"They differ from {timestamp(at)} on"
         told = f"{where}; {self._verdict[0].lower()}{self._verdict[1:]}"
-        if at is None and any(side.alive() for side in self._sides):
-            told = f"No call differs so far: {_shorter(*self._sides)}"
+        if is_tie(self._verdict) and any(side.alive() for side in self._sides):
+            told = f"{where} so far; neither run is better yet: {_shorter(*self._sides)}"
         self.query_one("#verdict", Static).update(told)
         if at is not None and not self._has_moved:
             self.navigation.seek(at)

@@ -41,7 +41,7 @@ class CallbackPositions:
             return
         tops = sys._current_frames()
         for ident, callback in running.items():
-            position = _position(tops.get(ident), running)
+            position = position_of(tops.get(ident), running)
             if position is not None and self._latest.get(ident) != (callback, position):
                 self._latest[ident] = callback, position
                 self._record(CallbackAt(self._clock.now(), callback.entity, callback.thread, *position))
@@ -53,10 +53,10 @@ class CallbackPositions:
         return 0 if callback is None else callback.entity
 
 
-def _position(top: FrameType | None, running: Mapping[int, RunningCallback]) -> Position | None:
-    """Where a thread is in the callback that it runs; None if it runs none of the program's code."""
+def position_of(top: FrameType | None, running: Mapping[int, RunningCallback]) -> Position | None:
+    """Where a thread is, in the callback if it runs one; None if it runs none of the program's code."""
     stack = list(takewhile(lambda frame: frame not in calls_the_program, outwards(top)))
-    own = [place for place, frame in enumerate(stack) if is_own(frame) and not is_library(frame)]
+    own = [place for place, frame in enumerate(stack) if is_own(frame) and _is_written(frame)]
     if not own:
         return None
     inside = stack[: own[0]]
@@ -67,6 +67,11 @@ def _position(top: FrameType | None, running: Mapping[int, RunningCallback]) -> 
     frames = tuple((code.co_filename, code.co_name, line) for code, line in lines)
     thread = 0 if holder is None else holder.thread
     return doing, call, frames, next(filter(None, loops), ("", 0)), thread
+
+
+def _is_written(frame: FrameType) -> bool:
+    """Whether a frame runs code of a file that is no installed package's."""
+    return not is_library(frame) and not frame.f_code.co_filename.startswith("<")
 
 
 def _activity(inside: list[FrameType]) -> tuple[Doing, str]:

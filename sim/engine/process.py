@@ -29,6 +29,7 @@ from sim.engine.failures.failure import breakdown, is_learners
 from sim.engine.failures.tracebacks import leave_out_own_frames
 from sim.engine.failures.uncaught_exceptions import report_uncaught
 from sim.engine.outbox import Outbox
+from sim.engine.program_position import ProgramPosition
 from sim.engine.programs.children import allow_children, refuse_children
 from sim.engine.programs.ending import finalise, set_engine_apart
 from sim.engine.programs.exit_functions import share_exit_functions
@@ -100,6 +101,7 @@ class Engine:
         self._control = control
         self._probe = Probe(clock, control.record, self._contents)
         self._positions = CallbackPositions(self._probe, clock, record)
+        self._program_position = ProgramPosition(self._probe, clock, record)
         self._periods = 0
         profile = profile_of(setup, lambda text: record(Notice(0, Severity.ERROR, text)))
         self._host = Host(
@@ -223,6 +225,7 @@ class Engine:
         assert self._endless is not None
         self._endless.look()
         self._positions.look()
+        self._program_position.look()
         return None if self._shutdown.has_begun else self._host.explain_waits()
 
     def _look_at_waits_of_real_time(self) -> None:
@@ -231,6 +234,7 @@ class Engine:
             self._periods += 1
             if self._periods % _PERIODS_A_LOOK == 0:
                 self._positions.look()
+                self._program_position.look()
 
     def _make_room(self) -> None:
         self._outbox.flush()

@@ -64,6 +64,7 @@ class RunStores:
         self.notices: History[ev.Notice] = History(attrgetter("t"), ev.Notice, spill)
         self.mismatches: History[ev.QosMismatched] = History(attrgetter("t"), ev.QosMismatched, spill)
         self.spin_clashes: History[ev.SpinClashed] = History(attrgetter("t"), ev.SpinClashed, spill)
+        self.program_positions: History[ev.ProgramAt] = History(attrgetter("t"), ev.ProgramAt, spill)
         self.robot: History[ev.RobotMoved] = History(attrgetter("t"), ev.RobotMoved, spill)
         self.velocities: History[ev.VelocityCommanded] = History(attrgetter("t"), ev.VelocityCommanded, spill)
         self.scans = Scans(spill)
@@ -120,6 +121,7 @@ class RunStores:
             ev.CallbackSuspended: self._callback_suspended,
             ev.CallbackResumed: self._callback_resumed,
             ev.SpinClashed: self.spin_clashes.add,
+            ev.ProgramAt: self.program_positions.add,
             ev.CallbackFailed: self._callback_failed,
             ev.Published: self._published,
             ev.QosMismatched: self.mismatches.add,

@@ -83,6 +83,11 @@ class Timeline:
         self.spin_clashes: Sequence[ev.SpinClashed] = run.spin_clashes
         """The attempts to spin what was already being spun, in order."""
 
+    def program_at(self, at: Nanoseconds) -> ev.ProgramAt | None:
+        """Where the program is at ``at`` outside callbacks; None if it spins as it should, or is unknown."""
+        found = self._run.program_positions.latest(at)
+        return found if found is not None and found.frames else None
+
     def extend(self, events: Iterable[AnyEvent]) -> None:
         """Add a batch of events; the size of batches makes no difference."""
         self._moment = None

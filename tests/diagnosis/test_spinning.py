@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from sim.diagnosis import Finding, diagnose
-from sim.trace.events import Printed, SpinClashed
+from sim.trace.events import Printed, ProgramAt, SpinClashed
 from tests.support.daily import first_row_daily
 from tests.support.engine_runs import Run, run_program
 
@@ -153,3 +153,84 @@ def test_a_traceback_has_the_learners_lines_alone(tmp_path: Path) -> None:
         "    rclpy.spin_until_future_complete(self, future)",
         "RuntimeError: Executor is already spinning",
     ]
+
+
+def run_lines(tmp_path: Path, *lines: str, seconds: float = 4.0) -> Run:
+    return run_program(tmp_path, "\n".join(["import time", "import rclpy", *lines]), seconds)
+
+
+IN_CONSTRUCTOR = (
+    "from rclpy.node import Node",
+    "class Early(Node):",
+    "    def __init__(self):",
+    "        super().__init__('early')",
+    "        rclpy.spin(self)",
+    "        self.create_timer(0.5, self.tick)",
+    "    def tick(self): pass",
+    "rclpy.init()",
+    "rclpy.spin(Early())",
+)
+
+
+def test_a_node_that_spins_in_its_constructor_is_told_with_the_line_of_the_spin(tmp_path: Path) -> None:
+    run = run_lines(tmp_path, *IN_CONSTRUCTOR)
+    (found,) = diagnose(run.timeline)
+    told = found.rule.explain(found, run.timeline)
+    assert told.what == "__init__ calls spin(), which does not come back: what follows line 7 is never done"
+    assert str(told.place) == "node.py:7"
+    (remedy,) = told.remedies
+    assert remedy.edit is not None
+    assert remedy.edit.applied("\n".join(["import time", "import rclpy", *IN_CONSTRUCTOR])) == "\n".join(
+        ["import time", "import rclpy", *IN_CONSTRUCTOR[:4], *IN_CONSTRUCTOR[5:]]
+    )
+
+
+def test_a_constructor_that_spins_for_a_moment_is_well(tmp_path: Path) -> None:
+    lines = [each.replace("spin(self)", "spin_once(self, timeout_sec=0.5)") for each in IN_CONSTRUCTOR]
+    run = run_lines(tmp_path, *lines)
+    assert diagnose(run.timeline) == ()
+    assert run.timeline.program_at(run.timeline.end) is None
+
+
+def test_a_program_that_loops_and_never_spins_is_told_with_its_loop(tmp_path: Path) -> None:
+    run = run_lines(
+        tmp_path,
+        "rclpy.init()",
+        "node = rclpy.create_node('n')",
+        "node.create_timer(0.5, lambda: None)",
+        "while rclpy.ok():",
+        "    time.sleep(0.2)",
+    )
+    (found,) = diagnose(run.timeline)
+    told = found.rule.explain(found, run.timeline)
+    assert found.rule.id == "node-never-spins"
+    assert "the program is in the loop of line 6, and comes to no spin()" in told.what
+    assert str(told.place) == "node.py:6"
+
+
+def test_a_program_that_waits_for_a_service_before_it_spins_is_told_of_the_one_that_is_meant(
+    tmp_path: Path,
+) -> None:
+    run = run_lines(
+        tmp_path,
+        "from std_srvs.srv import SetBool",
+        "rclpy.init()",
+        "node = rclpy.create_node('n')",
+        "node.create_service(SetBool, 'lamp', lambda request, response: response)",
+        "client = node.create_client(SetBool, 'lampe')",
+        "while not client.wait_for_service(timeout_sec=1.0):",
+        "    pass",
+    )
+    (found,) = diagnose(run.timeline)
+    told = found.rule.explain(found, run.timeline)
+    assert told.what == (
+        "the program waits in wait_for_service() for /lampe, which nobody offers, and comes to no spin()"
+    )
+    assert told.cure == "call /lamp, which is offered (node.py:6)"
+    assert told.for_ever
+    assert str(told.place) == "node.py:8"
+
+
+def test_a_program_that_spins_as_it_should_records_no_position(tmp_path: Path) -> None:
+    run = run_program(tmp_path, program("pass"))
+    assert not [each for each in run.events if isinstance(each, ProgramAt)]

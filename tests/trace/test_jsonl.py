@@ -85,6 +85,8 @@ def test_golden_lines() -> None:
         '{"t":2.2,"event":"unblocked","thread":"talker-1 MainThread","call":1}',
         f'{{"t":2.25,"event":"callback_at",{about},"thread":"talker-1 MainThread","doing":"sleeps",'
         '"call":"time.sleep","frames":["node.py:60, in odom_callback"]}',
+        '{"t":2.25,"event":"program_at","doing":"in rclpy","call":"spin","frames":["node.py:70, in main"],'
+        '"loop":"node.py:69"}',
         '{"t":2.25,"event":"spin_clash","node":"/sub_node","callback":"odom_callback",'
         '"function":"spin_until_future_complete","file":"node.py","line":60}',
         f'{{"t":2.25,"event":"callback_error",{about},"thread":"talker-1 MainThread",'

@@ -107,9 +107,9 @@ def _negated(source: SourceEditor, condition: ast.expr) -> str:
 
 
 def leave_out(source: SourceEditor, line: int) -> None:
-    """Take away the statement at a line of a callback that does nothing but call a function."""
+    """Take away the statement at a line of a method that does nothing but call a function."""
     statement = source.statement_at(line)
-    around = [each for each in ast.walk(source.callback_at(line)) if statement in getattr(each, "body", ())]
+    around = [each for each in ast.walk(source.function_at(line)) if statement in getattr(each, "body", ())]
     if not around or not isinstance(statement, ast.Expr) or not isinstance(statement.value, ast.Call):
         raise NotSimpleError
     is_alone = len(getattr(around[-1], "body", ())) == 1

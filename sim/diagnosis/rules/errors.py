@@ -40,13 +40,21 @@ class ProgramRaised(Rule):
         assert ended is not None
         file, line = ended.place
         place = CodeLocation(file, line, line) if line else None
+        why = "an exception that no except clause takes ends the program, and spin() with it"
+        cure = "mend the line, or catch the exception there"
+        if (ended.error or "").partition(":")[0] in _UNREADABLE:
+            why, cure = "Python could not read the file, so nothing of it ran", "mend the line"
         return Explanation(
             ended.problem,
-            "an exception that no except clause takes ends the program, and spin() with it",
-            ended.advice or "mend the line, or catch the exception there",
+            why,
+            ended.advice or cure,
             place,
             remedies=by_edit(place, "define it with the parameters it is called with", fit_parameters),
         )
+
+
+_UNREADABLE = ("SyntaxError", "IndentationError", "TabError")
+"""The exceptions that come before a file runs."""
 
 
 class ExceptionSwallowed(Rule):

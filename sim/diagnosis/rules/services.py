@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.functions import return_response
 from sim.diagnosis.rule import (
+    CodeLocation,
     Explanation,
     Finding,
     Rule,
@@ -116,6 +117,14 @@ def _client_of(found: Finding, timeline: Timeline) -> EntityInfo | None:
     return next((each for each in clients if each.name == found.about and node in (0, each.node)), None)
 
 
+def _unserved(timeline: Timeline) -> list[EntityInfo]:
+    """The clients of services that nobody offers by that name and type."""
+    known = timeline.entities.values()
+    offered = {(each.name, each.interface_type) for each in known if each.kind is EntityKind.SERVICE}
+    clients = (each for each in known if each.kind is EntityKind.CLIENT)
+    return [each for each in clients if (each.name, each.interface_type) not in offered]
+
+
 class ServiceNeverComes(Rule):
     """A callback waits for a service that nobody of the run offers, and keeps its thread and its group."""
 
@@ -128,21 +137,44 @@ class ServiceNeverComes(Rule):
         for each in view.positions:
             if each.call != "Client.wait_for_service" or view.end - each.start < self.threshold:
                 continue
-            known = view.timeline.entities.values()
-            offered = {entity.name for entity in known if entity.kind is EntityKind.SERVICE}
-            clients = {
-                entity.name
-                for entity in known
-                if entity.kind is EntityKind.CLIENT
-                and entity.node == view.timeline.entities[each.entity].node
-            } - offered
+            node = view.timeline.entities[each.entity].node
+            clients = {entity.name for entity in _unserved(view.timeline) if entity.node == node}
             if clients:
                 about = listed(sorted(clients))
                 stuck = frozenset([each.entity])
                 yield Finding(self, each.start, view.end, each.entity, about=about, stuck=stuck)
+        yield from self._of_program(view)
+
+    def _of_program(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield it if the program itself waits, and so comes to no ``spin()``."""
+        at = view.timeline.program_at(view.end)
+        if at is None or at.call != "Client.wait_for_service" or view.end - at.t < self.threshold:
+            return
+        missing = [each.name for each in _unserved(view.timeline)]
+        if missing:
+            yield Finding(self, at.t, view.end, about=listed(sorted(missing)))
+
+    def _explained_of_program(self, found: Finding, timeline: Timeline) -> Explanation:
+        at = timeline.program_at(found.at)
+        assert at is not None
+        file, _, line = at.frames[-1]
+        clients = _unserved(timeline)
+        differs, cure, remedies = offer(clients[0], timeline) if clients else ("", "", ())
+        wrong = differs or "which nobody offers"
+        return Explanation(
+            f"the program waits in wait_for_service() for {found.about}, {wrong}, and comes to no spin()",
+            "callbacks run only inside spin()",
+            cure
+            or f"look at the service's name, and start the node that offers {found.about} before this one",
+            CodeLocation(file, line, line),
+            for_ever=found.until >= timeline.end,
+            remedies=remedies,
+        )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Say what waits with it."""
+        if not found.subject:
+            return self._explained_of_program(found, timeline)
         subject = who(found.subject, timeline)
         place = line_of(found.subject, Window(found.at, found.until + 1), timeline)
         return Explanation(

@@ -1,16 +1,18 @@
-"""The rule on spinning an executor that is already being spun."""
+"""Rules on spinning in the wrong place: inside a callback, and while a node is being made."""
 
 from collections.abc import Iterator
 
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule
+from sim.diagnosis.edits.polling import leave_out
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES
 from sim.diagnosis.words import often, threads_for, who, with_threads
 from sim.trace.events import Doing, GroupKind, SpinClashed
-from sim.trace.model import Position
+from sim.trace.model import Nanoseconds, Position
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
 
 class NestedSpin(Rule):
@@ -76,6 +78,36 @@ class NestedSpin(Rule):
         cure, remedies = _cure(clash, subject, timeline), _remedies(clash, place, timeline)
         return Explanation(
             f"{what}{often(found.count)}", why, cure, place, for_ever=for_ever, remedies=remedies
+        )
+
+
+class SpinInConstructor(Rule):
+    """``__init__`` spins and does not come back, so that nothing that follows it is ever done."""
+
+    id = "spin-in-constructor"
+    summary = "__init__ spins, and what follows is never done"
+    threshold: Nanoseconds = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield it once it has lasted."""
+        at = view.timeline.program_at(view.end)
+        if at is None or _SPIN not in at.call or view.end - at.t < self.threshold:
+            return
+        if any(function == "__init__" for _, function, _ in at.frames):
+            yield Finding(self, at.t, view.end, detail=at.call)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Name the line."""
+        at = timeline.program_at(found.at)
+        assert at is not None
+        file, _, line = at.frames[-1]
+        place, spin = CodeLocation(file, line, line), found.detail.rpartition(".")[2]
+        return Explanation(
+            f"__init__ calls {spin}(), which does not come back: what follows line {line} is never done",
+            f"{spin}() runs callbacks until the program ends; what would be made after it does not exist",
+            f"leave {spin}() out of __init__, and call rclpy.spin(node) in main() once the node is made",
+            place,
+            remedies=by_edit(place, f"leave {spin}() out of __init__", leave_out),
         )
 
 

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
-from sim.diagnosis.rule import Explanation, Finding, Rule, line_of, place_of
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, line_of, place_of
 from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import group_of, listed, often, threads_for, who
 from sim.durations import duration
@@ -191,12 +191,19 @@ class NodeNeverSpins(Rule):
             cure = "add the node to an executor, and call spin() on that: one that is only made runs nothing"
         elif ever:
             cure = "keep spinning the node: spin() has returned, or its executor was shut down"
+        place, at = place_of(found.subject, timeline), timeline.program_at(found.until)
+        if at is not None and not ever:
+            place = CodeLocation(*at.place, at.place[1])
+            where = f"in the loop of line {place.first_line}" if at.loop[0] else f"at line {place.first_line}"
+            what = f"the program is {where}, and comes to no spin()"
+            if at.loop[0]:
+                cure = "do one step of the loop in a timer's callback, and call rclpy.spin(node)"
         return Explanation(
             f"{subject} of {found.about} has been ready for {duration(found.lasted)} "
             f"and does not run: {what}",
             "callbacks run only inside spin()",
             cure,
-            place_of(found.subject, timeline),
+            place,
         )
 
 

@@ -10,7 +10,6 @@ from sim.engine.failures.missing_names import names_for_programs
 from sim.error_text import error_text
 
 _MODEL = Path(__file__).parents[2]
-_ON_SYNTAX = "mend the line: Python could not read the file, so nothing of it ran"
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +34,7 @@ def failure(error: BaseException, path: str, folder: str) -> Failure:
     ``path`` is the program's file; files in ``folder`` count as the learner's own too.
     """
     if isinstance(error, SyntaxError) and error.filename and _is_own(error.filename, path, folder):
-        return Failure(error.filename, error.lineno or 0, str(error.msg), _ON_SYNTAX)
+        return Failure(error.filename, error.lineno or 0, str(error.msg))
     text = _text(error)
     what = f"the program raised {type(error).__name__}{f': {text}' if text else ''}"
     rejected = rejected_callback(error)

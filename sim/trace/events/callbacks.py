@@ -147,6 +147,28 @@ class CallbackAt(TraceEvent, frozen=True, tag="callback_at"):
     """Name of the thread whose callback has the lock that it waits for."""
 
 
+class ProgramAt(TraceEvent, frozen=True, tag="program_at"):
+    """Where the program's main thread is while it spins nothing, or spins inside ``__init__``.
+
+    Another one replaces it. It is looked for a few times a second.
+    """
+
+    doing: Doing
+    """As in ``callback_at``."""
+    call: Maybe[str]
+    """The function in which it sleeps or waits, such as ``Client.wait_for_service``."""
+    frames: Frames
+    """The lines of the program's own on its stack; none once it spins as it should."""
+    loop: Maybe[SourcePlace] = ("", 0)
+    """The ``while`` around the innermost of them that has one."""
+
+    @property
+    def place(self) -> tuple[str, int]:
+        """File and line of the innermost frame, or of the loop around it."""
+        file, _, line = self.frames[-1]
+        return self.loop if self.loop[0] else (file, line)
+
+
 class CallbackFailed(TraceEvent, frozen=True, tag="callback_error"):
     """A callback raised."""
 

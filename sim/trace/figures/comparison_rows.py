@@ -98,6 +98,14 @@ def sections(comparison: Comparison) -> tuple[Section, ...]:
     )
 
 
+_TIE = "Neither run is better: no callback fails, loses or waits more in one of them"
+
+
+def is_tie(told: str) -> bool:
+    """Whether a verdict calls neither run better."""
+    return told == _TIE
+
+
 def verdict(comparison: Comparison) -> str:
     """Return which run is better and by what, in one sentence that also tells what speaks against it.
 
@@ -109,7 +117,7 @@ def verdict(comparison: Comparison) -> str:
     for each in _differences(comparison):
         (better if each.second < each.first else worse).append(each)
     if not better and not worse:
-        return "Neither run is better: no callback fails, loses or waits more in one of them"
+        return _TIE
     is_better = min(map(_weight, better), default=_NONE) <= min(map(_weight, worse), default=_NONE)
     for_it, against = (better, worse) if is_better else (worse, better)
     told = f"{RUNS[1]} is {'better' if is_better else 'worse'}: {_listed(for_it)}"

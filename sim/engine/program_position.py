@@ -1,0 +1,54 @@
+"""Tells where a program is that comes to no ``spin()``, or spins where a node is still being made."""
+
+import sys
+import threading
+from collections.abc import Callable
+
+from sim.clock import RunClock
+from sim.engine.callback_positions import position_of
+from sim.probes.probe import Probe
+from sim.ros.middleware.process import process_of
+from sim.trace.events import AnyEvent, ProgramAt
+
+_EVERY = 250_000_000
+"""Nanoseconds of the run between two looks."""
+
+
+class ProgramPosition:
+    """Looks at the main thread of the only program, and records where it is when that has changed.
+
+    Several programs of a run have threads each, and are not looked at.
+    """
+
+    def __init__(self, probe: Probe, clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
+        self._probe = probe
+        self._clock = clock
+        self._record = record
+        self._due = 0
+        self._main = threading.main_thread()
+        self._latest: tuple[object, ...] = ()
+
+    def look(self) -> None:
+        """Look once, if that is due; any one thread at a time may call this."""
+        now = self._clock.now()
+        if now < self._due:
+            return
+        self._due = now + _EVERY
+        found = self._position()
+        if found is not None and found.frames != self._latest:
+            self._latest = found.frames
+            self._record(found)
+
+    def _position(self) -> ProgramAt | None:
+        """Where the program is; without frames if it spins, None if that is not known."""
+        ident = self._main.ident
+        if ident is None or ident in self._probe.running():
+            return None
+        found = position_of(sys._current_frames().get(ident), {})
+        if found is None:
+            return None
+        doing, call, frames, loop, _ = found
+        in_constructor = any(function == "__init__" for _, function, _ in frames)
+        if process_of(self._main).spins and not in_constructor:
+            frames = ()
+        return ProgramAt(self._clock.now(), doing, call, frames, loop)
