@@ -270,7 +270,9 @@ async def test_a_problem_that_comes_while_the_window_is_open_is_listed() -> None
         assert "Nothing has gone wrong so far" in text_of(app)
         latest.extend(found)
         await until(pilot, lambda: title_of(found) in text_of(app))
-        assert "A mutually exclusive group lets one callback in at a time" in text_of(app)
+        await until(
+            pilot, lambda: "A mutually exclusive group lets one callback in at a time" in text_of(app)
+        )
 
 
 EDIT = Cure(

@@ -117,12 +117,10 @@ class DiagnosesScreen(WindowScreen[Chosen]):
 
     def content(self) -> ComposeResult:
         """Lay out the list, and what there is to say of the highlighted one."""
-        if self._findings:
-            yield FindingList(*self._options())
-            with VerticalScroll(can_focus=False):
-                yield Static(classes="told")
-        else:
-            yield Static(_ALL_IS_WELL, classes="well", markup=False)
+        yield FindingList(*self._options())
+        with VerticalScroll(can_focus=False):
+            yield Static(classes="told")
+        yield Static(_ALL_IS_WELL, classes="well", markup=False)
 
     def on_mount(self) -> None:
         """Highlight the worst, and look out for what is new."""
@@ -131,17 +129,20 @@ class DiagnosesScreen(WindowScreen[Chosen]):
             self.set_interval(_LOOK, self._look_for_more)
 
     def _begin(self) -> None:
-        for listed in self.query(FindingList):
-            listed.highlighted = 0
+        some = bool(self._findings)
+        listed, told = self.query_one(FindingList), self.query_one(VerticalScroll)
+        listed.display, told.display, self.query_one(".well").display = some, some, not some
+        listed.highlighted = 0 if some else None
         if self._trial is not None:
             self.run_worker(partial(self._try_all, self._trial, self._given_up), thread=True)
 
-    async def _look_for_more(self) -> None:
+    def _look_for_more(self) -> None:
         assert self._latest is not None
         findings = self._latest()
         if not _problems(findings) <= _problems(self._findings):
             self._list(findings)
-            await self.recompose()
+            self.query_one(".window").border_title = self.heading
+            self._show_options()
             self._begin()
 
     def on_unmount(self) -> None:
@@ -185,10 +186,13 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         if helps:
             self._helpful.append((place, cure))
         self._rows = tuple(self._ways())
+        self._show_options().highlighted = 0 if chosen is None else self._rows.index(chosen)
+
+    def _show_options(self) -> "FindingList":
         listed = self.query_one(FindingList)
         listed.clear_options()
         listed.add_options(self._options())
-        listed.highlighted = 0 if chosen is None else self._rows.index(chosen)
+        return listed
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the ways on from the highlighted row."""
