@@ -40,8 +40,8 @@ _PIP = {
 """Modules of PyPI that robots' programs import, with the distribution that each comes in."""
 _PIP_BY_NAME = """
     PyQt5 PySide6 casadi control cvxpy depthai filterpy flask gpiozero gymnasium keyboard matplotlib mediapipe
-    networkx numba open3d pandas plotly pyaudio pygame pymavlink pynput pyproj pyrealsense2 requests scipy
-    seaborn shapely smbus2 sympy tensorflow torch torchvision tqdm ultralytics utm websockets
+    networkx numba open3d pandas plotly py_trees pyaudio pygame pymavlink pynput pyproj pyrealsense2 requests
+    scipy seaborn shapely smbus2 sympy tensorflow torch torchvision tqdm ultralytics utm websockets
 """.split()  # noqa: SIM905 -- one to a line they would hide the rest
 """Those whose distributions are named as they are."""
 
@@ -90,6 +90,7 @@ _ROS_2 = {
     "nav2_simple_commander": "send the goals with rclpy.action.ActionClient",
     "py_trees_ros": _THERE,
     "rclcpp": "nodes are Python here, with rclpy",
+    "rclcpp_components": "components are C++; a launch file starts nodes in Python, a process each",
     **dict.fromkeys(("ros2action", "ros2bag", "ros2cli", "ros2launch", "ros2node", "ros2param"), _LINES),
     **dict.fromkeys(("ros2pkg", "ros2run", "ros2service", "ros2topic"), _LINES),
     "rqt_gui": _THERE,
@@ -102,7 +103,7 @@ _ROS_2 = {
 """Python packages of ROS 2 that are not here, with what does the work in their place."""
 
 _INTERFACES = """
-    aruco_msgs autoware_msgs cartographer_ros_msgs controller_manager_msgs
+    apriltag_msgs aruco_msgs autoware_msgs cartographer_ros_msgs controller_manager_msgs
     crazyflie_interfaces foxglove_msgs gps_msgs grid_map_msgs irobot_create_msgs
     mavros_msgs moveit_msgs nmea_msgs novatel_gps_msgs object_recognition_msgs octomap_msgs
     pcl_msgs px4_msgs radar_msgs robot_localization ros_gz_interfaces rtcm_msgs slam_toolbox turtlebot3_msgs
@@ -156,11 +157,11 @@ def _on_unknown(package: str) -> str:
 
 
 def _nearest(name: str, known: Iterable[str]) -> str:
-    """A likely slip of the fingers; that both end with ``_msgs`` does not make two packages alike."""
+    """A likely slip of the fingers; that both end with ``_msgs``, say, does not make two packages alike."""
     stems = {_stem(each): each for each in known if not each.startswith("_")}
     close = get_close_matches(_stem(name), stems, n=1, cutoff=0.75)
     return f"did you mean {stems[close[0]]!r}?" if close else ""
 
 
 def _stem(name: str) -> str:
-    return name.removesuffix("s").removesuffix("_msg")
+    return name.removesuffix("s").removesuffix("_msg").removesuffix("_interface")

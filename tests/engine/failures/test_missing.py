@@ -30,6 +30,11 @@ PIP = "pip install {}, into the Python that runs cbtui"
             "moveit_py belongs to a ROS 2 machine and is not modelled here; planning needs MoveIt's",
         ),
         ("ros2topic.api", "ros2topic belongs to a ROS 2 machine and is not modelled here; the lines of ros2"),
+        ("py_trees", PIP.format("py_trees")),
+        (
+            "rclcpp_components",
+            "rclcpp_components belongs to a ROS 2 machine and is not modelled here; components are C++;",
+        ),
         ("tf2_roos", "did you mean 'tf2_ros'?"),
         ("sim.world", "sim is a package of cbtui's own, which hides yours; rename yours"),
         (
@@ -53,7 +58,13 @@ def test_a_module_that_is_missing_is_told_by_what_it_is(
     assert len(said) < 160
 
 
-@pytest.mark.parametrize("package", ["moveit_msgs", "frob_msgs", "my_msgs", "robot_msgs", "foo_msgs"])
+@pytest.mark.parametrize(
+    "package",
+    [
+        *("moveit_msgs", "frob_msgs", "my_msgs", "robot_msgs", "foo_msgs", "apriltag_msgs"),
+        *("tutorial_interfaces", "custom_interfaces", "robot_interfaces", "more_interfaces"),
+    ],
+)
 def test_an_ending_that_packages_share_does_not_make_them_alike(package: str) -> None:
     assert "did you mean" not in on_missing(package)
     assert package not in packages()
