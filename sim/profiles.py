@@ -7,7 +7,10 @@ themselves 7.1.6; their rclpy says 7.1.5, and has nothing of what the notes of 7
 follow source and release notes alone.
 
 Known, but not modelled: before #1469 a callback that waits for a worker is handed over again whenever the
-executor wakes. A program sees it only by chance, by exceptions that come out twice, or earlier.
+executor wakes. A program sees it only by chance: by exceptions that come out twice, or earlier, and by a
+second worker for a single timer. ``with`` blocks of ``rclpy.init()``, of nodes and of what they make came
+with Kilted (#1291 to #1298), and raise TypeError before; here every release has them. None has what Kilted
+added besides: content filters of subscriptions, introspection of actions, ``rosout_qos_profile``.
 """
 
 from __future__ import annotations
@@ -124,6 +127,29 @@ class Profile:
     def events_executor_runs_coroutines(self) -> bool:
         """Coroutine callbacks of subscriptions and services run on an ``EventsExecutor``. Source: #1478."""
         return self._since(jazzy="7.1.11", kilted="", lyrical="")
+
+    # Contexts and nodes
+
+    @property
+    def ends_nodes_with_context(self) -> bool:
+        """Shutting a context down destroys its nodes; a signal does not. Source: #1298."""
+        return self._since(kilted="", lyrical="")
+
+    @property
+    def tells_missing_init(self) -> bool:
+        """An executor made before ``rclpy.init`` raises a RuntimeError that says so, else a TypeError.
+
+        Source: run on both wheels.
+        """
+        return self._since(kilted="", lyrical="")
+
+    @property
+    def refuses_transitions(self) -> bool:
+        """A transition that a life cycle's state does not have is answered with an error.
+
+        Else RCLError comes out of who asks; where a service asks, out of ``spin``. Source: #1319.
+        """
+        return self._since(kilted="", lyrical="")
 
     # Clients and timers
 

@@ -6,6 +6,9 @@ from typing import Any, Protocol, Self
 
 from sim.ros.exceptions import InvalidHandle
 
+DESTROYED = "cannot use Destroyable because destruction was requested"
+"""What is told of the use of something that was destroyed."""
+
 
 class Destroyable(Protocol):
     """Something that can be destroyed, and tells whether it was."""
@@ -47,7 +50,7 @@ class Handle:
     def __enter__(self) -> Self:
         uses = self._uses()
         if self._owner.destroyed and uses == 0:
-            raise InvalidHandle("cannot use Destroyable because destruction was requested")
+            raise InvalidHandle(DESTROYED)
         vars(self._owner)["_handle_uses"] = uses + 1
         return self
 

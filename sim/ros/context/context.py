@@ -12,12 +12,17 @@ from weakref import WeakMethod, ref
 from sim.probes.own_code import place_of_caller
 from sim.probes.probe import Probe
 from sim.ros.context.arguments import Arguments, arguments_of_program
-from sim.ros.exceptions import NotInitializedException, RCLError
+from sim.ros.exceptions import RCLError
 from sim.ros.handle import Handle
 from sim.ros.middleware.domain import DOMAIN_VARIABLE, domain_of
 from sim.ros.middleware.host import Host, current_host
 from sim.ros.middleware.network import Network
 from sim.ros.middleware.process import Process, current_process
+
+ENDED = "the given context is not valid, either rcl_init() was not called or rcl_shutdown() was called."
+NODE_ENDED = "rcl node's context is invalid"
+"""Why rcl refuses something in a context that has ended, or to a node of it."""
+_NO_INIT = "rclpy.init() has not been called"
 
 
 class _EndCallback(NamedTuple):
@@ -127,6 +132,10 @@ class Context:
                 raise RCLError("failed to shutdown: rcl_shutdown already called on the given context")
             if self.probe.callback_here():
                 self.process.shut_down_at = place_of_caller()
+            if self.host.profile.ends_nodes_with_context:
+                for node in self._network.nodes():
+                    if node.context is self:
+                        node.destroy_node()
             callbacks = self._end()
         for each in callbacks:
             _call(each)
@@ -175,10 +184,19 @@ class Context:
     def _forget(self, reference: WeakMethod[Any]) -> None:
         self._end_callbacks = [each for each in self._end_callbacks if each.get is not reference]
 
-    def require_ok(self) -> None:
-        """Raise NotInitializedException unless it has begun and not ended."""
+    def require_begun(self, refused: str) -> None:
+        """Raise RuntimeError or TypeError, as the release does, before ``init``; RCLError after the end."""
+        if self._initialized:
+            self.require_ok(refused)
+            return
+        if self.host.profile.tells_missing_init:
+            raise RuntimeError(f"Context must be initialized a GuardCondition can be created: {_NO_INIT}")
+        raise TypeError(f"'NoneType' object does not support the context manager protocol: {_NO_INIT}")
+
+    def require_ok(self, refused: str, reason: str = ENDED) -> None:
+        """Raise RCLError with what rcl refuses, and why, unless it has begun and not ended."""
         if not self._valid:
-            raise NotInitializedException("cannot use Context")
+            raise RCLError(f"{refused}: {reason}")
 
     def __enter__(self) -> Context:
         if not self._initialized:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import msgspec
 
 from sim.interfaces import copy_message
+from sim.ros.context.context import NODE_ENDED
 from sim.ros.entities.client_or_service import ClientOrService
 from sim.ros.entities.entity_handles import ClientHandle
 from sim.ros.middleware.delivery import Request
@@ -150,8 +151,9 @@ class Client(ClientOrService, Entity):
                     del self._pending_requests[call]
 
     def service_is_ready(self) -> bool:
-        """Whether somebody offers the service; InvalidHandle if the client was destroyed."""
+        """Whether somebody offers the service; InvalidHandle or RCLError once it or its context has ended."""
         self.require_alive()
+        self.node.context.require_ok("failed to check service availability", NODE_ENDED)
         with self._host.lock:
             return self.node.context.network.has_service(self.name, self.srv_type)
 

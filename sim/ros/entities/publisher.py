@@ -16,8 +16,8 @@ from sim.ros.entities.qos_timing import (
     limit,
     publisher_timing,
 )
-from sim.ros.exceptions import InvalidHandle, RCLError
-from sim.ros.handle import Handle
+from sim.ros.exceptions import InvalidHandle
+from sim.ros.handle import DESTROYED, Handle
 from sim.ros.middleware.delivery import Delivery, ExpiringDelivery
 from sim.ros.qos.qos import DurabilityPolicy, QoSProfile
 from sim.ros.time.duration import Duration
@@ -32,6 +32,10 @@ MsgType = TypeVar("MsgType")
 
 
 _FOR_EVER = Duration(seconds=-1)
+_CONTEXT_ENDED = (
+    "publisher's context is invalid: rclpy.shutdown() or Ctrl-C ended it; to publish after Ctrl-C, call "
+    "rclpy.init(signal_handler_options=SignalHandlerOptions.NO)"
+)
 
 
 class Publisher:
@@ -119,16 +123,16 @@ class Publisher:
         """
         self.send(msg)
 
+    def require_usable(self) -> None:
+        """Raise InvalidHandle if it was destroyed, RCLError if its context has ended."""
+        if self.destroyed:
+            raise InvalidHandle(DESTROYED)
+        self.node.context.require_ok("Failed to publish", _CONTEXT_ENDED)
+
     def send(self, msg: Any) -> int:
         """Do what ``publish`` does, and return the message's id on the trace."""
         copy = self._copy(msg)
-        if self.destroyed:
-            raise InvalidHandle("Cannot publish: the publisher was destroyed")
-        if not self.node.context.ok():
-            raise RCLError(
-                "Failed to publish: publisher's context is invalid: rclpy.shutdown() or Ctrl-C ended it; "
-                "to publish after Ctrl-C, call rclpy.init(signal_handler_options=SignalHandlerOptions.NO)"
-            )
+        self.require_usable()
         with self._host.lock:
             message = self._probe.message_id()
             told = self.msg_type() if isinstance(copy, bytes) else copy

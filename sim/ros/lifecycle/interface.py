@@ -57,12 +57,13 @@ class LifecycleInterface:
             offer_hidden(node, service(_PACKAGE, kind), f"~/{name}", callback, _QOS, callback_group)
 
     def tell(self, transition: Transition) -> None:
-        """Tell a listener that the node took a transition; without one nothing is sent."""
+        """Tell a listener of the states of a transition; without one nothing is sent.
+
+        rcl leaves the event's other fields as they are.
+        """
         if self._events.get_subscription_count() == 0:
             return
         event = message(_PACKAGE, "TransitionEvent")(
-            timestamp=self._node.get_clock().now().nanoseconds,
-            transition=_transition(transition),
             start_state=_state(transition.start),
             goal_state=_state(transition.goal),
         )
@@ -71,12 +72,14 @@ class LifecycleInterface:
     def change_state(self, request: Any, response: Any) -> Any:
         """Take the transition of that label, else of that number, if the node's state has it."""
         wanted = request.transition
-        response.success = False
-        try:
-            number = self._machine.get_transition_by_label(wanted.label) if wanted.label else wanted.id
-            response.success = self._change(number) is TransitionCallbackReturn.SUCCESS
-        except RCLError as error:
-            self._node.get_logger().error(str(error))
+        number = wanted.id
+        if wanted.label:
+            try:
+                number = self._machine.get_transition_by_label(wanted.label)
+            except RCLError:
+                response.success = False
+                return response
+        response.success = self._change(number) is TransitionCallbackReturn.SUCCESS
         return response
 
     def _get_state(self, _request: Any, response: Any) -> Any:

@@ -79,7 +79,15 @@ class LifecycleNodeMixin(ManagedEntity):
     def __change_state(self, transition_id: int) -> TransitionCallbackReturn:
         state_id, label = self._state_machine.current_state
         before = LifecycleState(label=label, state_id=state_id)
-        self.__tell(self._state_machine.trigger_transition_by_id(transition_id))
+        try:
+            self.__tell(self._state_machine.trigger_transition_by_id(transition_id))
+        except RCLError:
+            node = cast("Node", self)
+            if not node.context.host.profile.refuses_transitions:
+                raise
+            at = (state_id, label)
+            node.get_logger().error(f"Unable to start transition {transition_id} from current state {at}")
+            return TransitionCallbackReturn.ERROR
         outcome = self.__outcome(before)
         self.__tell(self._state_machine.trigger_transition_by_label(outcome.to_label()))
         if outcome is TransitionCallbackReturn.ERROR:

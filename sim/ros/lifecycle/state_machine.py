@@ -131,8 +131,8 @@ class LifecycleStateMachine:
             if wanted in (each.transition_id, each.label):
                 return each
         raise RCLError(
-            "Failed to trigger lifecycle state machine transition: "
-            f"No transition matching {wanted} found for current state {STATES[self._state]}"
+            "Failed to trigger lifecycle state machine transition: Transition is not registered: "
+            f"no transition matching {wanted} found for current state {STATES[self._state]}"
         )
 
     def _take(self, transition: Transition) -> Transition:

@@ -101,5 +101,8 @@ class NetworkNode(Protocol):
     def context(self) -> ContextLifetime:
         """Its context."""
 
+    def destroy_node(self) -> None:
+        """Remove it with all that it has."""
+
     def get_name(self) -> str:
         """Its name without namespace."""

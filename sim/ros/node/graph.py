@@ -8,6 +8,7 @@ from itertools import chain
 from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from sim.interfaces import type_name
+from sim.ros.context.context import NODE_ENDED
 from sim.ros.entities.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from sim.ros.exceptions import NodeNameNonExistentError
 from sim.ros.middleware.type_description import type_hash
@@ -156,6 +157,7 @@ class Graph:
     def _nodes(self) -> tuple[Node, ...]:
         context = self._node.context
         with self._node.handle, context.host.lock:
+            context.require_ok("failed to look at the graph", NODE_ENDED)
             return nodes_on(context.network)
 
     def _named(self, name: str, namespace: str, what: str) -> Node:

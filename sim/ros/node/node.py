@@ -9,6 +9,7 @@ from sim.ros.clocks.clock import Clock, ROSClock
 from sim.ros.context.arguments import arguments_of_node, parameters_for
 from sim.ros.context.context import Context
 from sim.ros.context.utilities import get_default_context
+from sim.ros.exceptions import NotInitializedException
 from sim.ros.handle import Handle
 from sim.ros.logging.logger import RcutilsLogger, get_logger
 from sim.ros.naming.node_names import NodeNames
@@ -69,7 +70,8 @@ class Node:
         enable_logger_service: bool = False,
     ) -> None:
         self._context = get_default_context() if context is None else context
-        self._context.require_ok()
+        if not self._context.ok():
+            raise NotInitializedException("cannot create node")
         own_arguments = arguments_of_node(cli_args or ())
         sources = [self._context.arguments, own_arguments] if use_global_arguments else [own_arguments]
         rules = [rule for source in reversed(sources) for rule in source.remap_rules]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from sim.probes.callbacks import callback_name
 from sim.ros.clocks.clock import Clock
+from sim.ros.context.context import NODE_ENDED
 from sim.ros.entities.client import Client
 from sim.ros.entities.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from sim.ros.entities.guard_condition import NodeGuardCondition
@@ -125,6 +126,7 @@ class NodeEntities:
         if qos_overriding_options is not None:
             profile = overridden(Publisher, self._node, name, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
+        self._context.require_ok("Failed to create publisher", NODE_ENDED)
         publisher = publisher_class(
             self._node,
             msg_type,
@@ -161,6 +163,7 @@ class NodeEntities:
         if qos_overriding_options is not None:
             profile = overridden(Subscription, self._node, name, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
+        self._context.require_ok("Failed to create subscription", NODE_ENDED)
         with self._agenda.host.lock:
             group = self._chosen_group(callback_group, callback_name(callback))
             subscription = Subscription(
@@ -188,6 +191,7 @@ class NodeEntities:
     ) -> Timer:
         """Make a timer that calls back every ``timer_period_sec`` seconds."""
         period = int(float(timer_period_sec) * 1_000_000_000)
+        self._context.require_ok("failed to create timer")
         with self._agenda.host.lock:
             name = "" if callback is None else callback_name(callback)
             group = self._chosen_group(callback_group, name)
@@ -208,6 +212,7 @@ class NodeEntities:
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
         period = int(1e9 / frequency)
+        self._context.require_ok("failed to create timer")
         with self._agenda.host.lock:
             timer = Timer(self._node, period, None, self._rate_group, clock or self._node.get_clock())
             rate = Rate(timer, context=self._context)
@@ -226,6 +231,7 @@ class NodeEntities:
         """Make a service."""
         check_is_valid_srv_type(srv_type)
         name = self._node.resolve_service_name(srv_name)
+        self._context.require_ok("failed to create service", NODE_ENDED)
         with self._agenda.host.lock:
             group = self._chosen_group(callback_group, callback_name(callback))
             service = Service(self._node, srv_type, name, callback, group, qos_profile, srv_name=srv_name)
@@ -244,6 +250,7 @@ class NodeEntities:
         """Make a client of a service."""
         check_is_valid_srv_type(srv_type)
         name = self._node.resolve_service_name(srv_name)
+        self._context.require_ok("failed to create client", NODE_ENDED)
         with self._agenda.host.lock:
             group = self._chosen_group(callback_group, name)
             self._context.network.announce_use(name)
@@ -255,6 +262,7 @@ class NodeEntities:
         self, callback: Callable[[], Any] | None, callback_group: CallbackGroup | None = None
     ) -> NodeGuardCondition:
         """Make a guard condition."""
+        self._context.require_ok("failed to create guard_condition")
         with self._agenda.host.lock:
             group = self._chosen_group(callback_group, "" if callback is None else callback_name(callback))
             guard = NodeGuardCondition(self._node, callback, group)

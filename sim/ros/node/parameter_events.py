@@ -22,6 +22,7 @@ def parameter_event_publisher(node: Node) -> Publisher:
 
 def publish_change(publisher: Publisher, change: ParameterChange) -> None:
     """Tell whoever listens; without a listener nothing is sent, for the trace is the program's own."""
+    publisher.require_usable()
     if publisher.get_subscription_count() == 0:
         return
     node = publisher.node

@@ -45,6 +45,7 @@ class Executor:
 
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = get_default_context() if context is None else context
+        self._context.require_begun("failed to create guard_condition")
         self._host = self._context.host
         self._lock = self._host.lock
         self._clock = self._host.clock
@@ -64,9 +65,7 @@ class Executor:
         self._asks_waitables = False
         self._waitables_due: int | None = None
         self._waits_until: int | None = None
-        self._waiting = False
-        self._spinning = False
-        self._is_shutdown = False
+        self._waiting = self._spinning = self._is_shutdown = False
         self._context.wake_at_end(self.wake)
         self.trace_id = self._probe.executor_made(type(self).__name__, self.threads)
 
@@ -209,8 +208,7 @@ class Executor:
         self, timeout_sec: Timeout, nodes: Iterable[OwnerNode] | None, condition: Callable[[], bool]
     ) -> None:
         """Tell what is waited for next; if that is not what was last, the rest of the snapshot is let go."""
-        wanted = (timeout_sec, nodes, condition)
-        if wanted != self._cycle.wanted:
+        if (wanted := (timeout_sec, nodes, condition)) != self._cycle.wanted:
             with self._lock:
                 self._cycle.want(wanted, nodes)
                 self._wake()
@@ -232,6 +230,8 @@ class Executor:
         deadline = None if nanoseconds < 0 else self._clock.now() + nanoseconds
         if nanoseconds == 0:
             self._clock.poll()
+        elif nanoseconds > 0:
+            self._context.require_ok("failed to create timer")
         while True:
             asked = self._asks_waitables and self._cycle.about_to_look and self._ask_waitables()
             with self._lock:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Protocol, Self
 
 from sim.ros.exceptions import InvalidHandle
+from sim.ros.handle import DESTROYED
 
 
 class Watcher(Protocol):
@@ -60,7 +61,7 @@ class BareEntity:
 
     def __enter__(self) -> Self:
         if self.destroyed:
-            raise InvalidHandle("cannot use Destroyable because destruction was requested")
+            raise InvalidHandle(DESTROYED)
         return self
 
     def __exit__(self, *_error: object) -> None:

@@ -36,6 +36,7 @@ from sim.ros.time.duration import Duration
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")
+SetBool = service("std_srvs", "SetBool")
 
 
 def in_domain(domain: int) -> Context:
@@ -149,6 +150,34 @@ def test_waiting_for_a_message_leaves_nothing_behind() -> None:
         assert wait_for_message(Int32, node, "t", time_to_wait=0.1) == (False, None)
         gc.collect()
         assert len(node.context._end_callbacks) == before
+
+    simulate(program)
+
+
+def test_nothing_is_made_or_asked_in_a_context_that_has_ended() -> None:
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        client = node.create_client(SetBool, "s")
+        node.context.shutdown()
+        of_context, of_node = "the given context is not valid", "rcl node's context is invalid"
+        for refused, why in (
+            (lambda: node.create_timer(1.0, print), of_context),
+            (lambda: node.create_rate(1.0), of_context),
+            (lambda: node.create_guard_condition(print), of_context),
+            (lambda: SingleThreadedExecutor(context=node.context), of_context),
+            (lambda: MultiThreadedExecutor(2, context=node.context), of_context),
+            (lambda: node.create_publisher(Int32, "t", 1), of_node),
+            (lambda: node.create_subscription(Int32, "t", print, 1), of_node),
+            (lambda: node.create_service(SetBool, "s", print), of_node),
+            (lambda: node.create_client(SetBool, "s"), of_node),
+            (client.service_is_ready, of_node),
+            (node.get_node_names, of_node),
+            (node.get_topic_names_and_types, of_node),
+            (lambda: node.count_publishers("t"), of_node),
+            (lambda: node.declare_parameter("p", 1), "publisher's context is invalid"),
+        ):
+            with pytest.raises(RCLError, match=why):
+                refused()
 
     simulate(program)
 

@@ -194,7 +194,8 @@ def test_others_follow_and_steer_a_node_through_its_services() -> None:
         assert change(id=1)
         assert change(label="activate")
         assert not change(label="configure")
-        assert not change(id=1)
+        with pytest.raises(RCLError, match="Transition is not registered"):
+            change(id=1)
         assert ask(GetState, "get_state").current_state.label == "active"
         assert len(ask(GetAvailableStates, "get_available_states").available_states) == 11
         ways = ask(GetAvailableTransitions, "get_available_transitions").available_transitions
@@ -225,6 +226,7 @@ def test_every_step_is_told_to_a_listener() -> None:
         ("unconfigured", "configuring"),
         ("configuring", "inactive"),
     ]
+    assert {(each.timestamp, each.transition.id, each.transition.label) for each in heard} == {(0, 0, "")}
 
 
 def test_a_node_may_live_without_services() -> None:

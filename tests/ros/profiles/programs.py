@@ -324,6 +324,53 @@ spin(executor_of(node, kind=lambda: MultiThreadedExecutor(1)))
         },
     ),
     Differing(
+        "ends_nodes_with_context",
+        """
+publisher = node.create_publisher(Int32, "t", 10)
+rclpy.shutdown()
+attempt(lambda: publisher.publish(Int32()))
+attempt(node.get_name)
+attempt(lambda: node.create_timer(1.0, finish))
+finish()
+""",
+        {
+            "jazzy@7.1.5": "RCLError, n, RCLError",
+            "jazzy": "RCLError, n, RCLError",
+            "kilted@9.1.2": "InvalidHandle, InvalidHandle, RCLError",
+        },
+    ),
+    Differing(
+        "tells_missing_init",
+        """
+rclpy.shutdown()
+attempt(lambda: rclpy.spin(node))
+attempt(MultiThreadedExecutor)
+finish()
+""",
+        {
+            "jazzy@7.1.5": "TypeError, TypeError",
+            "jazzy": "TypeError, TypeError",
+            "kilted@9.1.2": "RuntimeError, RuntimeError",
+        },
+    ),
+    Differing(
+        "refuses_transitions",
+        """
+from lifecycle_msgs.srv import ChangeState
+from rclpy.lifecycle import LifecycleNode
+living = LifecycleNode("living")
+client = node.create_client(ChangeState, "/living/change_state")
+request = ChangeState.Request()
+request.transition.id = 3  # activate, which an unconfigured one cannot
+client.wait_for_service()
+client.call_async(request).add_done_callback(lambda reply: say(f"{reply.result().success}"))
+after(0.5, finish)
+attempt(lambda: executor_of(node, living).spin())
+time.sleep(1)
+""",
+        {"jazzy@7.1.5": "RCLError", "jazzy": "RCLError", "kilted@9.1.2": "False"},
+    ),
+    Differing(
         "keeps_attached_nodes",
         """
 executor = executor_of(node)

@@ -5,6 +5,7 @@ from collections.abc import Callable
 import pytest
 
 from sim.interfaces import service
+from sim.ros.exceptions import RCLError
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
@@ -227,7 +228,8 @@ def test_wait_for_service_ends_with_the_context() -> None:
         node = Node("n")
         client = node.create_client(SetBool, "s")
         simulation.at(2.1, node.context.shutdown)
-        assert not client.wait_for_service()
+        with pytest.raises(RCLError, match="failed to check service availability"):
+            client.wait_for_service()
         assert simulation.now == 2.25
 
     simulate(program)

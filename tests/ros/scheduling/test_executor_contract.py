@@ -8,7 +8,7 @@ import pytest
 
 import sim.ros.rclpy as rclpy
 from sim.interfaces import message, service
-from sim.ros.exceptions import InvalidHandle
+from sim.ros.exceptions import InvalidHandle, RCLError
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.ros.scheduling.executors import (
@@ -297,6 +297,8 @@ def test_spin_once_after_the_context_ended_tells_so() -> None:
         executor.spin()
         with pytest.raises(ExternalShutdownException):
             executor.spin_once(timeout_sec=0)
+        with pytest.raises(RCLError, match="failed to create timer"):
+            executor.spin_once(timeout_sec=0.1)
 
     simulate(program)
 
