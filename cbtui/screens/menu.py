@@ -224,13 +224,14 @@ class MenuScreen(SizedScreen[None]):
     # the search
 
     def on_key(self, event: Key) -> None:
-        """Begin a search with a letter or digit that is no key of the menu."""
+        """Search with a letter or digit that is no key of the menu, or that was typed as a search began."""
         typed = event.character or ""
-        if typed.isalnum() and not self.query(MenuSearch) and event.key not in self.active_bindings:
+        if typed.isalnum() and (self.query(MenuSearch) or event.key not in self.active_bindings):
             event.stop()
             self.action_search()
-            self.query_one(MenuSearch).insert_text_at_cursor(typed)
-            self._look_for(typed)  # now, as the next key may already be enter
+            search = self.query_one(MenuSearch)
+            search.insert_text_at_cursor(typed)
+            self._look_for(search.value)  # now, as the next key may already be enter
 
     @on(Input.Changed)
     def _search_for(self, event: Input.Changed) -> None:
@@ -308,7 +309,7 @@ class MenuScreen(SizedScreen[None]):
         """Let words be typed."""
         if not self.query(MenuSearch):
             self.mount(MenuSearch(), before="#choice")
-        self.query_one(MenuSearch).focus()
+        self.set_focus(self.query_one(MenuSearch))  # at once: the next key is for it
 
     def action_jump(self) -> None:
         """Show a letter on each entry; typing it highlights that."""

@@ -3,6 +3,8 @@
 from pathlib import Path
 
 import pytest
+from textual.events import Key
+from textual.screen import Screen
 
 from cbtui.app import CbtuiApp
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
@@ -10,6 +12,7 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.widgets.menu_search import MenuSearch
 from tests.support.console import NARROW, TALL, predict
+from tests.support.exercises import until
 from tests.support.fake_session import FakeEngines
 from tests.support.pictures import text_of
 
@@ -40,6 +43,31 @@ async def test_words_show_only_what_has_them_and_escape_shows_all(program: Path)
         assert "Split groups" in text_of(app)
         assert "my_node.py" in text_of(app)
         assert not app.screen.query(MenuSearch)
+
+
+async def test_digits_typed_at_once_open_their_lesson() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        type_at_once(app, "13")
+        await until(
+            pilot, lambda: "Spin inside a callback" in text_of(app) and app.screen is not menu_of(app)
+        )
+
+
+async def test_letters_typed_at_once_are_all_looked_for_even_those_of_keys() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        type_at_once(app, "unlock")
+        await until(pilot, lambda: [each.value for each in app.screen.query(MenuSearch)] == ["unlock"])
+
+
+def type_at_once(app: CbtuiApp, characters: str) -> None:
+    for character in characters:
+        app.post_message(Key(character, character))
+
+
+def menu_of(app: CbtuiApp) -> Screen[None]:
+    return app.screen_stack[0]
 
 
 @pytest.mark.slow
