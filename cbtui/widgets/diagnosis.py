@@ -38,6 +38,8 @@ class DiagnosisLevel(Enum):
 class Diagnosis:
     """A sentence about a moment, and its importance; ``at_length`` is shown instead if it fits.
 
+    ``time`` is how the sentence begins if it tells of another moment, which is left out where room is short.
+
     One that stays (a notice, the end of a run) may take several lines; the others change from moment to
     moment and take one line, so that the screen does not jump. ``is_stall``: nothing moves, and why is not
     known.
@@ -47,6 +49,7 @@ class Diagnosis:
     level: DiagnosisLevel
     stays: bool = field(default=False, compare=False)
     at_length: str = ""
+    time: str = field(default="", compare=False)
     is_stall: bool = field(default=False, compare=False)
 
 
@@ -96,9 +99,11 @@ def with_worst_problem(
     what = explanation.what
     if worst.at is None:
         return Diagnosis(what, DiagnosisLevel.TROUBLE, at_length=f"{worst.name}: {what}")
-    text = f"at {worst.at / 1e9:.1f} s: {what}"
+    time = f"at {worst.at / 1e9:.1f} s: "
+    text = f"{time}{what}"
     further = f"; {way_on}" if way_on and explanation.for_ever else ""
-    return Diagnosis(text, DiagnosisLevel.TROUBLE, at_length=f"{worst.name} {text}{further}")
+    at_length = f"{worst.name} {text}{further}"
+    return Diagnosis(text, DiagnosisLevel.TROUBLE, at_length=at_length, time=time)
 
 
 def _key(action: str, keymap: Keymap) -> str:
@@ -149,7 +154,7 @@ def diagnosis_at(
     at_rest = (
         _in_a_call(moment, timeline) or f"nothing waits; {_threads_needed(timeline, concurrency.peak(at))}"
     )
-    return Diagnosis(f"{at_rest}{overdue}", DiagnosisLevel.FINE)
+    return Diagnosis(at_rest, DiagnosisLevel.FINE, at_length=f"{at_rest}{overdue}")
 
 
 def _in_a_call(moment: Moment, timeline: Timeline) -> str:

@@ -1,6 +1,7 @@
 """The diagnosis line at the bottom, with the number of problems."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from re import finditer, sub
 from textwrap import wrap
 
 from textual.events import Resize
@@ -9,6 +10,7 @@ from textual.message import Message
 from textual.reactive import reactive
 
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
+from cbtui.text.callback_names import short_name
 from cbtui.text.cells import fit
 from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
 from cbtui.widgets.painted_widget import PaintedWidget, painted
@@ -81,10 +83,8 @@ def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) ->
     at_right = f"{problems} " if problems else ""
     gap = _GAP if problems else 0
     room = width - len(at_right) - gap
-    sign = _SIGNS[diagnosis.level]
-    text, at_length = (f" {sign} {each}" for each in (diagnosis.text, diagnosis.at_length))
-    if diagnosis.at_length and len(at_length) <= room:
-        text = at_length
+    texts = (f" {_SIGNS[diagnosis.level]} {each}" for each in _ways_to_say(diagnosis))
+    text = next((each for each in texts if len(each) <= room), f" {_SIGNS[diagnosis.level]} {diagnosis.text}")
     shown_note = _fitting(note, room - len(text) - _INDENT)
     runs = [
         TextRun(fit(text, room - len(shown_note), Charset.BRAILLE), ink),
@@ -92,6 +92,17 @@ def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) ->
         TextRun(at_right, Ink(Role.STRONG)),
     ]
     return [run for run in runs if run.text]
+
+
+def _ways_to_say(diagnosis: Diagnosis) -> Iterator[str]:
+    """Yield a diagnosis from its fullest text to its shortest: short names, no time, the first clauses."""
+    yield from filter(None, (diagnosis.at_length, diagnosis.text))
+    brief = [sub(r"\w+_callback\b", lambda found: short_name(found[0]), diagnosis.text)]
+    brief.append(brief[0].removeprefix(diagnosis.time))
+    yield from brief
+    for text in brief:
+        for end in reversed(list(finditer(r"[;.] ", text))):
+            yield text[: end.start()]
 
 
 def _fitting(note: str, room: int) -> str:

@@ -80,7 +80,7 @@ def test_where_nothing_waits_the_threads_that_were_needed_are_told() -> None:
 
 def test_a_timer_that_outlasts_its_period_waits_for_nobody_else() -> None:
     told = said(split_groups_run(), 9.4)
-    assert told.text.endswith("timer_callback, due again 4.9 s ago, still runs")
+    assert told.at_length.endswith("timer_callback, due again 4.9 s ago, still runs")
     assert told.level is DiagnosisLevel.FINE
 
 
@@ -230,6 +230,19 @@ def test_a_moment_that_is_well_tells_of_the_runs_worst_problem() -> None:
     assert told.level is DiagnosisLevel.TROUBLE
     assert told.text.startswith(f"at 4.0 s: {what}")
     assert told.at_length.startswith(f"group starvation at 4.0 s: {what}")
+
+
+def test_in_80_columns_a_problem_keeps_its_reason() -> None:
+    told = with_worst_problem(said(shared_group_run(), 3.0), told_of(shared_group_run(), 15.0))
+    shown = line(told, 80, problems="1 problem · d")
+    assert shown.startswith(" ! odom and scan waited up to 11.0 s: group A was held by timer ")
+
+
+def test_a_sentence_that_does_not_fit_ends_with_a_clause() -> None:
+    what = "deadlock: pick waits for /gripper for ever; the reply of /gripper can never be taken in"
+    deadlock = Diagnosis(f"at 1.0 s: {what}", DiagnosisLevel.TROUBLE, time="at 1.0 s: ")
+    assert line(deadlock, 80).rstrip().startswith(" ! at 1.0 s: deadlock: pick waits for /gripper for ever  ")
+    assert "…" in line(deadlock, 40)
 
 
 def test_a_wait_that_never_ends_is_told_whatever_else_waits() -> None:

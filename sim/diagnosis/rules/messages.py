@@ -49,7 +49,14 @@ class DroppedMessages(Rule):
         entity = entity_of(found, timeline)
         subject = who(found.subject, timeline)
         waits = timeline.waits_of(entity.id, Window(found.at, found.at + 1))
-        because = f" while it waited ({why_waiting(waits[-1], timeline)})" if waits else ""
+        because = ""
+        if waits:
+            own = waits[-1].holder == entity.id
+            because = (
+                " while its last call ran"
+                if own
+                else f" while it waited ({why_waiting(waits[-1], timeline)})"
+            )
         room = remedy_for_waits([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
         messages = "1 message" if found.count == 1 else f"{found.count} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
