@@ -290,6 +290,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self.draw_lanes()
         if content is FrameContent.LANES:
             return
+        self.query_one(Lanes).told = self.navigation.now  # all panes tell of the same moment
         self._narration.draw()
         run, told, keymap = self.runs.run, self.runs.findings.findings, keymap_of(self.app)
         self.panes.set_robot(has_robot(run) or bool(self.subject.scene))

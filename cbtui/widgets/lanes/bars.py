@@ -28,11 +28,15 @@ _NUMBER = Ink(Role.MARK, selected=True)
 
 @dataclass(frozen=True, slots=True)
 class BarPainter:
-    """Draws calls and waits into rows. ``now`` is the cursor's time; ``numbers`` the place of each group."""
+    """Draws calls and waits into rows. ``now`` is the cursor's time, ``told`` that of the words and figures.
+
+    ``numbers`` is the place of each group.
+    """
 
     timeline: Timeline
     glyphs: Glyphs
     now: Nanoseconds
+    told: Nanoseconds
     numbers: dict[int, int]
 
     def thread(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None]) -> None:
@@ -196,16 +200,16 @@ class BarPainter:
     def _reasons(self, wait: Wait) -> tuple[str, ...]:
         """Return ways to say why a callback waits, from the fullest to the shortest."""
         took = self._took(wait)
-        verb = "waits" if wait.end is None or wait.end > self.now else "waited"
+        verb = "waits" if wait.end is None or wait.end > self.told else "waited"
         reasons = self._words_of(wait)
         full = (f"{verb} {took}: {reason}" for reason in reasons)
         return (*full, f"{took}: {reasons[-1]}", *reasons, f"{verb} {took}", took)
 
     def _took(self, interval: Interval) -> str:
-        """Return how long an interval lasts up to the cursor; its full length if it begins later."""
+        """Return how long an interval has lasted at the moment told; its full length if it begins later."""
         end = self.timeline.end if interval.end is None else interval.end
-        if interval.start <= self.now:
-            end = min(end, self.now)
+        if interval.start <= self.told:
+            end = min(end, self.told)
         return duration(max(0, end - interval.start))
 
     def _words_of(self, wait: Wait) -> tuple[str, ...]:

@@ -118,7 +118,7 @@ def _cause(timeline: Timeline, span: Span, entity: EntityInfo) -> Iterator[str]:
 
 
 def _lateness(age: Nanoseconds) -> str:
-    return f"late by {duration(age)}" if age > 0 else "on time"
+    return f"called {duration(age)} late" if age > 0 else "called on time"
 
 
 def _publisher(timeline: Timeline, span: Span, entity: EntityInfo) -> str:

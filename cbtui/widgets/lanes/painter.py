@@ -85,11 +85,12 @@ class LanePainter:
         selection: Selection | None = None,
         whole: Nanoseconds = 0,
         path: Sequence[ChainStep] = (),
+        told: Nanoseconds | None = None,
     ) -> LanePicture:
         """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells.
 
-        With ``whole`` there is an overview, up to that end; else only where it takes no room from lanes. The
-        steps of ``path`` stand out on the lanes of their callbacks.
+        Words and figures are of the moment ``told``, ``now`` unless given. With ``whole`` there is an
+        overview, up to that end; else only where it takes no room. ``path`` stands out on its lanes.
         """
         if timeline is not self.cache.timeline:
             self.cache = LaneCache(timeline)
@@ -102,7 +103,8 @@ class LanePainter:
         lanes = choose_lanes(
             every, room, timeline, scale.window, None if selection is None else selection.lane
         )
-        frame = _LaneFrame(self, timeline, scale, layout, now, timeline.moment(now), selection, path)
+        moment = timeline.moment(now if told is None else told)
+        frame = _LaneFrame(self, timeline, scale, layout, now, moment, selection, path)
         rows, shown = [], list[Lane]()
         more = rows_granted(lanes, timeline, room - len(lanes) if width >= ROOMY_FROM else 0)
         for lane in lanes if height > 0 else ():
@@ -154,6 +156,7 @@ class _LaneFrame:
         self._scale = scale
         self._layout = layout
         self._now = now
+        self._told = moment.at
         self._ration = IntervalBudget(painter.looks)
         self.unseen = False
         self._charset = painter.charset
@@ -162,7 +165,7 @@ class _LaneFrame:
         self._calls = LatestCalls(timeline)
         self._numbers = {group: place for place, group in enumerate(timeline.groups)}
         self._labels = LaneLabels(layout.names, self._glyphs, self._numbers)
-        self._bars = BarPainter(timeline, self._glyphs, now, self._numbers)
+        self._bars = BarPainter(timeline, self._glyphs, now, self._told, self._numbers)
         self._status = LaneStatus(timeline, scale.window, moment, self._calls, self._charset, layout.statuses)
 
     def lane(self, lane: Lane) -> list[TextRun]:
@@ -296,16 +299,15 @@ class _LaneFrame:
         """Paint the time axis, with the number of hidden lanes at its left."""
         row = CellRow(self._layout.columns, self._charset)
         marks = self._timeline.marks(self._scale.window)
-        draw_axis(row, self._scale, self._now_column, marks, self._calls.latest)
+        draw_axis(row, self._scale, self._column_at(self._now), marks, self._calls.latest)
         name = more_lanes(hidden, self._painter.more_key, self._layout.names) if hidden else "seconds"
         unit = f"{duration(self._scale.per_column)}/col" if self._layout.statuses >= 15 else ""
         self._show_cursor(row)
         return self._framed([TextRun(name, FAINT)], row.runs(), TextRun(unit, FAINT), chosen=False)
 
-    @property
-    def _now_column(self) -> int:
-        """The cursor's column; the last one when the picture ends exactly there."""
-        return self._scale.column_of(self._now - (self._now == self._scale.window.end))
+    def _column_at(self, moment: Nanoseconds) -> int:
+        """The column of a moment; the last one when the picture ends exactly there."""
+        return self._scale.column_of(moment - (moment == self._scale.window.end))
 
     def _sums(self, lane: Lane) -> LaneSummary:
         cache, timeline = self._cache, self._timeline
@@ -327,7 +329,7 @@ class _LaneFrame:
             for column in columns
             if column is not None and column.top.end is None
         )
-        lengths = tuple(duration(self._now - start) for start in lasting)
+        lengths = tuple(duration(max(0, self._told - start)) for start in lasting)
         return LaneSummary(self._scale, calls, waits, blocks, losses, lengths, tuple(sorted(unseen)))
 
     def _summed(
@@ -363,7 +365,7 @@ class _LaneFrame:
         return self._painter.call_key if self._painter.service in ("", service) else ""
 
     def _latest(self, columns: list[LaneColumn[Span] | None]) -> Span | None:
-        shown = columns[: max(0, self._now_column + 1)]
+        shown = columns[: max(0, self._column_at(self._told) + 1)]
         return next((column.top for column in reversed(shown) if column is not None), None)
 
     def _framed(
@@ -384,7 +386,7 @@ class _LaneFrame:
 
     def _show_cursor(self, row: CellRow) -> None:
         """Mark the cursor and the time after it, unless it is at the edge."""
-        column = self._now_column
+        column = self._column_at(self._now)
         at_edge = self._now + self._scale.per_column >= self._edge
         if at_edge or not 0 <= column < len(row.cells):
             return

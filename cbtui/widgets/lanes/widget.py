@@ -47,8 +47,9 @@ class Lanes(PaintedWidget, can_focus=True):
     """Threads as lanes, callbacks as bars, waits as hatching; the time axis runs along the bottom.
 
     Set ``timeline`` again (it may be the same one) when it has grown. ``now`` is the cursor that all panes
-    share; ``service`` is another program's service that gets a lane before its first call. The selection
-    stands out and is described below the axis. The screen sets ``selection``, ``hint`` (what the frame says
+    share; words and figures are of the moment ``told``, if that is given. ``service`` is another program's
+    service that gets a lane before its first call. The selection stands out and is described below the
+    axis. The screen sets ``selection``, ``hint`` (what the frame says
     of keys), ``keys``, ``path`` (the steps of a chain, to be marked) and ``changes`` (what a person changed
     about the run).
     """
@@ -58,6 +59,7 @@ class Lanes(PaintedWidget, can_focus=True):
     timeline: reactive[Timeline] = painted(Timeline, always_update=True)
     window: reactive[Window] = painted(Window(0, 10_000_000_000))
     now: reactive[Nanoseconds] = painted(0)
+    told: reactive[Nanoseconds | None] = painted(None)
     service: reactive[str] = reactive("", layout=True)
     charset: reactive[Charset] = reactive(Charset.BRAILLE, repaint=False)
     selection: reactive[Selection | None] = painted(None)
@@ -198,19 +200,28 @@ class Lanes(PaintedWidget, can_focus=True):
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the lanes, and the details of the selected bar."""
         selection = None if self.selection is None else self.selection.renewed(self.timeline)
-        told = self._rows_told(size) if selection is not None else 0
-        height = size.height - told
+        described = self._rows_told(size) if selection is not None else 0
+        height = size.height - described
         picture = self._painter.paint(
-            self.timeline, self.window, self.now, size.width, height, selection, self.whole, self.path
+            self.timeline,
+            self.window,
+            self.now,
+            size.width,
+            height,
+            selection,
+            self.whole,
+            self.path,
+            self.told,
         )
         self._picture = picture
         if not picture.complete:
             self._go_on_later()
         title = ["Lanes", picture.time_per_column, *([f"changed: {self.changes}"] if self.changes else [])]
         self._entitle(f" {GLYPHS[self.charset].between} ".join(title))
-        if selection is None or not told:
+        if selection is None or not described:
             return picture.rows
-        details = details_of_selection(self.timeline, selection, self.now, self.keys)
+        told = self.now if self.told is None else self.told
+        details = details_of_selection(self.timeline, selection, told, self.keys)
         return [*picture.rows, *details_rows(details, size.width, self.charset)]
 
     def _go_on_later(self) -> None:

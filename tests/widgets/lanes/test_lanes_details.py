@@ -94,7 +94,7 @@ def test_a_timer_tells_its_period_and_how_late_it_was() -> None:
     run.callback(tick, thread, 1.3, 0.1, late=0.3)
     timeline = told(run)
     details = details_of(timeline, span_of(timeline, "tick_callback"), ns(9))
-    assert "due every 1.0 s, late by 300 ms" in details.facts
+    assert "due every 1.0 s, called 300 ms late" in details.facts
 
 
 def test_a_call_that_raised_tells_the_error() -> None:

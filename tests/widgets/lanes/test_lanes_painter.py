@@ -47,6 +47,15 @@ def test_one_shared_group_shows_everybody_waiting_for_the_timer() -> None:
     )
 
 
+def test_words_and_figures_are_of_the_moment_that_is_told_and_bars_go_on() -> None:
+    timeline = told(shared_group_run(), until=12.9)
+    window, now = last(10, 12.9)
+    behind = plain(LanePainter().paint(timeline, window, now, 80, 8, told=ns(12.4)).rows)
+    assert "odom      │▎▎▎▎▎╱╱ waits 8.4 s: A held by timer_callback ××××│ 10/10! lost 158" in behind
+    assert "timer     │▎ ▎  ── runs 8.4 s on MainThread ─────────────────│ late 7.9 s" in behind
+    assert "MainThread  │▎▎▎▎▎A timer_callback ███████████████████████████▌│" in behind
+
+
 def test_what_has_no_callback_of_its_own_goes_by_its_name() -> None:
     run = Run()
     thread, group = run.thread("MainThread"), run.exclusive(run.node("/n"))
