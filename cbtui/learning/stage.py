@@ -57,7 +57,7 @@ _MEANINGS = {
     Stage.UNTOUCHED: "not opened yet",
     Stage.OPENED: "opened",
     Stage.PREDICTED: "predicted, not watched yet",
-    Stage.WATCHED: "watched; the explanation or the exercise is left, or nothing was predicted",
+    Stage.WATCHED: "watched; prediction, explanation or exercise is missing",
     Stage.DONE: "done: predicted, explained, and the exercise passed",
 }
 

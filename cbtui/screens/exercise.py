@@ -220,6 +220,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
             else "that was the last lesson"
         )
         text = f"✓ {self._learning.lesson.title}: all {checks} checks pass, {way_on}"
+        self.app.clear_notifications()  # hints are not needed any more
         self.query_one(PassedBanner).celebrate(text)
 
     # the file

@@ -139,6 +139,7 @@ def status_row(status: RunStatus, width: int, turn: int = 0) -> list[TextRun]:
         ([*step, state, pace, _GAP, time, _GAP, *recording, *losses], whole),
         ([*step, state, brief, _GAP, time, _GAP, *recording, *losses], whole),
         ([*step[:1], *step[-1:], state, brief, _GAP, time, _GAP, *recording, *losses], whole),
+        ([*step[:1], *step[-1:], state, _GAP, time, _GAP, *recording, *losses], whole),
         ([state, pace, _GAP, time, _GAP, *recording, *losses], whole),
         ([state, _GAP, time, _GAP, *recording, *losses], _LEAST_TITLE),
         ([state, _GAP, time, _GAP, *losses], _LEAST_TITLE),
@@ -182,9 +183,9 @@ def _steps(steps: Sequence[LessonStep]) -> list[TextRun]:
 
 
 def _about_current(steps: Sequence[LessonStep]) -> Sequence[LessonStep]:
-    """The current step and the one after it; all are done without a current one."""
+    """The current step and the one after it; the last one if all are done."""
     place = next((place for place, step in enumerate(steps) if step.state is StepState.CURRENT), len(steps))
-    return steps[place : place + 2]
+    return steps[place : place + 2] or steps[-1:]
 
 
 _STATES = {

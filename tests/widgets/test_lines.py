@@ -4,6 +4,7 @@ import pytest
 
 from cbtui.keys.action import Scope
 from cbtui.keys.actions import actions_of
+from cbtui.learning.stage import LessonStep, StepState
 from cbtui.looks.theme import Charset, TextRun
 from cbtui.runs.live.live_run import RunState
 from cbtui.widgets.banner import banner
@@ -68,6 +69,22 @@ def test_a_status_line_is_as_wide_as_the_screen(
 )
 def test_a_state_is_told_in_a_word_and_a_sign(status: RunStatus, words: str) -> None:
     assert words in text(status_row(status, 140))
+
+
+DONE = (LessonStep("Predict", StepState.DONE), LessonStep("Run", StepState.DONE), LessonStep("Explain", StepState.DONE))
+EXERCISE = (*DONE, LessonStep("Exercise", StepState.CURRENT, "2/5"))
+
+
+def test_in_80_columns_the_last_step_tells_that_all_is_done() -> None:
+    assert "Explain ✓" in text(status_row(replace(LIVE, steps=DONE), 80))
+
+
+def test_in_80_columns_the_pace_makes_room_for_the_checks_that_pass() -> None:
+    title = "1/6 Spin inside a callback"
+    starting = replace(LIVE, title=title, state=RunState.STARTING, pace="virtual max", at=0, dropped=0)
+    row = text(status_row(replace(starting, steps=EXERCISE), 80))
+    assert row.startswith(f" {title}   Exercise 2/5 ")
+    assert "STARTING   t 0.000 s   dropped 0" in row
 
 
 @pytest.mark.parametrize("width", range(40, 200))

@@ -121,7 +121,6 @@ def of_exercise(
 
     return replace(
         subject,
-        heading=f"{subject.heading}: exercise",
         node_path=file,
         executor="as your file says",
         set_up=set_up,

@@ -123,8 +123,12 @@ class Refusals(ScreenPart):
         self._tell("")
 
     def action_no_hint(self) -> None:
-        """Tell when there are hints."""
-        self._tell("The hints come once the lesson is explained: press {key}.")
+        """Tell when there are hints, or that all were taken."""
+        self._tell(
+            f"There are no more hints; {self.host.key('solution')} shows the solution."
+            if self.is_available("solution")
+            else "The hints come once the lesson is explained: press {key}."
+        )
 
     def action_no_solution(self) -> None:
         """Tell when there is a solution."""
