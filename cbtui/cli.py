@@ -153,7 +153,7 @@ def _parser() -> argparse.ArgumentParser:
         console.add_open_options,
         console.open_console,
         help="open a lesson, or a file of your own, in the console",
-        usage="%(prog)s [options] LESSON|FILE.py [-- ARGUMENTS of the file]",
+        usage="%(prog)s [options] LESSON|PUZZLE|FILE.py [-- ARGUMENTS of the file]",
     )
     more_lessons.add_option(opening)
     command(

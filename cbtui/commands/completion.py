@@ -1,11 +1,14 @@
 """``cbtui completion`` and ``cbtui man``: completions of the command line for shells, and its manual page."""
 
 import argparse
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from re import findall
 
 from cbtui.text.output import say
 
 _SHELLS = ("bash", "zsh", "fish")
+_PATHS = {"FILE": "FILE", "OUT": "FILE", "DIR": "DIRECTORY"}
+"""What completes an argument that is a path, by its name in the help."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -17,18 +20,19 @@ def completion(whole: Callable[[], argparse.ArgumentParser], options: argparse.N
     """Print a script that completes the words of the ``whole`` command line; lessons are those of now."""
     import shtab
 
-    from lessons.catalogue import lessons
-
-    ids = " ".join(lesson.id for lesson in lessons())
-    parser = whole()
+    parser, words = whole(), _words()
+    functions = dict[str, str]()
     for action in _actions(parser):
-        action.complete = _completion_of(action, ids)  # type: ignore[attr-defined]
-    preamble = {
-        "bash": f'_cbtui_targets() {{ compgen -W "{ids}" -- "$1"; _shtab_compgen_files "$1"; }}',
-        "zsh": f"_cbtui_targets() {{ compadd -- {ids}; _files }}",
-        "fish": "",
-    }
-    say(shtab.complete(parser, options.shell, preamble=preamble[options.shell]) + "\n")
+        kinds = [kind for kind in (*words, *_PATHS) if kind in findall("[A-Z]+", str(action.metavar or ""))]
+        if kinds:
+            ids = " ".join(word for kind in kinds for word in words.get(kind, ()))
+            paths = next((_PATHS[kind] for kind in kinds if kind in _PATHS), "")
+            name = f"_cbtui_{'_'.join(kinds).lower()}"
+            functions[name] = _function(name, options.shell, ids, paths)
+            fish = f"{ids} {getattr(shtab, paths)['fish']}" if paths else ids
+            action.complete = {"bash": name, "zsh": name, "fish": fish}  # type: ignore[attr-defined]
+    preamble = "\n".join(functions.values())
+    say(shtab.complete(parser, options.shell, preamble={options.shell: preamble}) + "\n")
     return 0
 
 
@@ -38,6 +42,7 @@ def man(whole: Callable[[], argparse.ArgumentParser], _options: argparse.Namespa
 
     page = Manpage(whole())
     page.manual = page.prog
+    page.description = page.parser.description  # what apropos finds
     say(f"{page}\n")
     return 0
 
@@ -52,15 +57,25 @@ def _actions(parser: argparse.ArgumentParser) -> Iterator[argparse.Action]:
             yield action
 
 
-def _completion_of(action: argparse.Action, lessons: str) -> dict[str, str]:
-    """What shells complete an argument with, derived from its name in the help."""
-    import shtab
+def _words() -> Mapping[str, Sequence[str]]:
+    """The words for an argument, by its name in the help."""
+    from cbtui.looks.colour_themes import THEMES
+    from lessons.catalogue import lessons
+    from lessons.puzzles import puzzles
+    from sim.profiles import DISTROS
 
-    name = str(action.metavar or "")
-    if "LESSON" in name and "FILE" in name:
-        targets = {"bash": "_cbtui_targets", "zsh": "_cbtui_targets"}
-        return {**targets, "fish": f"{lessons} {shtab.FILE['fish']}"}
-    if "LESSON" in name:
-        return {"bash": "_cbtui_targets", "zsh": f"({lessons})", "fish": lessons}
-    known = shtab.FILE if "FILE" in name else shtab.DIRECTORY if "DIR" in name else {}
-    return {shell: str(known[shell]) for shell in _SHELLS if shell in known}
+    ids = {"LESSON": lessons(), "PUZZLE": puzzles()}
+    known = {kind: [each.id for each in every] for kind, every in ids.items()}
+    return {**known, "THEME": [theme.name for theme in THEMES], "RELEASE": list(DISTROS)}
+
+
+def _function(name: str, shell: str, ids: str, paths: str) -> str:
+    """A shell's function that offers words, and files or folders; fish needs none."""
+    match shell:
+        case "bash":
+            found = {"": "", "FILE": ' _shtab_compgen_files "$1";', "DIRECTORY": ' _shtab_compgen_dirs "$1";'}
+            return f'{name}() {{ compgen -W "{ids}" -- "$1";{found[paths]} }}'
+        case "zsh":
+            found = {"": "", "FILE": "; _files", "DIRECTORY": "; _files -/"}
+            return f"{name}() {{ compadd -- {ids}{found[paths]} }}"
+    return ""

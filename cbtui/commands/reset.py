@@ -9,7 +9,7 @@ from cbtui.text.output import complain, say
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    parser.add_argument("lesson", metavar="LESSON", help="a lesson's or puzzle's id, see cbtui list")
+    parser.add_argument("lesson", metavar="LESSON|PUZZLE", help="a lesson's or puzzle's id, see cbtui list")
     more_lessons.add_option(parser)
 
 

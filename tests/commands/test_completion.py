@@ -23,6 +23,12 @@ def script(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Path:
         (["run", "--clo"], {"--clock"}),
         (["run", "split"], {"split-groups", "split_mine.py"}),
         (["check", "spin"], {"spin-inside-a-callback"}),
+        (["open", "last"], {"last-seat"}),
+        (["reset", "two-l"], {"two-locks"}),
+        (["compare", "split-groups", "split"], {"split-groups", "split_mine.py"}),
+        (["run", "--clock", ""], {"virtual", "real"}),
+        (["--theme", "high"], {"high-contrast", "high-contrast-light"}),
+        (["run", "--distro", "j"], {"jazzy"}),
     ],
 )
 def test_bash_completes(script: Path, words: list[str], completed: set[str]) -> None:
@@ -39,15 +45,18 @@ def test_bash_completes(script: Path, words: list[str], completed: set[str]) -> 
 
 
 @pytest.mark.parametrize("shell", ["zsh", "fish"])
-def test_other_shells_are_told_the_lessons(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_other_shells_are_told_the_words(shell: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["completion", shell]) == 0
-    assert "split-groups" in capsys.readouterr().out
+    script = capsys.readouterr().out
+    for word in ("split-groups", "last-seat", "high-contrast", "lyrical", "virtual"):
+        assert word in script
 
 
 def test_the_manual_has_every_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["man"]) == 0
     page = capsys.readouterr().out
     assert page.startswith('.TH CBTUI "1"')
+    assert "\n.SH NAME\ncbtui \\- A terminal teaching console" in page
     for command in ("run", "open", "explore", "lint\\-lesson"):
         assert f"cbtui {command}" in page or f"cbtui\\fR \\fI\\,{command}" in page
 
@@ -56,7 +65,7 @@ def test_the_manual_has_every_command(capsys: pytest.CaptureFixture[str]) -> Non
     ("words", "near"),
     [
         (["opne"], "did you mean open?"),
-        (["my_node.py"], "my_node.py is no command; cbtui open my_node.py opens it"),
+        (["my_node.py"], "my_node.py is not a command; cbtui open my_node.py opens it"),
         (["split-groups", "--threads", "2"], "cbtui run split-groups runs it"),
         (
             ["run", "single-thread", "--sede"],

@@ -42,7 +42,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--theme",
-        metavar="NAME",
+        metavar="THEME",
         default=argparse.SUPPRESS,
         help="colours: dark, light, high-contrast, high-contrast-light, or another that ctrl+p offers (dark)",
     )

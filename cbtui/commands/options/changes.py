@@ -60,7 +60,7 @@ def add_distro(parser: argparse.ArgumentParser, side: str = "") -> None:
 
     parser.add_argument(
         f"--distro{side}",
-        metavar="NAME[@PATCH]",
+        metavar="RELEASE[@PATCH]",
         type=values.distro,
         help="the release whose rclpy the model is like: humble, jazzy, kilted, lyrical, also with a patch, "
         "as in jazzy@7.1.5; jazzy and kilted were run, humble and lyrical follow documentation and source, "
