@@ -8,7 +8,7 @@ from cbtui.text.output import say
 
 def list_lessons(_options: argparse.Namespace) -> int:
     """Print the lessons."""
-    from cbtui.learning.stage import puzzle_text, stage_of, stage_text
+    from cbtui.learning.stage import Stage, puzzle_text, stage_of, stage_text
     from lessons.catalogue import lessons
     from lessons.progress import Progress
     from lessons.puzzles import puzzles_of
@@ -16,15 +16,20 @@ def list_lessons(_options: argparse.Namespace) -> int:
     known, progress = lessons(), Progress()
     width = max(len(lesson.id) for lesson in known)
     for unit, members in groupby(known, key=lambda lesson: lesson.unit):
-        say(f"{unit}\n")
-        for lesson in members:
-            came = progress.of(lesson.id)
-            stage = stage_text(lesson, came, stage_of(lesson, came, opened=False))
+        of_unit = [(lesson, progress.of(lesson.id)) for lesson in members]
+        stages = [stage_of(lesson, came, opened=False) for lesson, came in of_unit]
+        say(f"{unit}: {stages.count(Stage.DONE)} of {len(stages)} done\n")
+        for (lesson, came), stage in zip(of_unit, stages, strict=True):
             exercise = ", with an exercise" if lesson.exercise is not None else ""
-            text = f"{lesson.number:4}  {lesson.id:{width}}  {lesson.title}: {lesson.executor}{exercise}"
-            say(f"{text}  {stage}\n" if stage else f"{text}\n")
+            about = f"{lesson.id:{width}}  {lesson.title}: {lesson.executor}{exercise}"
+            _say_row(stage_text(lesson, came, stage), f"{lesson.number:2}", about)
             for puzzle in puzzles_of(lesson.id):
-                so_far = puzzle_text(progress.of(puzzle.id))
-                text = f"      {puzzle.id:{width}}  puzzle: {puzzle.title}"
-                say(f"{text}  {so_far}\n" if so_far else f"{text}\n")
+                about = f"{puzzle.id:{width}}  puzzle: {puzzle.title}"
+                _say_row(puzzle_text(progress.of(puzzle.id)), "", about)
     return 0
+
+
+def _say_row(stage: str, number: str, about: str) -> None:
+    """Print an entry, with the sign of its stage in front and what that means behind."""
+    sign, _, words = stage.partition(" ")
+    say(f" {sign:1} {number:2}  {about}{f'; {words}' if words else ''}\n")

@@ -9,6 +9,7 @@ import pytest
 
 from cbtui import cli
 from lessons.catalogue import lessons
+from lessons.progress import Progress
 from lessons.puzzles import puzzles_of
 from sim.engine.setup import RunSetup
 from tests.support.commands import cbtui
@@ -17,13 +18,30 @@ from tests.support.commands import cbtui
 def test_list_names_every_lesson_in_order(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["list"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert {line for line in lines if not line.startswith(" ")} == {lesson.unit for lesson in lessons()}
+    units = {line.partition(": ")[0]: line for line in lines if not line.startswith(" ")}
+    assert units.keys() == {lesson.unit for lesson in lessons()}
+    assert units[lessons()[0].unit].endswith(": 0 of 8 done")
     told = [line.split() for line in lines if line.startswith(" ")]
     ids = [words[1] if words[0].isdecimal() else words[0] for words in told]
     assert ids == [
         name for lesson in lessons() for name in (lesson.id, *(puzzle.id for puzzle in puzzles_of(lesson.id)))
     ]
     assert ids[:3] == ["single-thread", "shared-group", "split-groups"]
+
+
+def test_list_tells_how_far_one_is(capsys: pytest.CaptureFixture[str]) -> None:
+    done, begun = lessons()[0], lessons()[1]
+    store = Progress()
+    for place in range(len(done.predictions)):
+        store.answer(done.id, place, 0)
+    store.answer(begun.id, 0, 0)
+    store.see(done.id)
+    store.explain(done.id)
+    assert cli.main(["list"]) == 0
+    told = capsys.readouterr().out
+    assert f"{done.unit}: 1 of 8 done\n ✓  1  {done.id} " in told
+    assert f"\n ◐  2  {begun.id} " in told
+    assert f"{begun.executor}; predicted, not watched yet\n" in told
 
 
 @pytest.mark.parametrize(
