@@ -89,7 +89,11 @@ def _lessons(folders: str) -> tuple[Lesson, ...]:
 def _announcement(following: Lesson | None) -> str:
     if following is None:
         return ""
-    return f"*{following.title}*" if following.teaser is None else f"*{following.title}* {following.teaser}"
+    return (
+        f"*{following.title}*"
+        if following.teaser is None
+        else f"*{following.title}*, which {following.teaser}"
+    )
 
 
 def _elsewhere(folders: str) -> Iterator[tuple[str, Path]]:

@@ -89,7 +89,7 @@ def test_a_guide_fits_beside_the_lanes(lesson: Lesson) -> None:
 def test_each_lesson_announces_the_next() -> None:
     for lesson, following in pairwise(lessons()):
         told = f"lesson.toml of {following.id} needs a teaser, which {lesson.id} ends with"
-        assert lesson.following == f"*{following.title}* {following.teaser}", told
+        assert lesson.following == f"*{following.title}*, which {following.teaser}", told
     assert lessons()[-1].following == ""
 
 

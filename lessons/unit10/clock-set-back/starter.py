@@ -1,7 +1,7 @@
 """An oven whose bread burns because the simulator begins anew: yours to mend.
 
 The world stays as it is. Have each loaf out three simulated seconds after
-its dough went in, also when the clock is set back meanwhile.
+its dough went in, even when the clock is set back meanwhile.
 """
 
 import threading

@@ -1,7 +1,7 @@
 """A belt with a speed limit that does not hold: yours to mend.
 
 Whoever asks for more than the limit must get the limit. The belt never
-runs faster, also when the parameter is set from a terminal.
+runs faster, even when the parameter is set from a terminal.
 """
 
 import rclpy

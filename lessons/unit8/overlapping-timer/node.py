@@ -23,7 +23,7 @@ class Inspector(Node):
         super().__init__("inspector")
         self.boxes = 0
         self.at_work = True
-        # An open area: it lets anyone in, also the same callback again.
+        # An open area: it lets anyone in, even the same callback again.
         self.group = ReentrantCallbackGroup()
         self.timer = self.create_timer(
             PERIOD, self.inspect, callback_group=self.group
