@@ -18,7 +18,7 @@ def new(options: argparse.Namespace) -> int:
 
     path = Path(options.file)
     if path.suffix != ".py":
-        complain(f"{path} is no name of a program: give one that ends in .py")
+        complain(f"{path} is not the name of a program: give one that ends in .py")
         return 1
     try:
         write_atomically(path, (ROOT / "own" / "node.py").read_bytes(), replace=False)

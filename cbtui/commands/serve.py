@@ -103,7 +103,7 @@ def _opened(words: list[str]) -> list[str]:
 
 def _why_not(error: OSError | UnicodeError, host: str, port: int) -> str:
     if isinstance(error, UnicodeError):
-        return f"{host} is no address; choose another with --host"
+        return f"{host} is not an address; choose another with --host"
     if error.errno == errno.EADDRINUSE:
         return f"port {port} of {host} is in use; choose another with --port, or 0 for any that is free"
     if error.errno == errno.EACCES:

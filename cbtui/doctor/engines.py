@@ -35,7 +35,7 @@ def engine() -> Examination:
     if trouble is not None:
         return fault("engine", f"does not run ({trouble})", _REMEDY)
     if took > _SLOW:
-        return note("engine", f"runs, after {took:.1f} s", "leave the machine more to itself")
+        return note("engine", f"runs, after {took:.1f} s", "give the machine less else to do")
     return well("engine", f"started, ran for {_RUN:g} s of virtual time and ended in {took:.2f} s")
 
 
@@ -51,7 +51,7 @@ def _trouble(setup: RunSetup) -> str | None:
                     if isinstance(event, RunEnded) and event.failed:
                         reason = event.reason
         except RunTimeoutError:
-            return f"nothing came of it within {_TIMEOUT:g} s"
+            return f"it gave no result within {_TIMEOUT:g} s"
         except EngineLostError as error:
             return str(error)
     return reason

@@ -121,7 +121,7 @@ def _imports_of_ours(submission: Submission) -> Iterator[str]:
             for line, module in _imports(source):
                 root = module.partition(".")[0]
                 if root in _OURS and root not in own:
-                    yield f"{name}:{line} imports {module}, which is no part of ROS 2"
+                    yield f"{name}:{line} imports {module}, which is not part of ROS 2"
 
 
 def _imports(source: bytes) -> Iterable[tuple[int, str]]:

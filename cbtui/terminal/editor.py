@@ -31,7 +31,7 @@ async def edit(app: App[Any], path: Path, line: int) -> None:
         with app.batch_update(), app.suspend():
             status = await asyncio.to_thread(_run, command)
     except SuspendNotSupported:
-        raise EditorError("this terminal cannot be lent to an editor; open the file in another one") from None
+        raise EditorError("no editor can be opened in this terminal; open the file in another one") from None
     except OSError as error:
         raise EditorError(
             f"{command[0]} cannot be started: {error.strerror}; set EDITOR to another"

@@ -152,7 +152,7 @@ def _why_first(entity: EntityInfo, left: Sequence[Wait], timeline: Timeline) -> 
     ]
     if others:
         is_first = all(_place(entity) < _place(other) for other in others)
-        yield _IN_ORDER[entity.kind] if is_first else "it was ready when the executor looked last"
+        yield _IN_ORDER[entity.kind] if is_first else "it was ready when the executor last looked"
 
 
 def waiting(wait: Wait, timeline: Timeline, at: Nanoseconds) -> str:

@@ -330,7 +330,7 @@ def test_files_that_do_not_belong_together_are_not_merged(
     for merge, sentence in (
         ([one, other], "is of another exploration than"),
         ([one, tmp_path / "none.json"], "cannot be read: No such file or directory"),
-        ([file.with_suffix(".txt")], "is no part of an exploration"),
+        ([file.with_suffix(".txt")], "is not part of an exploration"),
     ):
         file.with_suffix(".txt").write_text("{}")
         with pytest.raises(SystemExit):

@@ -125,7 +125,7 @@ def test_a_program_that_is_not_repeatable_says_so_for_seeds_inputs_and_orders(tm
     short = ["--for", "5", "--no-robot"]
     seeded = cbtui("run", str(program), "--seed", "3", "--record", str(recording), *short)
     assert "program.py:2, in <module>: subprocess starts a process" in seeded.stderr
-    assert "this program is not repeatable: seed 3 orders its threads, no more" in seeded.stderr
+    assert "this program is not repeatable: seed 3 orders its threads, and nothing else" in seeded.stderr
     again = cbtui("run", "--inputs", str(recording))
     assert f"{recording} is of a program that is not repeatable (program.py:2" in again.stderr
     assert again.returncode == 0

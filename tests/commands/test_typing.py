@@ -124,7 +124,7 @@ def test_a_run_that_was_typed_to_is_repeated(tmp_path: Path, capsys: pytest.Capt
     ("options", "sentence"),
     [
         (["--type", "70", "w"], "a key at 70 s comes when the run of 60 s is over"),
-        (["--type", "1", "w\\"], "ends in the middle of a sign"),
+        (["--type", "1", "w\\"], "ends in the middle of an escape"),
         (["--type", "1", "w", "--inputs", "run.mcap"], "leave out --call, --at and --type"),
     ],
 )

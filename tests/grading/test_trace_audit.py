@@ -145,7 +145,7 @@ def test_a_broken_seal_a_replaced_function_and_a_changed_file_give_a_run_away(
     assert doubts(tamper=lambda data: data[:-1] + b"\0")[0].startswith("something with a wrong seal")
     replaced = Seal(KEY).close(encode([*BEGIN, END]), ("sim.x",))
     assert doubts(tamper=lambda _: replaced) == ("the program replaced sim.x, which is the engine's own",)
-    assert doubts(source=b"import sim.ros\n") == ("node.py:1 imports sim.ros, which is no part of ROS 2",)
+    assert doubts(source=b"import sim.ros\n") == ("node.py:1 imports sim.ros, which is not part of ROS 2",)
 
     def write_over(data: bytes) -> bytes:
         (tmp_path / "node.py").write_bytes(b"")

@@ -133,7 +133,7 @@ def test_what_cannot_be_run_is_told_in_a_sentence(project: Path) -> None:
     run = pytest_in(project, "-q")
     assert "there is no file lime.py beside the test" in run.stdout
     assert "cbtui knows no second=; there are seconds, calls" in run.stdout
-    assert "'mine' is no group; give own, shared" in run.stdout
+    assert "'mine' is not a group; give own, shared" in run.stdout
     assert "ValueError: no" in run.stdout
 
 

@@ -49,7 +49,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyP
         (["probe"], "probe needs a command: cbtui probe -- python3 node.py"),
         (["probe", "--", "no-such-program"], "there is no program no-such-program"),
         (["attach"], "no process can be watched: start one with cbtui probe -- COMMAND"),
-        (["attach", "localhost:1"], "argument PID|HOST:PORT: 1 is no port for a program"),
+        (["attach", "localhost:1"], "argument PID|HOST:PORT: 1 is not a port for a program"),
         (["attach", "localhost:65500"], "no probe listens at localhost:65500 (Connection refused)"),
         (["attach", "4711"], "no process 4711 can be watched; cbtui attach --list tells which can"),
     ],

@@ -217,7 +217,7 @@ def test_two_runs_as_lines_name_the_run_of_each_figure() -> None:
     assert lines[:3] == [
         "run A: starved",
         "run B: healthy",
-        "run B is better: losses of odom_callback 0 instead of 2 and 2 more.",
+        "run B is better: losses of odom_callback 0 instead of 2, and in 2 more ways.",
     ]
     assert "calls: run A 1, run B 2, 1 more" in lines
 
@@ -230,7 +230,7 @@ def test_two_runs_as_text_side_by_side() -> None:
 run A  starved
 run B  healthy
 0 to 4 s
-run B is better: losses of odom_callback 0 instead of 2 and 2 more.
+run B is better: losses of odom_callback 0 instead of 2, and in 2 more ways.
 
                 run A          run B            B against A
 
@@ -260,8 +260,8 @@ def test_a_verdict_says_which_run_is_better_and_by_what() -> None:
         verdict(compare(starved(), healthy(), window)),
         verdict(compare(healthy(), starved(), window)),
     )
-    assert better == f"run B is better: losses of {ODOM} 0 instead of 2 and 2 more"
-    assert worse == f"run B is worse: losses of {ODOM} 2 instead of 0 and 2 more"
+    assert better == f"run B is better: losses of {ODOM} 0 instead of 2, and in 2 more ways"
+    assert worse == f"run B is worse: losses of {ODOM} 2 instead of 0, and in 2 more ways"
     assert verdict(compare(healthy(), healthy(), window)).startswith("Neither run is better")
 
 

@@ -28,7 +28,8 @@ class CommandParser(argparse.ArgumentParser):
             super()._check_value(action, value)
         except argparse.ArgumentError:
             if isinstance(action, argparse._SubParsersAction) and _can_be_opened(str(value)):
-                shown_how = f"{value} is no command; cbtui open {value} opens it, cbtui run {value} runs it"
+                ways = f"cbtui open {value} opens it, cbtui run {value} runs it"
+                shown_how = f"{value} is not a command; {ways}"
                 raise argparse.ArgumentError(None, shown_how) from None
             near = _nearest(str(value), map(str, action.choices or ()))
             if not near:

@@ -90,7 +90,7 @@ def shard(text: str) -> tuple[int, int]:
     try:
         number, whole = int(part), int(parts)
     except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r} is no part; give one such as 2/4") from None
+        raise argparse.ArgumentTypeError(f"{text!r} is not a part; give one such as 2/4") from None
     if not 1 <= number <= whole:
         raise argparse.ArgumentTypeError(f"there is no part {number} of {whole}; they are counted from 1")
     return number, whole
@@ -138,7 +138,7 @@ def port(text: str) -> int:
     """A port that a program may listen on."""
     number = whole_number(text)
     if not 1024 <= number <= 65_525:
-        raise argparse.ArgumentTypeError(f"{text} is no port for a program: give one from 1024 to 65525")
+        raise argparse.ArgumentTypeError(f"{text} is not a port for a program: give one from 1024 to 65525")
     return number
 
 
@@ -153,7 +153,7 @@ def chain(text: str) -> tuple[str, ...]:
     names = tuple(name if name.startswith("/") else f"/{name}" for name in text.split(":"))
     if len(names) < 2 or "/" in names:
         raise argparse.ArgumentTypeError(
-            f"{text!r} is no chain; give a first and a last topic: /scan:/cmd_vel"
+            f"{text!r} is not a chain; give a first and a last topic: /scan:/cmd_vel"
         )
     return names
 
@@ -176,7 +176,7 @@ def group_change(text: str) -> "tuple[CallbackPlace, str]":
 
     place, group = _place_and_value(text, "a group, such as odom_callback=own")
     if group not in GROUP_CHOICES:
-        sentence = f"{group!r} is no group; give {', '.join(GROUP_CHOICES[:-1])} or {GROUP_CHOICES[-1]}"
+        sentence = f"{group!r} is not a group; give {', '.join(GROUP_CHOICES[:-1])} or {GROUP_CHOICES[-1]}"
         raise argparse.ArgumentTypeError(sentence)
     return place, group
 
@@ -194,7 +194,7 @@ def sensor_rate(text: str) -> float:
 
 def _text(word: str) -> str:
     if not is_text(word):
-        raise argparse.ArgumentTypeError(f"{word!r} is no text in UTF-8")
+        raise argparse.ArgumentTypeError(f"{word!r} is not UTF-8 text")
     return word
 
 
@@ -220,7 +220,7 @@ def _keys(word: str) -> str:
         return _text(word).encode("latin-1", "backslashreplace").decode("unicode_escape")
     except UnicodeDecodeError:
         raise argparse.ArgumentTypeError(
-            rf"{word!r} ends in the middle of a sign; write a backslash as \\"
+            rf"{word!r} ends in the middle of an escape; write a backslash as \\"
         ) from None
 
 

@@ -110,7 +110,8 @@ class _Headless:
         say(f"\n{found}" if found else "")
         self._tell_chains()
         if self._setup.seed and any(notice.unrepeatable for notice in self._timeline.notices):
-            complain(f"this program is not repeatable: seed {self._setup.seed} orders its threads, no more")
+            seed = self._setup.seed
+            complain(f"this program is not repeatable: seed {seed} orders its threads, and nothing else")
         return self._verdict(loss) if self._signal is None else 128 + self._signal
 
     def save_summary(self, path: Path) -> int:

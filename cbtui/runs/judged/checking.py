@@ -108,7 +108,7 @@ def observe(
                 if text > MOST_TEXT:
                     return ObservedRun(timeline, wrote_too_much(timeline, name), broken_off=True)
         except GivenUpError:
-            return ObservedRun(timeline, f"{name} was broken off at {_time(timeline)}", broken_off=True)
+            return ObservedRun(timeline, f"{name} was stopped at {_time(timeline)}", broken_off=True)
         except RunTimeoutError:
             return ObservedRun(timeline, took_too_long(timeline, name, limit), broken_off=True)
         except EngineLostError as error:

@@ -95,4 +95,4 @@ def _read(path: Path) -> Shard:
     except OSError as error:
         raise BadShardError(f"{path} cannot be read: {error.strerror}") from None
     except (msgspec.DecodeError, UnicodeDecodeError) as error:
-        raise BadShardError(f"{path} is no part of an exploration: {error}") from None
+        raise BadShardError(f"{path} is not part of an exploration: {error}") from None

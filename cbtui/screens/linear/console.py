@@ -261,7 +261,7 @@ class LinearConsole(Generic[RunT_co]):
         elif words.startswith("ros2 ") and live is not None:
             live.give_line(words)
         elif len(typed) > 1:
-            self.tell(f"there is no key or label {words}; ? tells them all")
+            self.tell(f"there is no key or label {words}; ? lists them all")
 
     def _offers(self, action: KeyAction) -> bool:
         return self._parts.offer(*method_of(action))

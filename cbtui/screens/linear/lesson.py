@@ -150,7 +150,7 @@ class TypedLines(ScreenPart):
 
     def _take_threads(self, line: str) -> None:
         if line and not (line.isdecimal() and 0 < int(line) <= 64):
-            self.host.tell("That is no number of threads.")
+            self.host.tell("That is not a number of threads.")
             return
         restarts = self.host.restarts
         changes = replace(restarts.changes, threads=int(line) if line else None)
@@ -175,7 +175,7 @@ class LinearComparison(ScreenPart):
             self._due = min(self.restarts.before.timeline.end, _COMPARED)
             self.tell_when_due()
             if self._due is not None:
-                self.host.tell(f"The comparison is told when this run has come to {timestamp(self._due)}.")
+                self.host.tell(f"The comparison is told when this run has reached {timestamp(self._due)}.")
 
     def tell_when_due(self) -> None:
         """Tell the comparison that was asked for, if the run has come far enough."""

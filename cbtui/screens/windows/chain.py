@@ -36,7 +36,7 @@ class ChainScreen(WindowScreen[tuple[str, ...]]):
     def content(self) -> ComposeResult:
         """Lay out the question."""
         yield Static(
-            "From which topic or service to which? What lies between is found. Empty: follow nothing.",
+            "From which topic or service to which? What lies between is found. Empty: stop following.",
             markup=False,
         )
         line = TypedLine(":".join(self._names), self._take, "first:last, such as /scan:/cmd_vel")

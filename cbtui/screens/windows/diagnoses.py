@@ -303,7 +303,7 @@ def details_of(each: ExplainedFinding, charset: Charset, percent: int | None = N
         (f"\n→ {visible(explained.cure, charset)}.", "$text-success"),
     ]
     if percent is not None:
-        parts.append((f"\n· What may cure it is being tried in the background: {percent} %.", ""))
+        parts.append((f"\n· A cure is being tried in the background: {percent} %.", ""))
     where = location_text(each.finding, explained)
     if where:
         parts.append((f"\n{visible(where, charset)}", "$text-muted"))

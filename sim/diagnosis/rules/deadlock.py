@@ -109,16 +109,14 @@ _WHY_REPLY = "the reply is brought by the executor, and needs a group that lets 
 _OWN_LOCK = "its own lock"
 _LOCK_AND_CALL = "a lock and a reply"
 _WHY = {
-    _OWN_LOCK: "it has the lock already, and a Lock is not given to anybody twice",
+    _OWN_LOCK: "it holds the lock already, and a Lock cannot be taken twice",
     WaitedFor.RATE: "sleep() comes back when the executor has called the rate's timer, which needs a thread",
     WaitedFor.LOCK: "each keeps its lock while it waits for the other's, so neither lets go",
-    _LOCK_AND_CALL: "the lock is kept during a call, and whoever has to answer needs it",
+    _LOCK_AND_CALL: "the lock is held during a call, and whoever has to answer needs it",
 }
 _CURES = {
     _OWN_LOCK: "take it once, let go of it before, or use threading.RLock",
-    WaitedFor.RATE: (
-        "leave sleep() out, and let a timer of the rate's period do one step at each call; or keep it"
-    ),
+    WaitedFor.RATE: "remove sleep(), and let a timer of the rate's period do one step at each call; or keep it",
     WaitedFor.LOCK: "take locks in the same order everywhere, and let go of one before you take the next",
     _LOCK_AND_CALL: "let go of the lock before the call, and take it again when the reply is there",
 }

@@ -98,7 +98,7 @@ class NobodyOffers(Rule):
             cure = "call wait_for_service() first"
         elif not cure:
             cure = (
-                "look at the service's name, start the node that offers it, and call wait_for_service() first"
+                "check the service's name, start the node that offers it, and call wait_for_service() first"
             )
         return Explanation(
             f"{caller} {found.about}{f' {differs}' if differs else ', which nobody offered'}: "
@@ -165,7 +165,7 @@ class ServiceNeverComes(Rule):
             f"the program waits in wait_for_service() for {found.about}, {wrong}, and comes to no spin()",
             "callbacks run only inside spin()",
             cure
-            or f"look at the service's name, and start the node that offers {found.about} before this one",
+            or f"check the service's name, and start the node that offers {found.about} before this one",
             CodeLocation(file, line, line),
             for_ever=found.until >= timeline.end,
             remedies=remedies,

@@ -78,7 +78,7 @@ class GroupsChangeNothing(Rule):
         return Explanation(
             f"group{'s' if plural else ''} {named} change{'' if plural else 's'} nothing: "
             "there is only one thread",
-            "groups tell who may run at the same time; with one thread nobody can",
+            "groups say what may run at the same time; with one thread nothing can",
             "spin with MultiThreadedExecutor(num_threads=2) or more",
             place_of(found.subject, timeline),
         )

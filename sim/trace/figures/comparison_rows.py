@@ -7,6 +7,7 @@ from enum import Enum, auto
 from typing import NamedTuple, TypeAlias, TypeVar
 
 from sim.durations import duration
+from sim.plural import counted
 from sim.trace.figures.comparison import CallbackInRun, CallbackPair, Comparison, RunFigures
 from sim.trace.figures.statistics import Distribution
 from sim.trace.figures.summary import RobotFigures
@@ -146,7 +147,7 @@ def _weight(difference: _Difference) -> tuple[float, float]:
 
 def _listed(differences: Sequence[_Difference]) -> str:
     first, *others = sorted(differences, key=_weight)
-    more = f" and {len(others)} more" if others else ""
+    more = f", and in {counted(len(others), 'more way')}" if others else ""
     return f"{first.text}{more}"
 
 

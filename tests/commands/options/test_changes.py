@@ -92,7 +92,7 @@ def test_a_callback_that_there_is_not_is_told_of(folder: Path) -> None:
         ),
         (["--group", "=own"], "'=own' is not a callback and its value"),
         (["--group", ":odom_callback=own"], "':odom_callback=own' is not a callback and its value"),
-        (["--group", "odom_callback=alone"], "'alone' is no group; give own, shared, reentrant or default"),
+        (["--group", "odom_callback=any"], "'any' is not a group; give own, shared, reentrant or default"),
         (["--period", "timer_callback"], "give seconds, such as timer_callback=0.2"),
         (["--period", "timer_callback=0"], "0 is not a period; give 0.001 to 3600 s"),
         (["--period", "timer_callback=soon"], "'soon' is not a number; give 0.001 to 3600 s"),

@@ -85,7 +85,7 @@ def test_numbers_and_addresses_that_nothing_can_be_done_with(
         (["--lessons", LONG, "list"], "x cannot be opened: File name too long"),
         (["run", f"{BYTES}.py"], "what runs has to have a name in UTF-8"),
         (["run", "node.py", "--", BYTES], "what stands behind -- has to be text in UTF-8"),
-        (["run", "node.py", "--at", "1", BYTES], "'\\udc80' is no text in UTF-8"),
+        (["run", "node.py", "--at", "1", BYTES], "'\\udc80' is not UTF-8 text"),
         (["run", "node.py", "--group", f"{BYTES}=own"], "is not a callback and its value"),
         (["ros2", "topic", BYTES], "a ros2 line has to be text in UTF-8"),
         (["run", "pipe.py"], "pipe.py is a pipe or a device; give a file"),

@@ -311,7 +311,7 @@ def test_a_run_that_nobody_wants_any_more_comes_to_its_end() -> None:
     given_up.set()
     run = observe(setup_to_judge(LESSON), "node.py", given_up=given_up)
     assert run.broken_off
-    assert run.trouble == "node.py was broken off at 0.000 s"
+    assert run.trouble == "node.py was stopped at 0.000 s"
 
 
 @pytest.mark.slow
