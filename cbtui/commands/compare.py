@@ -20,8 +20,7 @@ _RECORDING = ".mcap"
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     for name in ("A", "B"):
-        what = f"a recording ({_RECORDING}), a lesson's id, or a node or launch file"
-        parser.add_argument(name, metavar="LESSON|FILE", help=what)
+        parser.add_argument(name, help=f"a recording ({_RECORDING}), a lesson's id, or a node or launch file")
     appearance.add_options(parser)
     parser.add_argument(
         "--text", action="store_true", help="print the table, as it is done where there is no terminal"

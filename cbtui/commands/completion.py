@@ -9,6 +9,8 @@ from cbtui.text.output import say
 _SHELLS = ("bash", "zsh", "fish")
 _PATHS = {"FILE": "FILE", "OUT": "FILE", "DIR": "DIRECTORY"}
 """What completes an argument that is a path, by its name in the help."""
+_OTHERS = {"A": "LESSON|FILE", "B": "LESSON|FILE"}
+"""What arguments are whose names do not tell."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -23,7 +25,8 @@ def completion(whole: Callable[[], argparse.ArgumentParser], options: argparse.N
     parser, words = whole(), _words()
     functions = dict[str, str]()
     for action in _actions(parser):
-        kinds = [kind for kind in (*words, *_PATHS) if kind in findall("[A-Z]+", str(action.metavar or ""))]
+        said = findall("[A-Z]+", str(action.metavar or _OTHERS.get(action.dest)))
+        kinds = [kind for kind in (*words, *_PATHS) if kind in said]
         if kinds:
             ids = " ".join(word for kind in kinds for word in words.get(kind, ()))
             paths = next((_PATHS[kind] for kind in kinds if kind in _PATHS), "")

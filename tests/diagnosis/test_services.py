@@ -116,7 +116,7 @@ def test_a_call_of_a_service_that_nobody_offers_is_told() -> None:
     assert run.told() == {("nobody-offers", "caller")}
     told = run.explained("nobody-offers")
     assert told.what == "caller called /wrong, which nobody offered: no reply will come"
-    assert "look at the service's name" in told.cure
+    assert "check the service's name" in told.cure
 
 
 def test_a_call_before_the_service_is_there_is_told() -> None:

@@ -160,7 +160,7 @@ async def test_the_line_counts_problems_and_tells_of_the_worst_when_nothing_wait
         assert "1 problem · d" in lines_of(app)[-2]
         await press(pilot, *["left_square_bracket"] * 12)
         assert "t 2.5" in status(app)
-        assert lines_of(app)[-2].startswith(" ! at 4.0 s: odom_callback and scan_callback waited")
+        assert lines_of(app)[-2].startswith(" ! odom and scan waited up to 10.5 s: group A was held by timer")
         assert "1 problem · d" in lines_of(app)[-2]
 
 

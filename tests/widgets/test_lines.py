@@ -71,7 +71,11 @@ def test_a_state_is_told_in_a_word_and_a_sign(status: RunStatus, words: str) -> 
     assert words in text(status_row(status, 140))
 
 
-DONE = (LessonStep("Predict", StepState.DONE), LessonStep("Run", StepState.DONE), LessonStep("Explain", StepState.DONE))
+DONE = (
+    LessonStep("Predict", StepState.DONE),
+    LessonStep("Run", StepState.DONE),
+    LessonStep("Explain", StepState.DONE),
+)
 EXERCISE = (*DONE, LessonStep("Exercise", StepState.CURRENT, "2/5"))
 
 

@@ -48,7 +48,8 @@ class Teaching(ScreenPart):
                 self.host.tell(f"{number}: {answer}")
             line = yield "Your answer is final. Type its number, or nothing to go on without predicting:"
             while line and not (line.isdecimal() and 0 < int(line) <= len(prediction.answers)):
-                line = yield f"There is no answer {line}. Type a number from 1 to {len(prediction.answers)}:"
+                last = len(prediction.answers)
+                line = yield f"There is no answer {line}. Type a number from 1 to {last}, or nothing:"
             if not line:
                 return
             self.progress.answer(self.lesson.id, place, int(line) - 1)

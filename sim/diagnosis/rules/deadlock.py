@@ -116,7 +116,7 @@ _WHY = {
 }
 _CURES = {
     _OWN_LOCK: "take it once, let go of it before, or use threading.RLock",
-    WaitedFor.RATE: "remove sleep(), and let a timer of the rate's period do one step at each call; or keep it",
+    WaitedFor.RATE: "remove sleep(), and have a timer of its period do one step at each call; or keep it",
     WaitedFor.LOCK: "take locks in the same order everywhere, and let go of one before you take the next",
     _LOCK_AND_CALL: "let go of the lock before the call, and take it again when the reply is there",
 }
