@@ -35,7 +35,7 @@ def completion(whole: Callable[[], argparse.ArgumentParser], options: argparse.N
             fish = f"{ids} {getattr(shtab, paths)['fish']}" if paths else ids
             action.complete = {"bash": name, "zsh": name, "fish": fish}  # type: ignore[attr-defined]
     preamble = "\n".join(functions.values())
-    say(shtab.complete(parser, options.shell, preamble={options.shell: preamble}) + "\n")
+    say(shtab.complete(parser, options.shell, preamble=preamble) + "\n")
     return 0
 
 
@@ -67,9 +67,12 @@ def _words() -> Mapping[str, Sequence[str]]:
     from lessons.puzzles import puzzles
     from sim.profiles import DISTROS
 
-    ids = {"LESSON": lessons(), "PUZZLE": puzzles()}
-    known = {kind: [each.id for each in every] for kind, every in ids.items()}
-    return {**known, "THEME": [theme.name for theme in THEMES], "RELEASE": list(DISTROS)}
+    return {
+        "LESSON": [lesson.id for lesson in lessons()],
+        "PUZZLE": [puzzle.id for puzzle in puzzles()],
+        "THEME": [theme.name for theme in THEMES],
+        "RELEASE": list(DISTROS),
+    }
 
 
 def _function(name: str, shell: str, ids: str, paths: str) -> str:

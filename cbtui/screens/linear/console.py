@@ -52,7 +52,7 @@ _OWN_WORDS = {
     "export": "Write the run so far to a file: a picture, report, table or trace",
     "group": "Give a callback another group, and run again",
     "set_up": "Change a timer's period, a number, the sensors' rate or the release of rclpy, and run again",
-    "solution": "Tell how your file becomes the solution",
+    "solution": "Tell the solution: how your file becomes it, or the choices of a puzzle",
     "help": "Tell the keys that do something now",
 }
 """What actions do here, where that is not what they do on a screen."""
@@ -292,7 +292,9 @@ class LinearConsole(Generic[RunT_co]):
         self._leaves = True
 
     def action_help(self) -> None:
-        """Tell the keys that do something now."""
+        """Tell the keys that do something now; of actions with the same key the first one."""
+        taken = set[str]()
         for each in filter(self._offers, self._actions):
-            if each.label:
+            if each.label and taken.isdisjoint(keys_of(each)):
                 self.tell(f"{spoken_key(each)}: {each.label}: {each.help}")
+            taken.update(keys_of(each))

@@ -225,12 +225,14 @@ def test_a_recording_is_played_and_gone_through_in_lines(tmp_path: Path) -> None
 def test_a_puzzle_is_played_by_numbers() -> None:
     sessions = Asking()
     script = [
-        ("2: looks for work (Pool-0_1)", "1|9|u|2|2"),
+        ("2: looks for work (Pool-0_1)", "?|1|9|u|2|2"),
         ("Done in 2 moves", "q"),
     ]
     subject = of_puzzle(PUZZLE)
     lines = Typist(script, lambda terminal: ChoosingConsole(terminal, subject, sessions, PUZZLE)).run()
     assert "There is no thread 9 to choose now." in lines
+    assert any(line.startswith("capital H: solution: ") for line in lines)
+    assert not any(line.endswith(": pane: Read the guide") for line in lines)  # 1 chooses
     assert lines.count("Choice 1, 0 moves. Who goes on?") == 2
     assert Progress().of(PUZZLE.id).passed
 
