@@ -164,8 +164,7 @@ class ServiceNeverComes(Rule):
         return Explanation(
             f"the program waits in wait_for_service() for {found.about}, {wrong}, and comes to no spin()",
             "callbacks run only inside spin()",
-            cure
-            or f"check the service's name, and start the node that offers {found.about} before this one",
+            cure or f"check the service's name, and start the node that offers {found.about} before this one",
             CodeLocation(file, line, line),
             for_ever=found.until >= timeline.end,
             remedies=remedies,
