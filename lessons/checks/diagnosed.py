@@ -7,7 +7,7 @@ from sim.diagnosis import RULES, Finding, Weight, diagnose
 from sim.trace.events import NoticeKind
 from sim.trace.timeline import Timeline
 
-STUCK = ("self-made-deadlock", "needs-one-more-worker", "endless-wait")
+STUCK = ("self-made-deadlock", "needs-one-more-worker", "endless-wait", "waits-for-lock")
 """Ids of the rules on callbacks that wait for what can never come."""
 
 

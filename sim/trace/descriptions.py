@@ -25,7 +25,7 @@ def doing_of(position: Position) -> str:
             return position.doing.value
         case Doing.READS:
             return "waits for the keyboard"
-        case Doing.WAITS if position.call == "Lock.acquire":
+        case Doing.WAITS if position.waits_for_lock:
             return "waits for a lock"
     return f"{'waits ' if position.doing is Doing.WAITS else ''}in {position.call}()"
 

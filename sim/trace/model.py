@@ -198,6 +198,11 @@ class Position(Lasting):
     """The thread whose callback has the lock that it waits for; 0 for none."""
 
     @property
+    def waits_for_lock(self) -> bool:
+        """Whether it waits for a lock."""
+        return self.doing is Doing.WAITS and self.call == "Lock.acquire"
+
+    @property
     def file(self) -> str:
         """The file of the innermost line."""
         return self.frames[-1].file

@@ -5,10 +5,25 @@ from typing import Any
 import msgspec
 import pytest
 
+from sim.diagnosis import Weight
 from sim.diagnosis.diagnoses import diagnose
 from sim.engine.watchdogs import hung_callbacks, outside_time
-from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity, decode
+from sim.trace.events import (
+    AnyEvent,
+    CallbackAt,
+    CallbackStarted,
+    Doing,
+    Notice,
+    NoticeKind,
+    Reason,
+    RunStarted,
+    Severity,
+    TimePassed,
+    WaitStarted,
+    decode,
+)
 from sim.trace.timeline import Timeline
+from tests.support.builder import ns
 from tests.trace.samples import CAST
 
 
@@ -34,6 +49,32 @@ def test_a_recording_without_these_fields_is_told_in_the_words_of_its_notice() -
             "wait with a timeout, and see that something ends the wait",
         )
     ]
+
+
+def _at_a_lock(t: int, entity: int, thread: int, line: int, holder: int = 0) -> CallbackAt:
+    frames = (("node.py", "callback", line),)
+    return CallbackAt(t, entity, thread, Doing.WAITS, "Lock.acquire", frames, holder=holder)
+
+
+@pytest.mark.parametrize(
+    ("seconds", "clock", "holder"), [(1.9, "real", 0), (3, "virtual", 0), (3, "real", 1)]
+)
+def test_a_short_wait_for_a_lock_and_one_that_others_know_more_of_is_not_told(
+    seconds: float, clock: str, holder: int
+) -> None:
+    start, at, over = RunStarted(0, "t", clock, 0), _at_a_lock(9, 1, 1, 60, holder), TimePassed(ns(seconds))
+    assert explained(start, CallbackStarted(5, 1, 1, 0, 0, 0), at, over, rule="waits-for-lock") == []
+
+
+def test_who_waits_for_locks_is_told_with_the_lines_and_nothing_else_is_their_fault() -> None:
+    timeline = Timeline()
+    waits = WaitStarted(ns(0.5), 2, ns(0.5), Reason.NO_FREE_WORKER, 1, True)
+    timeline.extend([*CAST, RunStarted(0, "t", "real", 0), CallbackStarted(5, 1, 1, 0, 0, 0)])
+    timeline.extend([_at_a_lock(9, 1, 1, 60), waits, TimePassed(ns(3))])
+    [found] = [each for each in diagnose(timeline) if each.rule.weigh(each, timeline) is Weight.PROBLEM]
+    told = found.rule.explain(found, timeline)
+    assert told.what == "odom_callback (node.py:60) has waited for a lock for 3.0 s"
+    assert told.cure.startswith("take locks in the same order everywhere")
 
 
 def test_of_a_callback_that_computes_it_is_said_how_long_and_not_that_it_never_ends() -> None:

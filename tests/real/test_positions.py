@@ -1,9 +1,11 @@
 """A run on real rclpy tells at which line each callback is, and what it does there."""
 
+import re
 from pathlib import Path
 
 import pytest
 
+from sim.diagnosis import diagnose
 from sim.trace.events import Doing
 from tests.real import programs
 
@@ -74,6 +76,42 @@ def test_the_line_of_a_callback_is_seen(tmp_path: Path, ground: str) -> None:
         ("ask", Doing.CALLS_ROS, "Client.call"),
         ("serve", Doing.SLEEPS, "time.sleep"),
     } <= seen
+
+
+CROSSED = """
+import threading
+
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.locks = threading.Lock(), threading.Lock()
+        for callback in (self.one, self.other):
+            self.create_timer(0.2, callback, callback_group=MutuallyExclusiveCallbackGroup())
+
+    def one(self):
+        self.take(*self.locks)
+
+    def other(self):
+        self.take(*reversed(self.locks))
+
+    def take(self, first, second):
+        with first:
+            time.sleep(0.2)
+            with second:
+                pass
+"""
+
+
+@programs.needs_ros
+@pytest.mark.slow
+def test_who_waits_for_a_lock_for_long_is_told_with_the_line(tmp_path: Path) -> None:
+    executor = "MultiThreadedExecutor(num_threads=2)"
+    timeline = programs.run(tmp_path, CROSSED, executor, seconds=3.0).timeline
+    found = next(each for each in diagnose(timeline) if each.rule.id == "waits-for-lock")
+    said = found.rule.explain(found, timeline).what
+    assert re.sub(r"one|other|\d+", "_", said) == (
+        "_ (tried.py:_) has waited for a lock for _._ s, and so does _ (tried.py:_)"
+    )
 
 
 @programs.needs_ros

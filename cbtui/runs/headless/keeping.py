@@ -29,6 +29,7 @@ _TROUBLE = (
     "self-made-deadlock",
     "needs-one-more-worker",
     "endless-wait",
+    "waits-for-lock",
     "still-computing",
     "service-never-comes",
 )

@@ -2,7 +2,7 @@
 
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
-from sim.diagnosis.rules.endless import EndlessWait, StillComputing
+from sim.diagnosis.rules.endless import EndlessWait, StillComputing, WaitsForLock
 from sim.diagnosis.rules.errors import ExceptionSwallowed, ProgramRaised
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
@@ -21,6 +21,7 @@ RULES: tuple[Rule, ...] = (
     SpinInConstructor(),
     StillComputing(),
     EndlessWait(),
+    WaitsForLock(),
     ServiceNeverComes(),
     ProgramRaised(),
     NodeNeverSpins(),

@@ -1,16 +1,19 @@
 """The rule on callbacks that wait for a lock that is not released or an event that is not set."""
 
 from collections.abc import Iterator
+from pathlib import Path
 
 from sim.diagnosis.cures import remedy_for_waits
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_of
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_waiting
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, who
+from sim.durations import duration
 from sim.trace.descriptions import doing_of
 from sim.trace.events import Doing, EntityId, Notice, NoticeKind, Severity
-from sim.trace.model import Window
+from sim.trace.model import Position, Window
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
 _ADVICE = "wait with a timeout, and see that something ends the wait"
 """For notices without advice, as of waits on the real clock, and in old recordings."""
@@ -62,6 +65,54 @@ class EndlessWait(Rule):
         """Irrelevant if the wait ended after all."""
         over = found.until < timeline.end and not _is_deadlock(_notice_of(found, timeline))
         return None if over else Weight.PROBLEM
+
+
+class WaitsForLock(Rule):
+    """On the real clock callbacks have waited long for locks, and wait still.
+
+    Who has a lock is not known on real rclpy, nor whether it is ever released; where it is known, other rules
+    tell. What waits for these callbacks is part of the finding.
+    """
+
+    id = "waits-for-lock"
+    summary = "a callback waits for a lock that nobody releases"
+    threshold = 2 * SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield the callback that waits longest, with all that wait."""
+        started = view.timeline.started
+        waiting = [] if started is None or started.clock == "virtual" else _at_locks(view.timeline)
+        if waiting and view.end - waiting[0].start >= self.threshold:
+            first, stuck = waiting[0], frozenset(each.entity for each in waiting)
+            yield Finding(self, first.start, view.end, first.entity, size=view.end - first.start, stuck=stuck)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Name everybody who waits, and where."""
+        first, *others = (
+            f"{who(each.entity, timeline)} ({Path(each.file).name}:{each.line})"
+            for each in _at_locks(timeline)
+        )
+        also = f", and so {'does' if len(others) == 1 else 'do'} {listed(others)}" if others else ""
+        return Explanation(
+            f"{first} has waited for a lock for {duration(found.lasted)}{also}",
+            "who has a lock and waits for another one keeps the first meanwhile: if each has what the other "
+            "wants, neither ever goes on",
+            "take locks in the same order everywhere, and let go of one before you take the next",
+            line_of(found.subject, _moment(found), timeline),
+        )
+
+
+def _at_locks(timeline: Timeline) -> list[Position]:
+    """Where threads wait for locks at the end of a timeline, the longest wait first; one for each thread.
+
+    Those that the engine told of are left out.
+    """
+    told = {notice.entity for notice in timeline.notices}
+    at_end = Window(timeline.end, timeline.end + 1)
+    last = (each for thread in timeline.threads for each in timeline.positions_on(thread, at_end)[-1:])
+    waiting = (each for each in last if each.end is None and each.waits_for_lock and not each.holder)
+    untold = (each for each in waiting if each.entity not in told)
+    return sorted(untold, key=lambda each: each.start)
 
 
 class StillComputing(Rule):
