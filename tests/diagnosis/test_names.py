@@ -5,11 +5,12 @@ from pathlib import Path
 import pytest
 
 from sim.diagnosis.rules.names import nearest
-from sim.interfaces import service
+from sim.interfaces import message, service
 from sim.ros.node.node import Node
 from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, spin
 from tests.support.simulation import Simulation
 
+Bool = message("std_msgs", "Bool")
 Trigger = service("std_srvs", "Trigger")
 
 
@@ -92,6 +93,23 @@ def test_topics_of_different_names_and_one_that_is_heard_are_well() -> None:
 )
 def test_names_are_alike_but_for_a_letter_their_case_or_their_namespace(name: str, near: str) -> None:
     assert nearest(name, ["/chatter", "/scan" if near == "/scan" else "/robot/scan", "/cmd_vel"]) == near
+
+
+def test_a_topic_with_two_types_is_told_with_both_lines() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_publisher(Int32, "speed", 10)
+        node.create_subscription(Bool, "speed", lambda _: None, 10)
+        spin(node, None)
+
+    run = diagnosed(program, 1.0)
+    told = run.explained("qos-mismatch")
+    assert told.what.endswith("hears nothing from a publisher of /speed: their message types differ")
+    ends = line_with('create_publisher(Int32, "speed"'), line_with('create_subscription(Bool, "speed"')
+    assert told.cure == (
+        "give both ends of /speed the same message type: "
+        "the publisher of test_names.py:{} and the subscription of test_names.py:{}".format(*ends)
+    )
 
 
 def test_a_service_of_another_type_is_named_with_both_types_and_lines() -> None:

@@ -137,7 +137,7 @@ class QosMismatch(Rule):
     """
 
     id = "qos-mismatch"
-    summary = "a subscription hears nothing because the quality of service does not match"
+    summary = "a subscription hears nothing because the quality of service, or the type, does not match"
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each incompatible pair."""
@@ -161,11 +161,13 @@ class QosMismatch(Rule):
             for name, place in zip(_ENDPOINTS, (publisher, subscription), strict=True)
             if place
         ]
-        cure = f"give both ends of {found.about} the same QoSProfile"
+        same, differs = "QoSProfile", f"{found.detail} does not match"
+        if found.detail == _TYPE:
+            same, differs = "message type", "their message types differ"
+        cure = f"give both ends of {found.about} the same {same}"
         place = subscription or publisher
         return Explanation(
-            f"{subject} hears nothing from a publisher of {found.about}{outside}: "
-            f"{found.detail} does not match",
+            f"{subject} hears nothing from a publisher of {found.about}{outside}: {differs}",
             _POLICY_RULES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
             f"{cure}: {' and '.join(ends)}" if ends else cure,
             place or place_of(found.subject, timeline),
@@ -182,7 +184,9 @@ def _location(end: tuple[str, int]) -> CodeLocation | None:
     return CodeLocation(file, line, line) if file else None
 
 
+_TYPE = "TYPE"
 _POLICY_RULES = {
+    _TYPE: "a topic has one type: messages of another one reach nobody",
     "RELIABILITY": "a reliable subscription takes nothing from a best-effort publisher",
     "DURABILITY": "a transient-local subscription takes nothing from a volatile publisher",
 }

@@ -197,6 +197,13 @@ class Publisher:
                 if not (isinstance(delivery, ExpiringDelivery) and delivery.expires <= now):
                     subscription.deliver(delivery)
 
+    def of_another_type_than(self, subscription: Subscription) -> None:
+        """Both sides tell that their types differ, when their executors next spin."""
+        refused = f"Incompatible type on topic '{self.topic_name}', no messages will be"
+        self.events.type_refused(f"{refused} sent to it.")
+        subscription.events.type_refused(f"{refused} received from it.")
+        self._record_mismatch(subscription, "TYPE")
+
     def incompatible_with(self, subscription: Subscription, policy: str) -> None:
         """Both sides tell that they do not match, when their executors next spin."""
         self.events.qos_refused(

@@ -76,6 +76,9 @@ class PublisherEndpoint(TopicEndpoint, Protocol):
     def catch_up(self, subscription: Any) -> None:
         """Send a late subscription the kept messages."""
 
+    def of_another_type_than(self, subscription: Any) -> None:
+        """Tell that it does not match a subscription because of the message type."""
+
     def incompatible_with(self, subscription: Any, policy: str) -> None:
         """Report on both sides that they are incompatible."""
 

@@ -115,9 +115,7 @@ class Network:
 
     def _match(self, publisher: PublisherEndpoint, subscription: SubscriptionEndpoint) -> bool:
         if publisher.msg_type is not subscription.msg_type:
-            refused = f"Incompatible type on topic '{publisher.topic_name}', no messages will be"
-            publisher.events.type_refused(f"{refused} sent to it.")
-            subscription.events.type_refused(f"{refused} received from it.")
+            publisher.of_another_type_than(subscription)
             return False
         problems = list(mismatches(publisher.qos_profile, subscription.qos_profile))
         if problems:

@@ -39,7 +39,7 @@ class QosMismatched(TraceEvent, frozen=True, tag="qos_mismatch"):
     node: NodeId
     entity: CallbackId
     policy: str
-    """Quality of service on which the two do not agree: ``RELIABILITY``, ``DURABILITY``, …"""
+    """Quality of service on which the two do not agree: ``RELIABILITY``, ``DURABILITY``, …; or ``TYPE``."""
     publisher: Maybe[SourcePlace] = ("", 0)
     """Where the program makes the publisher, as ``file:line``."""
     subscription: Maybe[SourcePlace] = ("", 0)
