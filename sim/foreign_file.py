@@ -12,6 +12,27 @@ MOST_OF_A_PROGRAM = 10_000_000
 """Bytes of a program's source, or of data that a program reads as one text."""
 
 
+_NOTHING_THERE = (errno.ENOENT, errno.ENOTDIR, errno.ELOOP)
+
+
+def mode_of(path: Path) -> int:
+    """What is at a path, for ``stat.S_ISREG`` and its like; 0 if there is nothing.
+
+    From Python 3.14 on ``Path.exists`` and its like say no where they cannot know.
+
+    Raises:
+        OSError: it cannot be known: a folder on the way may not be searched, or the name is too long.
+    """
+    try:
+        return path.stat().st_mode
+    except OSError as error:
+        if error.errno in _NOTHING_THERE:
+            return 0
+        raise
+    except ValueError:  # no name of a file has a null character
+        return 0
+
+
 def read_bytes(path: Path, most: int = MOST) -> bytes:
     """What a file holds. Never waits for a pipe's other end, and never reads more than ``most`` bytes.
 

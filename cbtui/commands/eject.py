@@ -3,9 +3,11 @@
 import argparse
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
+from stat import S_ISDIR
 from typing import TYPE_CHECKING
 
 from cbtui.text.output import CannotSayError, complain, say
+from sim.foreign_file import mode_of
 from sim.plural import counted
 
 if TYPE_CHECKING:
@@ -62,7 +64,7 @@ def _packages(folder: Path, names: Sequence[str]) -> "list[AmentPackage]":
     from cbtui.eject.eject import EjectError, chosen, package_of, units_of
     from lessons.catalogue import lessons
 
-    if folder.exists() and not folder.is_dir():
+    if (mode := mode_of(folder)) and not S_ISDIR(mode):
         raise EjectError(f"{folder} is a file; name a folder for the packages")
     return [package_of(unit) for unit in chosen(units_of(lessons()), names)]
 

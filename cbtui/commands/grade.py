@@ -4,12 +4,14 @@ import argparse
 import os
 from contextlib import suppress
 from pathlib import Path
+from stat import S_ISDIR
 from typing import TYPE_CHECKING
 
 from cbtui.commands.check import add_limit, exercise_of
 from cbtui.commands.options import changes, more_lessons
 from cbtui.commands.options.targets import folder_of, refuse, same_file
 from cbtui.text.output import complain, say, say_data
+from sim.foreign_file import mode_of
 
 if TYPE_CHECKING:
     from cbtui.grading.grading import Grader, HandIn
@@ -120,7 +122,7 @@ def _take_earlier(sheet: "MarkSheet", path: Path, handed_in: "Grader") -> None:
     from cbtui.grading.mark_sheet import BadSheetError
 
     try:
-        text = path.read_text(encoding="utf-8", errors="replace") if path.exists() else ""
+        text = path.read_text(encoding="utf-8", errors="replace") if mode_of(path) else ""
         sheet.read(text, [entry.key for entry in handed_in.entries])
     except OSError as error:
         refuse(f"{path} cannot be read: {error.strerror}")
@@ -154,10 +156,11 @@ def _check_output(option: str, path: Path | None, papers: "list[HandIn]") -> Non
         if paper.file is not None and same_file(path, paper.file):
             refuse(f"{option} would overwrite {paper.file}; give it a file of its own")
     try:
-        place = path if path.exists() else path.parent
-        if path.is_dir():
+        mode = mode_of(path)
+        place = path if mode else path.parent
+        if S_ISDIR(mode):
             refuse(f"{path} cannot be written: it is a folder")
-        if not place.exists():
+        if not mode_of(place):
             refuse(f"{path} cannot be written: there is no folder {place}")
     except OSError as error:
         refuse(f"{path} cannot be written: {error.strerror}")

@@ -10,6 +10,7 @@ from cbtui.keys.config import read_file, standard_path
 from lessons.catalogue import ROOT, VARIABLE, lessons
 from lessons.lesson import BadLesson
 from lessons.progress import faulty_line, usual_path
+from sim.foreign_file import mode_of
 
 
 def folders(current: Callable[[], Path]) -> Iterator[Examination]:
@@ -50,7 +51,7 @@ def _folder(subject: str, folder: Path, remedy: str) -> Examination:
 def is_writable(folder: Path) -> bool:
     """Tell whether files can be created in a folder, which need not exist yet."""
     try:
-        nearest = next(each for each in (folder, *folder.parents) if each.exists())
+        nearest = next(each for each in (folder, *folder.parents) if mode_of(each))
     except (OSError, StopIteration):
         return False
     return nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)
@@ -60,7 +61,7 @@ def configuration(named: Path | None) -> Iterator[Examination]:
     """Examine the named configuration, else the user's own."""
     path = named or standard_path()
     try:
-        there = path.exists()
+        there = bool(mode_of(path))
     except OSError:
         there = True  # reading it reports why
     if named is None and not path.is_absolute():
@@ -82,7 +83,7 @@ def progress() -> Examination:
     path = usual_path()
     remedy = f"the next console keeps it under another name and goes on; fix or delete {path}"
     try:
-        if not path.is_absolute() or not path.exists():
+        if not path.is_absolute() or not mode_of(path):
             return well("progress", "none yet")
         line = faulty_line(path)
     except OSError as error:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
+from sim.foreign_file import mode_of
 from sim.interfaces.folder import is_package
 
 MOST_FOLDERS: Final = 2000
@@ -108,7 +109,7 @@ def _is_searched(entry: Path) -> bool:
             and entry.name not in _NEVER
             and not entry.is_symlink()
             and entry.is_dir()
-            and not (entry / "COLCON_IGNORE").exists()
+            and not mode_of(entry / "COLCON_IGNORE")
         )
     except OSError:  # it is somebody else's alone, as some in /tmp are
         return False

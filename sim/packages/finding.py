@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from sim.foreign_file import mode_of
 from sim.packages.errors import PackageError, UnknownPackageError, listing
 from sim.packages.manifest import MANIFEST, read_name
 from sim.packages.package import Package
@@ -112,7 +113,7 @@ def _roots(top: Path, depth: int, budget: Iterator[int]) -> Iterator[Path]:
     while waiting and next(budget, None) is not None:
         folder, left = waiting.popleft()
         try:
-            ignored = any((folder / name).exists() for name in _IGNORE_FILES)
+            ignored = any(mode_of(folder / name) for name in _IGNORE_FILES)
             is_package = (folder / MANIFEST).is_file()
         except OSError:  # it is somebody else's alone, as some in /tmp are
             continue

@@ -16,6 +16,7 @@ from sim.camera import Camera, Picture
 from sim.camera.process import serve
 from sim.camera.wire import Shot
 from tests.camera.shots import shot
+from tests.support.physics import with_pybullet
 
 PATIENCE = 60.0
 
@@ -70,6 +71,7 @@ def test_no_process_runs_before_a_picture_is_wanted(take: Take) -> None:
     assert taken.camera.process is not None
 
 
+@with_pybullet
 def test_a_picture_comes_as_it_was_asked_for_and_the_terminal_hears_nothing(
     take: Take, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -82,6 +84,7 @@ def test_a_picture_comes_as_it_was_asked_for_and_the_terminal_hears_nothing(
     assert capfd.readouterr() == ("", "")
 
 
+@with_pybullet
 def test_one_process_takes_pictures_of_another_arena_too(take: Take) -> None:
     taken = take(serve)
     taken.camera.want(shot())
@@ -149,6 +152,7 @@ def test_without_pybullet_a_sentence_says_what_to_do(take: Take) -> None:
     assert "cbtui doctor" in why
 
 
+@with_pybullet
 def test_a_world_that_cannot_be_drawn_is_told_of_and_the_terminal_hears_nothing(
     take: Take, capfd: pytest.CaptureFixture[str]
 ) -> None:
@@ -174,6 +178,7 @@ if __name__ == "__main__":
 """
 
 
+@with_pybullet
 @pytest.mark.skipif(not hasattr(os, "pidfd_open"), reason="watches another's child, which Linux alone can")
 def test_the_process_ends_when_the_console_is_killed() -> None:
     console = subprocess.Popen([sys.executable, "-c", CONSOLE], stdout=subprocess.PIPE, text=True)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from sim.camera.renderer import Pixels, Renderer
 from tests.camera.shots import SPHERE, WALLS, shot
+from tests.support.physics import with_pybullet
 
 
 @pytest.fixture(scope="module")
@@ -83,6 +84,7 @@ def test_a_wall_at_the_robots_back_does_not_hide_it(renderer: Renderer) -> None:
     assert floor(picture).mean() > 0.3
 
 
+@with_pybullet
 def test_the_room_is_the_traces_own() -> None:
     walls = ((-2.0, -2.0, 2.0, -2.0), (2.0, -2.0, 2.0, 2.0), (2.0, 2.0, -2.0, 2.0), (-2.0, 2.0, -2.0, -2.0))
     renderer = Renderer(walls, (0.0, 1.0, 0.3))

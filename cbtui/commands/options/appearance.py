@@ -5,9 +5,11 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from stat import S_ISREG
 from typing import TYPE_CHECKING, NamedTuple
 
 from cbtui.commands.options.targets import refuse
+from sim.foreign_file import mode_of
 
 if TYPE_CHECKING:
     from cbtui.keys.keymap import Keymap
@@ -102,6 +104,6 @@ def appearance(options: argparse.Namespace) -> Appearance:
 
 def _may_be_there(path: Path) -> bool:
     try:
-        return path.is_file()
+        return S_ISREG(mode_of(path))
     except OSError:  # reading the file reports it
         return True

@@ -4,10 +4,12 @@ import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 from cbtui.terminal.capabilities import is_browser, is_dumb
 from cbtui.text.output import complain, is_text
+from sim.foreign_file import mode_of
 
 if TYPE_CHECKING:
     from lessons.lesson import Lesson
@@ -74,11 +76,12 @@ def file_of(name: str) -> Path:
     """The program file of that name; exits with code 2 and one line if there is none."""
     path = Path(name)
     try:
-        if path.is_dir():
+        mode = mode_of(path)
+        if S_ISDIR(mode):
             refuse(f"{name} is a folder; name the file in it that is to run")
-        if not path.exists():
+        if not mode:
             refuse(f"there is no file {name}; give a Python file, or a lesson of cbtui list")
-        if not path.is_file():
+        if not S_ISREG(mode):
             refuse(f"{name} is a pipe or a device; give a file, which can be read more than once")
     except OSError as error:
         refuse(f"{name} cannot be opened: {error.strerror}")
@@ -91,7 +94,7 @@ def folder_of(name: str) -> Path:
     """The folder of that name; exits with code 2 and one line if there is none."""
     path = Path(name)
     try:
-        if not path.is_dir():
+        if not S_ISDIR(mode_of(path)):
             refuse(f"there is no folder {name}")
     except OSError as error:
         refuse(f"{name} cannot be opened: {error.strerror}")

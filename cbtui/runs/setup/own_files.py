@@ -4,9 +4,11 @@ import os
 from collections.abc import Sequence
 from itertools import islice
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 from typing import TYPE_CHECKING, NamedTuple
 
 from cbtui.runs.setup.recent import RecentEntry, RecentKind
+from sim.foreign_file import mode_of
 
 if TYPE_CHECKING:
     from sim.recording import Recording
@@ -55,11 +57,12 @@ def check(path: Path) -> None:
         CannotOpenError: there is not.
     """
     try:
-        if path.is_dir():
+        mode = mode_of(path)
+        if S_ISDIR(mode):
             raise CannotOpenError(f"{path} is a folder; name the file in it that is to be opened.")
-        if not path.exists():
+        if not mode:
             raise CannotOpenError(f"There is no file {path}.")
-        if not path.is_file():
+        if not S_ISREG(mode):
             raise CannotOpenError(f"{path} is not a file.")
     except (OSError, ValueError) as error:
         raise CannotOpenError(f"{path} cannot be opened: {getattr(error, 'strerror', error)}.") from None

@@ -15,6 +15,7 @@ from cbtui.widgets.robot.view import PICTURES_A_SECOND
 from lessons.description import Actor
 from sim.camera import Picture, Shot
 from sim.trace.timeline import Timeline
+from tests.support.physics import with_pybullet
 from tests.support.runs import ns, shared_group_run
 from tests.widgets.pictures import plain, told
 
@@ -264,6 +265,7 @@ async def test_the_camera_ends_with_the_screen() -> None:
     assert app.cameras[0].stopped
 
 
+@with_pybullet
 async def test_the_real_camera_shows_the_yellow_sphere() -> None:
     class RealPane(App[None]):
         def compose(self) -> ComposeResult:
