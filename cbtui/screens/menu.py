@@ -224,8 +224,13 @@ class MenuScreen(SizedScreen[None]):
     # the search
 
     def on_key(self, event: Key) -> None:
-        """Search with a letter or digit that is no key of the menu, or that was typed as a search began."""
+        """Search with a letter or digit that is no key of the menu, or that was typed as a search began.
+
+        What follows the key that opened a screen is for that screen, to which the app hands it on.
+        """
         typed = event.character or ""
+        if not self.is_current:
+            return
         if typed.isalnum() and (self.query(MenuSearch) or event.key not in self.active_bindings):
             event.stop()
             self.action_search()

@@ -1,6 +1,5 @@
 """Wall time that can be paused, slowed down and sped up: threads run freely, their waits are scaled."""
 
-import ctypes
 import math
 import threading
 import time
@@ -166,6 +165,8 @@ class PacedClock:
 
     def interrupt(self, thread: int) -> None:
         """Have the interpreter raise it there; a wait without deadline is ended first."""
+        import ctypes  # seldom needed, and the console imports clocks as it starts
+
         ctypes.pythonapi.PyThreadState_SetAsyncExc(
             ctypes.c_ulong(thread), ctypes.py_object(KeyboardInterrupt)
         )

@@ -1,9 +1,12 @@
 """Makes text from a learner's program safe for files of various kinds."""
 
 import re
+from typing import TYPE_CHECKING
 
-from sim.trace.model import Nanoseconds
 from sim.units import SECOND
+
+if TYPE_CHECKING:
+    from sim.trace.model import Nanoseconds
 
 _CONTROLS = "\x00-\x08\x0b-\x1f\x7f-\x9f"
 _DECEPTIVE = "\u200b\u200e\u200f\u202a-\u202e\u2060\u2066-\u2069\ufeff"
@@ -39,7 +42,7 @@ def markdown(text: str) -> str:
     return _MARKDOWN.sub(r"\\\1", " ".join(printable(text).split()))
 
 
-def seconds(time: Nanoseconds) -> str:
+def seconds(time: "Nanoseconds") -> str:
     """A time in seconds, exactly: ``12.480000000``."""
     whole, rest = divmod(abs(time), SECOND)
     return f"{'-' if time < 0 else ''}{whole}.{rest:09d}"

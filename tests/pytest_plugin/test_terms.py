@@ -21,7 +21,7 @@ from cbtui.pytest_plugin.terms import BadTermsError, RunTerms
         ({"arguments": [1]}, "1 is no text"),
         ({"threads": 0}, "threads=0: an executor cannot have 0 threads here"),
         ({"groups": ["take"]}, "groups=['take']: give a dict, such as {'odom_callback': 'own'}"),
-        ({"groups": {"take": "mine"}}, "'mine' is no group; give own, shared"),
+        ({"groups": {"take": "mine"}}, "'mine' is not a group; give own, shared"),
         ({"periods": {"tick": "x"}}, "'x' is not a number; give 0.001 to 3600 s"),
         ({"sensor_rate": True}, "sensor_rate=True: give a number"),
         ({"distro": "klted"}, "'klted' is no distribution; give humble, jazzy"),
