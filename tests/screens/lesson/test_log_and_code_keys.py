@@ -152,7 +152,7 @@ async def test_a_terminal_that_cannot_be_lent_is_told_of(monkeypatch: pytest.Mon
     monkeypatch.setenv("EDITOR", "vi")
     async with console() as (app, pilot):
         await press(pilot, "o")
-        assert "cannot be lent" in text_of(app)
+        assert "no editor can be opened" in text_of(app)
 
 
 async def test_the_editor_is_opened_at_the_line_and_the_run_goes_on(
