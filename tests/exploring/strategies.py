@@ -19,12 +19,12 @@ FILE = Path(__file__).with_name("strategies.toml")
 _LIMIT = 60.0
 
 
-def exploration(source: str, folder: Path) -> Exploration:
+def exploration(source: str, folder: Path, seconds: float = SECONDS) -> Exploration:
     """The exploration of a program."""
     path = folder / "mine.py"
     path.write_text(source)
     return Exploration(
-        RunRequest(files=[path], clock="virtual", seconds=SECONDS).setup(), path.name, None, _LIMIT
+        RunRequest(files=[path], clock="virtual", seconds=seconds).setup(), path.name, None, _LIMIT
     )
 
 

@@ -164,9 +164,12 @@ class Exploration:
         for rule in found:
             if rule in _STUCK:
                 yield ScheduleFailure(f"deadlock: {rule}")
+        kinds = {each.kind for each in observed.timeline.notices}
         for notice in observed.timeline.notices:
             if notice.kind is NoticeKind.DEADLOCK:
                 yield ScheduleFailure("deadlock", f"{notice.problem}; {notice.advice}")
+            elif notice.kind is NoticeKind.ENDLESS_WAIT and NoticeKind.DEADLOCK not in kinds:
+                yield ScheduleFailure("a callback waits without end", f"{notice.problem}; {notice.advice}")
             elif notice.severity is Severity.ERROR:
                 yield ScheduleFailure(notice.text)
         if observed.broken_off:
