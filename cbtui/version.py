@@ -1,10 +1,10 @@
 """The version of cbtui."""
 
-from importlib.metadata import PackageNotFoundError, version
-
 
 def own_version() -> str:
     """Return the installed version, or a note that cbtui is not installed."""
+    from importlib.metadata import PackageNotFoundError, version  # slow to import, and seldom asked
+
     try:
         return version("cbtui")
     except PackageNotFoundError:

@@ -12,6 +12,8 @@ from cbtui.terminal.textual_internals import forget_drawn_styles
 
 _FULL = 2
 """The oldest generation, whose collection is a full one."""
+_USUAL_THRESHOLDS = 700, 10, 10
+"""Those of Python; while modules are imported, which stay, collections are fewer."""
 
 
 @contextmanager
@@ -19,6 +21,7 @@ def survivors_frozen() -> Iterator[None]:
     """Freeze all objects that exist now and, until the end, those that survive a full collection."""
     gc.callbacks.append(_freeze_survivors)
     gc.freeze()
+    gc.set_threshold(*_USUAL_THRESHOLDS)
     try:
         yield
     finally:

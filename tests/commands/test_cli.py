@@ -15,6 +15,13 @@ from sim.engine.setup import RunSetup
 from tests.support.commands import cbtui
 
 
+@pytest.fixture
+def no_progress(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Nobody has opened a lesson, in this process's other tests either."""
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+
+
+@pytest.mark.usefixtures("no_progress")
 def test_list_names_every_lesson_in_order(capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["list"]) == 0
     lines = capsys.readouterr().out.splitlines()
@@ -29,6 +36,7 @@ def test_list_names_every_lesson_in_order(capsys: pytest.CaptureFixture[str]) ->
     assert ids[:3] == ["single-thread", "shared-group", "split-groups"]
 
 
+@pytest.mark.usefixtures("no_progress")
 def test_list_tells_how_far_one_is(capsys: pytest.CaptureFixture[str]) -> None:
     done, begun = lessons()[0], lessons()[1]
     store = Progress()
