@@ -195,7 +195,7 @@ class LaneColumns(Generic[I]):
         left = len(missing)
         while left and not (fresh and ration.is_used_up):
             count = left if ration.is_endless else _NEWEST if not fresh else _SUMMED_AT_ONCE
-            part = missing[max(0, left - count) : left]
+            part = _neighbours(missing[max(0, left - count) : left])
             summed, looks = self._summed(part, edge)
             fresh.update(summed)
             ration.use(looks)
@@ -205,9 +205,7 @@ class LaneColumns(Generic[I]):
     def _summed(
         self, numbers: Sequence[int], edge: Nanoseconds
     ) -> tuple[dict[int, LaneColumn[I] | None], int]:
-        """Aggregate all columns from the first of ascending numbers to the last; also returns how many
-        intervals were examined.
-        """
+        """Aggregate neighbouring columns; also returns how many intervals were examined."""
         length = self._per_column
         found = self._query(Window(numbers[0] * length, (numbers[-1] + 1) * length))
         if not found:
@@ -216,7 +214,7 @@ class LaneColumns(Generic[I]):
         summed: dict[int, LaneColumn[I] | None] = {}
         low = high = bisect_left(found, numbers[0] * length, key=_START)
         running = self._running(numbers[0] * length)
-        for number in range(numbers[0], numbers[-1] + 1):
+        for number in numbers:
             window = Window(number * length, (number + 1) * length)
             low, high = high, _first_from(found, window.end, high, high - low)
             step = max(1, -(-(high - low) // SAMPLES_PER_COLUMN))
@@ -263,6 +261,14 @@ class InstantColumns:
         self._marked.update(at // length for at in fresh)
         self._known_to = max(self._known_to, min(after, (edge - _SETTLED_AFTER) // length))
         return [place for place in range(after - first) if first + place in self._marked]
+
+
+def _neighbours(numbers: Sequence[int]) -> Sequence[int]:
+    """Return the end of ascending column numbers in which none is missing."""
+    first = len(numbers) - 1
+    while first > 0 and numbers[first - 1] == numbers[first] - 1:
+        first -= 1
+    return numbers[first:]
 
 
 def _first_from(found: Sequence[I], at: Nanoseconds, low: int, likely: int) -> int:

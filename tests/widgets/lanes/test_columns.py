@@ -159,6 +159,22 @@ def test_what_a_ration_leaves_out_comes_with_the_next_pictures(stays: list[Stay]
     assert not columns.unseen
 
 
+def test_what_is_kept_is_not_examined_again_while_older_columns_are_missing_and_the_run_goes_on() -> None:
+    asked: list[Window] = []
+    store = Store(*(Stay(place * S, place * S + 1) for place in range(400)))
+
+    def query(window: Window) -> list[Stay]:
+        asked.append(window)
+        return store.query(window)
+
+    columns = LaneColumns(query)
+    for edge in range(300, 310):
+        asked.clear()
+        columns.over(TimeScale(edge - 200, S, 200), edge * S, IntervalBudget(10))
+        assert columns.unseen
+        assert max(window.length for window in asked) <= 12 * S
+
+
 def test_neighbouring_columns_of_one_interval_are_one_stretch() -> None:
     store = Store(Stay(S, 4 * S), Stay(4 * S, 6 * S, 2), Stay(8 * S, 8 * S))
     found = stretches(LaneColumns(store.query).over(TimeScale(0, S, 10), 20 * S))
