@@ -159,7 +159,7 @@ def test_what_a_ration_leaves_out_comes_with_the_next_pictures(stays: list[Stay]
     assert not columns.unseen
 
 
-def test_what_is_kept_is_not_examined_again_while_older_columns_are_missing_and_the_run_goes_on() -> None:
+def test_what_is_kept_is_not_examined_again_while_older_columns_are_missing_and_time_goes_on() -> None:
     asked: list[Window] = []
     store = Store(*(Stay(place * S, place * S + 1) for place in range(400)))
 
@@ -168,9 +168,9 @@ def test_what_is_kept_is_not_examined_again_while_older_columns_are_missing_and_
         return store.query(window)
 
     columns = LaneColumns(query)
-    for edge in range(300, 310):
+    for now in range(300, 310):
         asked.clear()
-        columns.over(TimeScale(edge - 200, S, 200), edge * S, IntervalBudget(10))
+        columns.over(TimeScale(now - 200, S, 200), 400 * S, IntervalBudget(10))
         assert columns.unseen
         assert max(window.length for window in asked) <= 12 * S
 
