@@ -15,6 +15,8 @@ FRAME = ns(1 / 30)
 WIDTH, HEIGHT = 140, 20
 
 _SETTLED = 3.0
+_FILLING = 52
+"""The frames in which the lanes of an hour and their overview fill."""
 _CAMERA = "c"
 
 
@@ -33,12 +35,12 @@ def with_camera(seconds: int) -> float:
 
 def filling_frame(seconds: int) -> float:
     """The seconds of processor that a frame takes as the lanes fill after zooming out on so long a run."""
-    return median(_frames(seconds, range(5)))
+    return median(_frames(seconds, range(_FILLING)))
 
 
 def following_frame(seconds: int) -> float:
     """The seconds of processor that a frame takes once they are full and follow the run."""
-    return median(_frames(seconds, range(30, 60)))
+    return median(_frames(seconds, range(_FILLING, _FILLING + 30)))
 
 
 def _frames(seconds: int, counted: range) -> list[float]:

@@ -219,7 +219,7 @@ class LaneColumns(Generic[I]):
             low, high = high, _first_from(found, window.end, high, high - low)
             step = max(1, -(-(high - low) // SAMPLES_PER_COLUMN))
             begun = [found[place] for place in range(low, high, step)]
-            looks += len(running) + len(begun)
+            looks += len(running) + len(begun) + (high - low).bit_length()  # the bisection reads, too
             summed[number] = _column(running, begun, step, window, edge) if running or begun else None
             if step > 1:
                 running = self._running(window.end)

@@ -44,7 +44,7 @@ MARK = Ink(Role.MARK)
 
 INTERVALS_PER_FRAME = 500
 """Intervals that are examined per frame: a lesson's lanes are complete after two or three frames, an hour
-zoomed out after some twenty, and keys stay responsive.
+zoomed out after some fifty, with its overview, and keys stay responsive.
 """
 
 _MOST_NESTED = 100
