@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 import msgspec
 from msgspec import Meta, Struct
 
-from sim.profiles import Profile
+from sim.releases.profile import Profile
 
 Text = Annotated[str, Meta(min_length=1)]
 LessonId = Annotated[str, Meta(pattern=r"^[a-z0-9]+(-[a-z0-9]+)*$")]

@@ -10,7 +10,7 @@ import msgspec
 from msgspec import structs
 
 from lessons.description import Description, Setting, Try, number_after, with_argument
-from sim import foreign_file, plain_toml
+from sim.files import plain_toml, untrusted
 
 __all__ = ["BadLesson", "Lesson", "Setting", "Try", "number_after", "read_lesson", "with_argument"]
 
@@ -39,13 +39,13 @@ class Lesson(Description, frozen=True, kw_only=True, forbid_unknown_fields=True)
     @property
     def guide(self) -> str:
         """The Markdown text that goes with the lesson."""
-        return foreign_file.read_text(self.folder / GUIDE_FILE)
+        return untrusted.read_text(self.folder / GUIDE_FILE)
 
     @property
     def explanation(self) -> str:
         """The Markdown text that is for after the run; empty where there is none."""
         path = self.folder / EXPLANATION_FILE
-        return foreign_file.read_text(path) if path.is_file() else ""
+        return untrusted.read_text(path) if path.is_file() else ""
 
     @property
     def checks_path(self) -> Path:
@@ -113,7 +113,7 @@ def _files_of(description: Description) -> Iterator[tuple[str | None, str]]:
 
 def _table(path: Path) -> dict[str, Any]:
     try:
-        return plain_toml.load(foreign_file.read_text(path))
+        return plain_toml.load(untrusted.read_text(path))
     except OSError as error:
         raise BadLesson(f"{path}: cannot be read: {error.strerror}") from error
     except ValueError as error:  # of the parser itself, and of what it makes numbers and texts with

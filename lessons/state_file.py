@@ -12,8 +12,8 @@ from typing import Generic, NamedTuple, TypeVar
 
 import msgspec
 
-from sim.atomic_file import write_atomically
-from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
+from sim.files.atomic import write_atomically
+from sim.files.untrusted import MAX_PROGRAM_BYTES, read_bytes
 
 EntryT = TypeVar("EntryT", bound=msgspec.Struct)
 
@@ -57,7 +57,7 @@ class StateFile(Generic[EntryT]):
     def read(self) -> StateFileContent[EntryT] | None:
         """Return what is in the file; None where there is none, or none that can be read."""
         try:
-            lines = read_bytes(self._known_path(), MOST_OF_A_PROGRAM).splitlines()
+            lines = read_bytes(self._known_path(), MAX_PROGRAM_BYTES).splitlines()
         except FileNotFoundError:
             return None
         except OSError as error:
@@ -105,7 +105,7 @@ class StateFile(Generic[EntryT]):
         Raises:
             OSError: the file cannot be read.
         """
-        lines = enumerate(read_bytes(self.path, MOST_OF_A_PROGRAM).splitlines(), start=1)
+        lines = enumerate(read_bytes(self.path, MAX_PROGRAM_BYTES).splitlines(), start=1)
         return next((number for number, line in lines if self._entry_in(line) is None), None)
 
     def _entry_in(self, line: bytes) -> EntryT | None:

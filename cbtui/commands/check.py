@@ -47,7 +47,7 @@ def check(options: argparse.Namespace) -> int:
     from cbtui.runs.judged.checking import check as run_and_judge
     from cbtui.terminal.progress_line import ProgressLine
     from lessons.judge import Judge
-    from sim.units import SECOND
+    from sim.quantities.nanoseconds import SECOND
 
     with ProgressLine() as line:
 

@@ -65,7 +65,7 @@ def _words() -> Mapping[str, Sequence[str]]:
     from cbtui.looks.colour_themes import THEMES
     from lessons.catalogue import lessons
     from lessons.puzzles import puzzles
-    from sim.profiles import DISTROS
+    from sim.releases.distros import DISTROS
 
     return {
         "LESSON": [lesson.id for lesson in lessons()],

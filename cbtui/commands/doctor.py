@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from cbtui.commands.options import appearance, more_lessons
 from cbtui.text.output import say
-from sim.plural import counted
+from sim.quantities.plural import counted
 
 if TYPE_CHECKING:
     from cbtui.doctor.examination import Examination

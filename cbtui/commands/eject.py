@@ -7,8 +7,8 @@ from stat import S_ISDIR
 from typing import TYPE_CHECKING
 
 from cbtui.text.output import CannotSayError, complain, say
-from sim.foreign_file import mode_of
-from sim.plural import counted
+from sim.files.untrusted import mode_of
+from sim.quantities.plural import counted
 
 if TYPE_CHECKING:
     from cbtui.eject.ament_package import AmentPackage

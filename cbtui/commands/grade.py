@@ -11,7 +11,7 @@ from cbtui.commands.check import add_limit, exercise_of
 from cbtui.commands.options import changes, more_lessons
 from cbtui.commands.options.targets import folder_of, refuse, same_file
 from cbtui.text.output import complain, say, say_data
-from sim.foreign_file import mode_of
+from sim.files.untrusted import mode_of
 
 if TYPE_CHECKING:
     from cbtui.grading.grading import Grader, HandIn

@@ -14,7 +14,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def new(options: argparse.Namespace) -> int:
     """Write the file; returns the exit code: 0 on success, 1 if it could not be written."""
     from lessons.catalogue import ROOT
-    from sim.atomic_file import write_atomically
+    from sim.files.atomic import write_atomically
 
     path = Path(options.file)
     if path.suffix != ".py":

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from cbtui.commands.options import changes, inputs, more_lessons
 from cbtui.commands.options.targets import refuse, targets_of
 from cbtui.text.output import say
-from sim.durations import timestamp
+from sim.quantities.durations import timestamp
 
 if TYPE_CHECKING:
     from cbtui.runs.compared_runs import RunPair

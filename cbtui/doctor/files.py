@@ -10,7 +10,7 @@ from cbtui.keys.config import read_file, standard_path
 from lessons.catalogue import ROOT, VARIABLE, lessons
 from lessons.lesson import BadLesson
 from lessons.progress import faulty_line, usual_path
-from sim.foreign_file import mode_of
+from sim.files.untrusted import mode_of
 
 
 def folders(current: Callable[[], Path]) -> Iterator[Examination]:

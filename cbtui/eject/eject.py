@@ -9,7 +9,7 @@ from pathlib import Path
 
 from cbtui.eject.ament_package import AmentPackage, LessonProgram, imported_modules
 from lessons.lesson import Lesson
-from sim.atomic_file import write_atomically
+from sim.files.atomic import write_atomically
 from sim.packages import Package, PackageError
 
 _NUMBERED = re.compile(r"(?P<number>\d[\w.]*)\s+(?P<title>.*)", re.DOTALL)

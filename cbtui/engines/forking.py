@@ -6,7 +6,7 @@ from multiprocessing import forkserver, resource_tracker
 from multiprocessing.context import BaseContext
 
 from cbtui.engines.session import engine_environment
-from sim.clean_start import without_current_folder
+from sim.interpreter.safe_path import without_current_folder
 
 
 def forking_context(modules: Sequence[str]) -> BaseContext:

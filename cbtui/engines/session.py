@@ -24,12 +24,12 @@ from cbtui.engines.orphan_guard import ENDED_NORMALLY, start_orphan_guard
 from cbtui.engines.process_tree import MARK, ProcessTree
 from cbtui.engines.resource_guard import ResourceGuard
 from cbtui.terminal.interrupts import deferred_interrupt
-from sim.clean_start import without_current_folder
 from sim.engine.commands import Command, Stop, encode
 from sim.engine.failures.crash_dump import ASKED, overflowed, place_in, timed_out
 from sim.engine.outbox import TRACE_CLOSED
 from sim.engine.programs.ending import GRACE, TO_LEAVE
 from sim.engine.setup import RunSetup
+from sim.interpreter.safe_path import without_current_folder
 from sim.trace.events import AnyEvent, RunEnded, decode
 
 Deliver: TypeAlias = Callable[[list[AnyEvent]], None]

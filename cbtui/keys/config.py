@@ -15,7 +15,7 @@ from cbtui.keys.keymap import Keymap
 from cbtui.looks.colour_themes import THEMES
 from cbtui.looks.theme import Charset
 from lessons.personal import config_folder
-from sim import foreign_file, plain_toml
+from sim.files import plain_toml, untrusted
 
 AUTO = "auto"
 _TABLES = ("keys", "display")
@@ -51,7 +51,7 @@ def standard_path() -> Path:
 def read_file(path: Path) -> ParsedConfig:
     """Read a configuration file."""
     try:
-        text = foreign_file.read_text(path)
+        text = untrusted.read_text(path)
     except UnicodeDecodeError:
         return ParsedConfig(Config(), [f"{path} is not UTF-8 text"])
     except OSError as error:

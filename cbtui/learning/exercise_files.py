@@ -5,9 +5,9 @@ from enum import Enum
 from pathlib import Path
 
 from lessons.lesson import Lesson
-from sim.atomic_file import write_atomically
-from sim.foreign_file import read_bytes
-from sim.plural import counted
+from sim.files.atomic import write_atomically
+from sim.files.untrusted import read_bytes
+from sim.quantities.plural import counted
 
 
 class StarterPlacement(Enum):

@@ -15,9 +15,9 @@ from lessons.checks import problems
 from lessons.description import Prediction
 from lessons.judge import Judge
 from lessons.lesson import DESCRIPTION_FILE, EXPLANATION_FILE, GUIDE_FILE, BadLesson, Lesson, read_lesson
-from sim import foreign_file
 from sim.diagnosis import RULES
 from sim.diagnosis.rules.errors import ProgramRaised
+from sim.files import untrusted
 
 WIDTH = 79
 """The longest line of a guide in columns, for the narrowest terminals."""
@@ -83,7 +83,7 @@ def _drift(lesson: Lesson) -> Iterator[str]:
 
 
 def _lines(lesson: Lesson, file: str) -> list[str]:
-    return [line.strip() for line in foreign_file.read_text(lesson.folder / file).splitlines()]
+    return [line.strip() for line in untrusted.read_text(lesson.folder / file).splitlines()]
 
 
 def _texts(lesson: Lesson) -> str:

@@ -6,7 +6,7 @@ from threading import Event
 from typing import TYPE_CHECKING, TypeAlias
 
 from lessons.lesson import BadLesson, Lesson
-from sim.plural import counted
+from sim.quantities.plural import counted
 
 if TYPE_CHECKING:
     from cbtui.runs.judged.checking import ObservedRun

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from lessons.catalogue import is_built_in
 from lessons.lesson import Lesson
-from sim.units import SECOND
+from sim.quantities.nanoseconds import SECOND
 
 if TYPE_CHECKING:
     from cbtui.engines.session import OpenSession

@@ -22,7 +22,7 @@ from lessons.lesson import Lesson
 from sim.clock.schedule import Seed
 from sim.diagnosis import findings_text
 from sim.engine.setup import RunSetup
-from sim.plural import counted
+from sim.quantities.plural import counted
 from sim.trace.events import AnyEvent, encode
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline

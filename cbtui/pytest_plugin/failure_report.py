@@ -10,10 +10,10 @@ from cbtui.runs.headless.program_log import ProgramLog
 from cbtui.runs.recorded.recording_file import CannotRecordError, start_recording
 from sim.clock.schedule import Seed
 from sim.engine.setup import RunSetup
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import AnyEvent, Logged, Printed
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 _WIDTH = 100
 _MOST_LANES = 24

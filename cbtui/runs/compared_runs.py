@@ -15,12 +15,12 @@ from cbtui.runs.setup.lesson_setup import RunRequest
 from cbtui.terminal.progress_line import ProgressLine
 from cbtui.text.output import complain, say
 from sim.engine.setup import RunSetup
+from sim.quantities.nanoseconds import SECOND, nearest_ns
 from sim.recording import RecordingError, read
 from sim.trace.figures.comparison import compare
 from sim.trace.figures.comparison_text import comparison_lines, comparison_text
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND, nearest_ns
 
 LENGTH = 60 * SECOND
 """Default length of runs in nanoseconds."""

@@ -29,7 +29,7 @@ from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, Headin
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
-from sim.durations import duration, timestamp
+from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
 from sim.trace.figures.comparison import compare_incrementally, first_difference
 from sim.trace.figures.comparison_rows import RUNS, Section, extent, is_tie, sections, stretch, verdict

@@ -33,7 +33,7 @@ from cbtui.widgets.code import CodeView
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellView
 from lessons.lesson import Lesson
-from sim.units import SECOND
+from sim.quantities.nanoseconds import SECOND
 
 _TOUR_SPEED = 0.1
 _TOUR_END = 39 * SECOND // 10

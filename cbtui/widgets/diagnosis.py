@@ -12,14 +12,14 @@ from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
 from sim.diagnosis.words import thread_count
-from sim.durations import duration
+from sim.quantities.durations import duration
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of
 from sim.trace.events import KeyboardAsked, Notice, NoticeKind, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.figures.waiting import WORTH_TELLING, waits_for_others
 from sim.trace.model import Call, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 _SERIOUS: Nanoseconds = SECOND
 _NOTICE_STAYS: Nanoseconds = 5_000_000_000

@@ -10,7 +10,7 @@ from textual.strip import Strip
 
 from cbtui.looks.colour_themes import palette_of
 from cbtui.looks.theme import Ink, style_of
-from sim.plural import counted
+from sim.quantities.plural import counted
 from sim.trace.model import Nanoseconds
 
 

@@ -10,8 +10,8 @@ from cbtui.text.cells import fit, lines_of_text
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.diagnosis.words import group_of, thread_count
-from sim.durations import duration, timestamp
-from sim.plural import counted
+from sim.quantities.durations import duration, timestamp
+from sim.quantities.plural import counted
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind, Reason
 from sim.trace.model import Blocked, EntityInfo, Nanoseconds, Span, Wait, Window

@@ -12,7 +12,7 @@ from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import fit
 from cbtui.widgets.painted_widget import PaintedWidget, painted
-from sim.durations import duration, timestamp
+from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
 from sim.trace.model import Nanoseconds
 

@@ -39,7 +39,7 @@ from lessons.checks.reading import (
 )
 from lessons.checks.robot import data_never_older, turns
 from lessons.checks.services import every_call_answered, log_never_says, log_says, replies_within
-from sim.units import SECOND
+from sim.quantities.nanoseconds import SECOND
 
 __all__ = [
     "ROTATES",

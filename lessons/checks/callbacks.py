@@ -5,12 +5,12 @@ from heapq import merge
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import Stretch, calls_of, entities_named, seconds, spans_of, whole_run
-from sim.plural import counted
+from sim.quantities.nanoseconds import SECOND
+from sim.quantities.plural import counted
 from sim.trace.events import GroupKind
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 _TOGETHER: Nanoseconds = 1_000_000
 """From how long on two callbacks ran at the same time: a reader has to find it on the lanes."""

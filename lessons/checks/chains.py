@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import seconds
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.figures.chains import Chain, ChainError, ChainRun, chain
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 
 def chain_never_takes_longer_than(names: Sequence[str], limit: float) -> Check:

@@ -5,11 +5,11 @@ from operator import attrgetter
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import calls_of, entities_named, seconds, spans_of, whole_run
-from sim.plural import counted
+from sim.quantities.nanoseconds import SECOND
+from sim.quantities.plural import counted
 from sim.trace.descriptions import why_waiting
 from sim.trace.model import Wait
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 
 def is_called_between(callback: str, least: int, most: int | None = None) -> Check:

@@ -3,11 +3,11 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId
 from sim.trace.figures.summary import turns_among
 from sim.trace.model import Call, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 
 def whole_run(run: Timeline) -> Window:

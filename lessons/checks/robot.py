@@ -4,10 +4,10 @@ from collections.abc import Iterator
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import calls_of, rotations, seconds, spans_of
-from sim.plural import counted
+from sim.quantities.nanoseconds import SECOND
+from sim.quantities.plural import counted
 from sim.trace.model import Nanoseconds, Span
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 
 def turns(times: int) -> Check:

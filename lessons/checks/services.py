@@ -2,9 +2,9 @@
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import requests_of, seconds
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 
 def replies_within(service: str, limit: float) -> Check:

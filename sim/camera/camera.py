@@ -12,7 +12,7 @@ import msgspec
 
 from sim.camera.process import serve
 from sim.camera.wire import NoCamera, Picture, Shot
-from sim.clean_start import without_current_folder
+from sim.interpreter.safe_path import without_current_folder
 
 _GRACE = 0.4
 """Seconds that the process gets to end by itself before it is killed."""

@@ -10,7 +10,7 @@ from typing import Any
 
 from sim.clock.outside_work import OutsideWork
 from sim.clock.replacing import Replacements
-from sim.units import SECOND, wait_ns
+from sim.quantities.nanoseconds import SECOND, wait_ns
 
 _signal = signal.signal
 _mask = signal.pthread_sigmask

@@ -10,7 +10,7 @@ from typing import Any
 from sim.clock.interface import RunClock
 from sim.clock.paced import PacedClock
 from sim.clock.virtual import VirtualAutoResetEvent, VirtualClock
-from sim.units import wait_ns
+from sim.quantities.nanoseconds import wait_ns
 
 _Ready = list[tuple[selectors.SelectorKey, int]]
 _MAIN = "MainThread"

@@ -17,7 +17,7 @@ from typing import Any
 
 from sim.clock.outside_work import OutsideWork
 from sim.clock.replacing import Replacements
-from sim.units import SECOND
+from sim.quantities.nanoseconds import SECOND
 
 _SINCE_1970 = ("CLOCK_REALTIME", "CLOCK_REALTIME_COARSE", "CLOCK_TAI")
 _SINCE_THE_BEGINNING = ("CLOCK_MONOTONIC", "CLOCK_MONOTONIC_RAW", "CLOCK_MONOTONIC_COARSE", "CLOCK_BOOTTIME")

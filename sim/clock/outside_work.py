@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 
 from sim.clock.outside import start_outside
 from sim.clock.virtual import VirtualClock
-from sim.units import wait_ns
+from sim.quantities.nanoseconds import wait_ns
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _Thread = threading.Thread

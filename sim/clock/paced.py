@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NamedTuple
 
-from sim.marks import waits_for_time
+from sim.interpreter.function_marks import waits_for_time
 
 # Kept from before sim.clock.paced_stdlib puts its own in their place.
 _monotonic_ns = time.monotonic_ns

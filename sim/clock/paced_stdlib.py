@@ -14,8 +14,8 @@ from types import TracebackType
 from typing import Any
 
 from sim.clock.paced import PacedClock
-from sim.marks import waits_for_time
-from sim.units import wait_ns
+from sim.interpreter.function_marks import waits_for_time
+from sim.quantities.nanoseconds import wait_ns
 
 _allocate_lock = threading.Lock
 _RLock: Any = type(threading.RLock())

@@ -28,7 +28,7 @@ from sim.clock.played import NO_ACCESSES
 from sim.clock.replacing import Replacements
 from sim.clock.virtual import VirtualAutoResetEvent, VirtualClock
 from sim.clock.virtual_threads import VirtualThread
-from sim.units import wait_ns
+from sim.quantities.nanoseconds import wait_ns
 
 _allocate_lock = threading.Lock
 _thread_start = threading.Thread.start

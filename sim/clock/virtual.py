@@ -18,7 +18,7 @@ from sim.clock.played import NO_ACCESSES, Accesses
 from sim.clock.schedule import FirstCome, Schedule
 from sim.clock.virtual_threads import VirtualThread
 from sim.clock.virtual_time import VirtualTime
-from sim.units import SECOND
+from sim.quantities.nanoseconds import SECOND
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _get_ident = threading.get_ident

@@ -7,11 +7,11 @@ from typing import TypeAlias
 from sim.diagnosis.rule import Finding, Rule, Weight
 from sim.diagnosis.rules import RULES
 from sim.diagnosis.timeline_view import TimelineView
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 _OUT_OF_ORDER: Nanoseconds = SECOND
 """How far threads of a real-clock run may report out of order; younger events are checked again."""

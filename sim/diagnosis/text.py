@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from textwrap import TextWrapper
 
 from sim.diagnosis.rule import Explanation, Finding, Weight
-from sim.durations import timestamp
+from sim.quantities.durations import timestamp
 from sim.trace.timeline import Timeline
 
 SIGNS = {Weight.PROBLEM: "!", Weight.REMARK: "·"}

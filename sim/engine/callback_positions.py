@@ -10,7 +10,7 @@ from types import FrameType
 from typing import TypeAlias
 
 from sim.clock import RunClock
-from sim.marks import calls_the_program, waits_for_keyboard
+from sim.interpreter.function_marks import calls_the_program, waits_for_keyboard
 from sim.probes.own_code import is_library, is_own, outwards
 from sim.probes.probe import Probe, RunningCallback
 from sim.trace.events import AnyEvent, CallbackAt, Doing, EntityId

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, NoReturn
 
 import msgspec
 
-from sim import clean_start
 from sim.clock import PacedClock, RunClock, VirtualClock
 from sim.clock.paced_stdlib import follow
 from sim.clock.schedule import schedule_of
@@ -53,6 +52,7 @@ from sim.engine.watchdogs.hung_callbacks import HungCallbacks
 from sim.engine.watchdogs.outside_time import Watchdog
 from sim.engine.watchdogs.repeatability import Repeatability
 from sim.engine.watchdogs.standstill import StandstillDetector
+from sim.interpreter import safe_path
 from sim.probes.probe import Probe
 from sim.robot.bullet import WorldUnavailable
 from sim.ros import importing
@@ -259,7 +259,7 @@ def _launch(
 def run(packed_setup: bytes, pipe: Connection, crash_dump: Connection) -> None:
     """Be the engine process of one run; where its threads stand as it crashes goes to ``crash_dump``."""
     leave_terminal()
-    clean_start.forget()
+    safe_path.forget()
     setup = msgspec.msgpack.decode(packed_setup, type=RunSetup)
     os.set_inheritable(pipe.fileno(), False)
     Engine(setup, pipe, crash_dump).run()

@@ -5,7 +5,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from sim.engine.setup import RunSetup
-from sim.profiles import Profile, UnknownProfileError
+from sim.releases.distros import UnknownProfileError
+from sim.releases.profile import Profile
 
 _WISH = re.compile(r"^#\s*cbtui:\s*distro\s*=\s*(\S+)", re.MULTILINE)
 

@@ -141,7 +141,7 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     first served; up to ``explored_from`` (nanoseconds) they run so in any case. Tracebacks are without the
     frames of the model, unless they are to be ``whole_tracebacks``.
     With ``real`` the programs run on real rclpy, in processes of their own, and on the real clock.
-    ``distro`` is the release of rclpy that the model is like, as ``sim.profiles`` spells it, "" for what
+    ``distro`` is the release of rclpy that the model is like, as ``sim.releases`` spells it, "" for what
     its programs ask for, or the usual one. ``seal`` is the key that its trace is sealed with
     (``sim.trace.integrity.sealing``), b"" for none.
     """

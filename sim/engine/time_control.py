@@ -9,9 +9,9 @@ from typing import TypeAlias
 
 from sim.clock import VirtualClock
 from sim.clock.paced import PacedClock
-from sim.durations import timestamp
 from sim.engine import commands
 from sim.engine.commands import PaceCommand
+from sim.quantities.durations import timestamp
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,

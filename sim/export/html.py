@@ -7,8 +7,8 @@ from pathlib import Path
 import msgspec
 
 from sim.diagnosis import diagnose
-from sim.durations import duration
 from sim.export.bars import rows
+from sim.quantities.durations import duration
 from sim.trace.descriptions import executor_label, why_waiting
 from sim.trace.events import Logged, Severity
 from sim.trace.model import EntityInfo, GroupInfo, Nanoseconds, ThreadInfo, Window

@@ -4,9 +4,9 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from sim.diagnosis import diagnose, location_text, sentence
-from sim.durations import duration
 from sim.export.texts import markdown as plain
 from sim.export.texts import seconds
+from sim.quantities.durations import duration
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.figures.chains_text import told_chain

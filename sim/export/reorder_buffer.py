@@ -8,6 +8,7 @@ from operator import attrgetter
 
 import msgspec
 
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import (
     AnyEvent,
     EntityAppeared,
@@ -18,7 +19,6 @@ from sim.trace.events import (
     WaitStarted,
 )
 from sim.trace.model import Nanoseconds
-from sim.units import SECOND
 
 HORIZON: Nanoseconds = SECOND
 _time = attrgetter("t")

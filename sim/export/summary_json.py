@@ -6,9 +6,9 @@ from typing import Any
 import msgspec
 
 from sim.diagnosis import diagnose
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.figures.summary import CallbackFigures, Summary, summarise
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 
 def summary_json(timeline: Timeline) -> bytes:

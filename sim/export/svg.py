@@ -3,17 +3,17 @@
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from sim.durations import duration
 from sim.export import svg_elements as draw
 from sim.export.bars import Bar, PixelScale, bars, losses, rows, ticks
 from sim.export.svg_elements import Box
 from sim.export.texts import seconds, xml
+from sim.quantities.durations import duration
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import GroupKind, Reason
 from sim.trace.figures.chains import ChainStep
 from sim.trace.model import AxisMarkKind, EntityInfo, GroupInfo, Nanoseconds, Span, ThreadInfo, Wait, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 LABELS = 210.0
 """Pixels for the names at the left."""

@@ -3,7 +3,7 @@
 import re
 from typing import TYPE_CHECKING
 
-from sim.units import SECOND
+from sim.quantities.nanoseconds import SECOND
 
 if TYPE_CHECKING:
     from sim.trace.model import Nanoseconds

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from sim.foreign_file import read_bytes, read_text
+from sim.files.untrusted import read_bytes, read_text
 from sim.interfaces.interface_definition import Definition, DefinitionError, Kind
 from sim.interfaces.notation import parse, require_interface_name, require_package_name
 

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Final
 
-from sim.foreign_file import mode_of
+from sim.files.untrusted import mode_of
 from sim.interfaces.folder import is_package
 
 MOST_FOLDERS: Final = 2000

@@ -6,7 +6,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
-from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
+from sim.files.untrusted import MAX_PROGRAM_BYTES, read_bytes
 from sim.launch.errors import LaunchError, explained
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def load_description(path: Path) -> LaunchDescription:
 
 def _source(file: Path) -> bytes:
     try:
-        return read_bytes(file, MOST_OF_A_PROGRAM)
+        return read_bytes(file, MAX_PROGRAM_BYTES)
     except OSError as error:
         raise LaunchError(f"{file}: {error.strerror}") from None
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
-from sim.foreign_file import read_text
+from sim.files.untrusted import read_text
 from sim.packages.errors import PackageError
 from sim.packages.setup_file import Installed
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from sim.foreign_file import mode_of
+from sim.files.untrusted import mode_of
 from sim.packages.errors import PackageError, UnknownPackageError, listing
 from sim.packages.manifest import MANIFEST, read_name
 from sim.packages.package import Package

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 from xml.etree import ElementTree
 
-from sim.foreign_file import read_bytes
+from sim.files.untrusted import read_bytes
 from sim.packages.errors import PackageError
 
 MANIFEST = "package.xml"

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 
-from sim.foreign_file import read_text
+from sim.files.untrusted import read_text
 from sim.packages.cmake_file import CMAKE_FILE, read_cmake
 from sim.packages.errors import PackageError, UnknownExecutableError, listing
 from sim.packages.manifest import MANIFEST

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from sim.foreign_file import read_bytes, read_text
+from sim.files.untrusted import read_bytes, read_text
 from sim.packages.errors import PackageError
 from sim.packages.expressions import Expressions
 

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from itertools import count
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from sim.error_text import error_line
-from sim.marks import sends_responses
+from sim.interpreter.exception_text import error_line
+from sim.interpreter.function_marks import sends_responses
 from sim.probes.callbacks import callback_name, written_at
 from sim.probes.own_code import call_into_ros, has_timeout, place_of_caller, raised_at
 from sim.probes.traced import MessageContents, TracedEntity

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from sim.foreign_file import read_bytes
+from sim.files.untrusted import read_bytes
 
 _LONGEST = 500_000
 """Bytes of a file at most; longer ones are skipped."""

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.units import SECOND
+from sim.quantities.nanoseconds import SECOND
 
 from .arena import ARENA, Arena, Pose
 from .drive import MOTOR_TORQUE, STANDSTILL, STEP_RATE, Velocity, clamped, is_drivable, wheel_speeds

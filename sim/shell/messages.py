@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from sim import plain_yaml
+from sim.files import plain_yaml
+from sim.files.plain_yaml import YamlError
 from sim.interfaces import Kind, Message, ServiceType, UnknownInterfaceError
 from sim.interfaces.base import ActionType
 from sim.interfaces.rosidl_runtime_py import message_to_yaml, set_message_fields
-from sim.plain_yaml import YamlError
 from sim.shell.ground import Ground
 from sim.shell.quoting import double_quoted, quoted
 from sim.shell.session import CommandFailed

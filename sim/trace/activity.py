@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId
 from sim.trace.model import Nanoseconds
-from sim.units import SECOND
 
 _LATE: Nanoseconds = SECOND
 """How late an event may arrive, in nanoseconds."""

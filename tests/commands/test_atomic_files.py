@@ -10,7 +10,7 @@ import pytest
 
 from cbtui.runs.recorded.events_file import EventsFile
 from cbtui.runs.recorded.exporting import FORMATS, ExportError, ExportRequest, export
-from sim.atomic_file import atomic_file, write_atomically
+from sim.files.atomic import atomic_file, write_atomically
 from sim.trace.events import AnyEvent
 from tests.support.runs import shared_group_run
 

@@ -10,8 +10,8 @@ from rosbags.highlevel import AnyReader
 from cbtui import cli
 from cbtui.runs.recorded.recording_file import CannotRecordError, setup_of, start_recording
 from sim.engine.setup import RunSetup, TimedCall
-from sim.profiles import Profile
 from sim.recording import RecordingMetadata, read
+from sim.releases.profile import Profile
 from tests.recording.files import write
 from tests.support.daily import first_row_daily
 from tests.trace.samples import FULL

@@ -27,7 +27,7 @@ def on_model(source: str, distro: str, moves: list[int] | None) -> None:
     from sim.clock import VirtualClock
     from sim.clock.stdlib import live_on
     from sim.probes.probe import SilentProbe
-    from sim.profiles import Profile
+    from sim.releases.profile import Profile
     from sim.ros.middleware.host import Host, install
     from tests.conformance.steered import Steered
 

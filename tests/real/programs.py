@@ -7,9 +7,9 @@ import msgspec
 import pytest
 
 from sim.engine.setup import RealRos, TimedCall
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 from tests.support.engine_runs import Run, program_setup, run_to_end
 
 needs_ros = pytest.mark.skipif(

@@ -11,6 +11,7 @@ import msgspec
 import pytest
 
 from sim.engine.setup import RealRos, TimedLine
+from sim.quantities.nanoseconds import SECOND
 from sim.real.ros2_lines import Ros2Lines
 from sim.real.wire import ProgramEnded, decode_request
 from sim.trace.events import (
@@ -22,7 +23,6 @@ from sim.trace.events import (
     ProcessAppeared,
     Published,
 )
-from sim.units import SECOND
 from tests.real import programs
 from tests.real.launching import LONGEST
 from tests.real.programs import needs_ros

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from sim.diagnosis import diagnose
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import (
     CallbackFailed,
     CallbackResumed,
@@ -21,7 +22,6 @@ from sim.trace.events import (
     ServiceReplied,
     WaitStarted,
 )
-from sim.units import SECOND
 from tests.real import programs
 from tests.real.programs import entity_named, needs_ros, whole
 from tests.support.engine_runs import Run

@@ -4,10 +4,10 @@ import math
 
 import pytest
 
+from sim.quantities.nanoseconds import SECOND
 from sim.robot.arena import ARENA, Arena, Circle, Segment
 from sim.robot.physics import PhysicsChoice
 from sim.robot.world import World
-from sim.units import SECOND
 from tests.support.daily import first_daily
 
 OPEN_FLOOR = Arena((Segment(100.0, -3.0, 100.0, 3.0),), Circle(0.0, -50.0, 0.1))

@@ -9,9 +9,9 @@ import pytest
 from cbtui.runs.headless.keeping import Keeper, KeptEvents, run_and_keep
 from cbtui.runs.setup.shown_program import watched_setup
 from sim.engine.setup import RealRos
+from sim.quantities.nanoseconds import SECOND
 from sim.recording import read
 from sim.trace.events import AnyEvent, CallbackStarted, EntityAppeared, ProcessEnded, TimePassed
-from sim.units import SECOND
 from tests.support.builder import Run, ns
 from tests.support.runs import shared_group_run
 

@@ -11,8 +11,8 @@ import pytest
 from cbtui.keys.config import read_file
 from lessons.lesson import BadLesson, read_lesson
 from lessons.progress import faulty_line
-from sim import foreign_file, plain_toml
 from sim.engine.programs.source import NothingToRunError, read_source
+from sim.files import plain_toml, untrusted
 from sim.launch.errors import LaunchError
 from sim.launch.loading import load_description
 from sim.packages.cmake_file import read_cmake
@@ -109,9 +109,9 @@ def test_the_null_device_is_an_empty_file() -> None:
 def test_a_file_of_the_most_that_is_read_is_read(tmp_path: Path) -> None:
     path = tmp_path / "text"
     path.write_bytes(b"a\r\n" + b"b" * 97)
-    assert foreign_file.read_text(path, 100) == "a\n" + "b" * 97
+    assert untrusted.read_text(path, 100) == "a\n" + "b" * 97
     with pytest.raises(OSError, match="more than 99 bytes"):
-        foreign_file.read_text(path, 99)
+        untrusted.read_text(path, 99)
 
 
 DEEP = {

@@ -19,8 +19,8 @@ from lessons import catalogue
 from lessons.catalogue import find, lessons
 from lessons.lesson import BadLesson
 from lessons.progress import Progress
+from sim.files.plain_yaml import YamlError, load
 from sim.packages import PackageError, find_packages
-from sim.plain_yaml import YamlError, load
 from sim.recording import Recording, RecordingError, RecordingMetadata, RecordingWriter, read
 from sim.ros.context.arguments import ArgumentsError, parse_arguments
 from sim.ros.parameters.yaml_files import ParameterYamlError, read_nodes

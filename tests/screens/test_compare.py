@@ -21,7 +21,7 @@ from cbtui.screens.windows.help import HelpScreen
 from cbtui.screens.windows.moment import MomentScreen
 from cbtui.widgets.comparison import ComparisonTable
 from cbtui.widgets.lanes import Lanes, start_of
-from sim.durations import timestamp
+from sim.quantities.durations import timestamp
 from sim.trace.events import AnyEvent, RobotMoved, RunEnded
 from sim.trace.figures.comparison import compare as figures_of
 from sim.trace.figures.comparison_rows import verdict

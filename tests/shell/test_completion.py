@@ -2,9 +2,9 @@
 
 import pytest
 
+from sim.files.plain_yaml import load
 from sim.interfaces import message, message_of_type, service
 from sim.packages import Packages
-from sim.plain_yaml import load
 from sim.ros.node.node import Node
 from sim.shell import complete, word_start
 from sim.shell.messages import Outgoing

@@ -6,9 +6,9 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
+from sim.files.plain_yaml import YamlError, dump, load
 from sim.interfaces import Message, message
 from sim.interfaces.rosidl_runtime_py import message_to_csv, message_to_yaml
-from sim.plain_yaml import YamlError, dump, load
 from sim.shell.messages import Outgoing
 from sim.shell.session import CommandFailed
 from tests.interfaces.strategies import messages

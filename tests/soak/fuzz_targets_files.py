@@ -12,8 +12,8 @@ from cbtui.runs.setup.recent import RecentList
 from lessons.catalogue import ROOT
 from lessons.lesson import BadLesson, read_lesson
 from lessons.progress import Progress
-from sim import plain_yaml
 from sim.engine.setup import ProgramSetup, RunSetup, TimedCall, TimedInput, TimedLine
+from sim.files import plain_yaml
 from sim.interfaces import DefinitionError, known, message
 from sim.interfaces.folder import DefinitionFolder
 from sim.interfaces.jazzy import JazzyMessages

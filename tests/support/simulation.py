@@ -11,7 +11,7 @@ import sim.ros.rclpy
 from sim.clock import RunClock, VirtualClock
 from sim.clock.schedule import Schedule
 from sim.probes.probe import Probe, PublishingProbe
-from sim.profiles import Profile
+from sim.releases.profile import Profile
 from sim.ros.context.context import Context
 from sim.ros.middleware import host as hosts
 from sim.ros.middleware.host import Host

@@ -2,7 +2,7 @@
 
 import pytest
 
-from sim.durations import duration, timestamp
+from sim.quantities.durations import duration, timestamp
 
 
 @pytest.mark.parametrize(

@@ -23,7 +23,7 @@ from cbtui.widgets.scene import paint_scene
 from lessons.catalogue import lessons
 from lessons.description import Actor
 from lessons.lesson import Lesson
-from sim.durations import duration
+from sim.quantities.durations import duration
 from sim.trace.descriptions import name_of
 from sim.trace.events import GroupId, Reason
 from sim.trace.figures.concurrency import Concurrency

@@ -9,7 +9,7 @@ from stat import S_ISREG
 from typing import TYPE_CHECKING, NamedTuple
 
 from cbtui.commands.options.targets import refuse
-from sim.foreign_file import mode_of
+from sim.files.untrusted import mode_of
 
 if TYPE_CHECKING:
     from cbtui.keys.keymap import Keymap

@@ -56,7 +56,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def add_distro(parser: argparse.ArgumentParser, side: str = "") -> None:
     """Add ``--distro``, or ``--distro-a`` and ``--distro-b`` where two programs are run."""
-    from sim.profiles import Profile
+    from sim.releases.profile import Profile
 
     parser.add_argument(
         f"--distro{side}",
@@ -190,8 +190,9 @@ def release_of(python: str) -> str | None:
     """The release of the rclpy that a Python has, as ``--distro`` takes it; None if that is not known."""
     import subprocess
 
-    from sim.profiles import Profile, UnknownProfileError
     from sim.real.programs import unbootstrapped
+    from sim.releases.distros import UnknownProfileError
+    from sim.releases.profile import Profile
 
     asked = [python or sys.executable, "-c", _RELEASE]
     environment = unbootstrapped(asked[0])

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 from cbtui.terminal.capabilities import is_browser, is_dumb
 from cbtui.text.output import complain, is_text
-from sim.foreign_file import mode_of
+from sim.files.untrusted import mode_of
 
 if TYPE_CHECKING:
     from lessons.lesson import Lesson

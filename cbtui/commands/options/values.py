@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, BadQuantityError, Quantity
 from cbtui.text.output import is_text
-from sim.units import nearest_ns
+from sim.quantities.nanoseconds import nearest_ns
 
 if TYPE_CHECKING:
     from cbtui.runs.setup.changes import CallbackPlace
@@ -56,7 +56,8 @@ def _bounded(seconds: float, text: str) -> float:
 
 def distro(text: str) -> str:
     """Read a release of rclpy; returns its name with the patch."""
-    from sim.profiles import Profile, UnknownProfileError
+    from sim.releases.distros import UnknownProfileError
+    from sim.releases.profile import Profile
 
     try:
         return str(Profile.named(text))

@@ -15,9 +15,9 @@ from cbtui.runs.live.disk_space import DiskSpaceWatch
 from cbtui.terminal.interrupts import deferred_interrupt, ending_signals
 from cbtui.text.output import CannotSayError, complain, say
 from sim.diagnosis import diagnose, findings_text
-from sim.durations import timestamp
 from sim.engine.commands import Stop
 from sim.engine.setup import Keyboard, RunSetup
+from sim.quantities.durations import timestamp
 from sim.trace.events import AnyEvent
 from sim.trace.figures.summary import summarise
 from sim.trace.figures.summary_text import plain_text

@@ -16,11 +16,11 @@ from cbtui.runs.recorded.recording_file import CannotRecordError, start_recordin
 from cbtui.terminal.interrupts import ending_signals
 from cbtui.text.output import complain
 from sim.engine.setup import RunSetup
+from sim.quantities.nanoseconds import SECOND
 from sim.recording import RunSnapshot
 from sim.trace.events import AnyEvent, ProcessEnded
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 _TROUBLE = (
     "group-starvation",

@@ -6,6 +6,7 @@ from cbtui.looks.theme import Charset
 from cbtui.text.cells import visible, without_tabs
 from cbtui.text.colours import Colour, coloured
 from cbtui.text.output import writing_to_stream
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import (
     AnyEvent,
     LineGiven,
@@ -20,7 +21,6 @@ from sim.trace.events import (
     ThreadId,
     Typed,
 )
-from sim.units import SECOND
 
 _COLOURS = {"WARN": Colour.WARNING, "ERROR": Colour.BAD, "FATAL": Colour.BAD}
 """As ROS colours its log."""

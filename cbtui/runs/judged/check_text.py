@@ -7,7 +7,7 @@ from cbtui.runs.judged.checking import CheckedFile
 from lessons.checks import problems
 from lessons.judge import JudgedCheck
 from sim.diagnosis.text import WIDTH
-from sim.durations import timestamp
+from sim.quantities.durations import timestamp
 from sim.trace.timeline import Timeline
 
 PASSED, FAILED = "✓", "✗"

@@ -14,11 +14,11 @@ from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.judge import Judge, JudgedCheck
 from lessons.lesson import Lesson
 from sim.clock.schedule import Seed
-from sim.durations import timestamp
 from sim.engine.setup import RealRos, RunSetup
+from sim.quantities.durations import timestamp
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import AnyEvent, Logged, Printed
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 LIMIT = 60.0
 """Default limit in real seconds; the lessons' own runs take one on virtual time."""

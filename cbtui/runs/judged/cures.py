@@ -18,7 +18,7 @@ from sim.diagnosis import Explanation, Finding
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import diff
 from sim.engine.setup import RunSetup, TimedInput
-from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
+from sim.files.untrusted import MAX_PROGRAM_BYTES, read_text
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -90,7 +90,7 @@ def _without_edit(remedy: Remedy, before: Changes, timeline: Timeline) -> Change
 def _text_of(path: Path) -> str:
     """The text of a program's file; "" if it cannot be read, or is none."""
     with suppress(OSError, UnicodeDecodeError):
-        return read_text(path, MOST_OF_A_PROGRAM)
+        return read_text(path, MAX_PROGRAM_BYTES)
     return ""
 
 

@@ -9,7 +9,7 @@ from cbtui.runs.judged.check_text import FAILED, PASSED
 from cbtui.runs.judged.exploring import ScheduleResult, SeedT
 from sim.clock.schedule import Seed
 from sim.diagnosis.text import WIDTH
-from sim.plural import counted
+from sim.quantities.plural import counted
 
 
 class Shrunk(NamedTuple):

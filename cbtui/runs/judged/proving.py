@@ -15,14 +15,14 @@ from statistics import median
 
 import sim
 from sim.diagnosis import Weight, diagnose
-from sim.durations import duration
-from sim.plural import counted
+from sim.quantities.durations import duration
+from sim.quantities.nanoseconds import SECOND
+from sim.quantities.plural import counted
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityKind
 from sim.trace.figures.comparison import CallbackInRun, CallbackPair, compare
 from sim.trace.model import EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 GROUNDS = ("the model", "real rclpy")
 """What the two runs are called in sentences."""

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from sim.durations import timestamp
+from sim.quantities.durations import timestamp
 from sim.trace.events import AccessesConflicted, ThreadChosen
 from sim.trace.timeline import Timeline
 

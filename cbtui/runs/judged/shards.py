@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 
 from cbtui.runs.judged.exploring import ScheduleResult
-from sim.foreign_file import read_bytes
+from sim.files.untrusted import read_bytes
 
 _MOST_BYTES = 1 << 28
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from watchfiles import awatch
 
-from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
+from sim.files.untrusted import MAX_PROGRAM_BYTES, read_bytes
 
 CANNOT_WATCH = (OSError, RuntimeError)
 """Errors of a folder that cannot be watched."""
@@ -59,6 +59,6 @@ async def _settled(path: Path) -> bytes | None:
 def content_of(path: Path) -> bytes | None:
     """Return a file's content; None if it cannot be read."""
     try:
-        return read_bytes(path, MOST_OF_A_PROGRAM)
+        return read_bytes(path, MAX_PROGRAM_BYTES)
     except OSError:
         return None

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from time import monotonic
 
 from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
-from sim.plural import counted
+from sim.quantities.plural import counted
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 _MILLISECOND = 1_000_000
 _MINUTE = 60 * SECOND

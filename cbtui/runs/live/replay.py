@@ -14,7 +14,7 @@ from cbtui.runs.recorded.recording_file import date_text, setup_of
 from cbtui.runs.setup.own_files import PROGRAMS
 from cbtui.runs.setup.shown_program import ShownProgram
 from sim.engine.setup import RunSetup
-from sim.foreign_file import read_text
+from sim.files.untrusted import read_text
 from sim.recording import Recording, RecordingError, RecordingMetadata, read
 from sim.trace.events import AnyEvent
 from sim.trace.model import Nanoseconds

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, NamedTuple, Protocol, Self
 
-from sim.units import SECOND, nearest_ns
+from sim.quantities.nanoseconds import SECOND, nearest_ns
 
 if TYPE_CHECKING:
     from sim.export.csv import CallTable
@@ -99,7 +99,7 @@ class _ExportFile:
     """One file that is written."""
 
     def __init__(self, name: str, path: Path, replace: bool) -> None:
-        from sim.atomic_file import atomic_file
+        from sim.files.atomic import atomic_file
 
         self._name = name
         self._path = path

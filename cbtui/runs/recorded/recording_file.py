@@ -8,8 +8,8 @@ from pathlib import Path
 import msgspec
 
 from sim.engine.setup import RunSetup
+from sim.quantities.nanoseconds import SECOND
 from sim.recording import RecordingMetadata, RecordingWriter
-from sim.units import SECOND
 
 
 class CannotRecordError(Exception):

@@ -8,8 +8,8 @@ from cbtui.runs.recorded.reading_progress import ReadingProgress
 from cbtui.runs.recorded.recording_file import date_text, setup_of
 from cbtui.runs.setup.changes import changes_in
 from cbtui.text.output import complain, say, say_data, shown
-from sim.durations import timestamp
 from sim.export.summary_json import summary_json
+from sim.quantities.durations import timestamp
 from sim.recording import Recording, RecordingError, Topic, read
 from sim.trace.events import AnyEvent, ContentsLost, EventsLost, RunEnded, RunEnding, RunStarted
 from sim.trace.figures.chains_text import told_chain

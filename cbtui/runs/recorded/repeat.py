@@ -12,10 +12,10 @@ from cbtui.runs.recorded.recording_file import setup_of
 from cbtui.runs.setup.lesson_setup import RunRequest
 from sim.engine.inputs import UnknownInputError, inputs_of, stops
 from sim.engine.setup import Keyboard, RobotUse, RunSetup
-from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
+from sim.files.untrusted import MAX_PROGRAM_BYTES, read_bytes
+from sim.quantities.nanoseconds import nearest_ns
 from sim.recording import Recording, RecordingError, read
 from sim.trace.events import AnyEvent, Notice, RunEnded
-from sim.units import nearest_ns
 
 
 def why_unrepeatable(events: Iterable[AnyEvent]) -> str | None:
@@ -106,7 +106,7 @@ def _check_programs(recorded: RunSetup, recording: Recording) -> None:
     for program in (each for each in recorded.programs if not each.text):
         path = Path(program.path)
         try:
-            content = read_bytes(path, MOST_OF_A_PROGRAM)
+            content = read_bytes(path, MAX_PROGRAM_BYTES)
         except OSError:
             sentence = (
                 f"the recorded program {path} is not there any more; name the file that is to run instead"

@@ -12,8 +12,8 @@ from cbtui.text.callback_names import short_name
 from lessons.lesson import with_argument
 from sim.clock.schedule import Seed
 from sim.engine.setup import GroupChange, PeriodChange, PhysicsChoice, ProgramSetup, RealRos, RunSetup
-from sim.plural import counted
-from sim.units import SECOND
+from sim.quantities.nanoseconds import SECOND
+from sim.quantities.plural import counted
 
 CallbackPlace: TypeAlias = tuple[str, str]
 """A node's full name ("" for any node), and a callback's name on the trace."""

@@ -4,9 +4,10 @@ from collections.abc import Iterator
 
 from cbtui.runs.setup.changeable import ChangeableSetup
 from cbtui.runs.setup.changes import CallbackPlace, Changes
-from sim.profiles import RUN, Profile
+from sim.quantities.nanoseconds import SECOND
+from sim.releases.distros import COMPARED_DISTROS
+from sim.releases.profile import Profile
 from sim.trace.events import EntityKind
-from sim.units import SECOND
 
 _EXCLUSIVE = "MutuallyExclusiveCallbackGroup()"
 _REENTRANT = "ReentrantCallbackGroup()"
@@ -63,7 +64,7 @@ def code_of_sensor_rate(rate: float) -> str:
 
 def code_of_release(release: str) -> str:
     """Return the line that makes a file run as on a release, and the sources of that release's behaviour."""
-    was_run = Profile.named(release).distro in RUN
+    was_run = Profile.named(release).distro in COMPARED_DISTROS
     caveat = "" if was_run else "\n# it follows documentation and source, not runs"
     return f"# cbtui: distro = {release}{caveat}"
 

@@ -20,7 +20,7 @@ from sim.engine.setup import (
     TimedLine,
     TimedText,
 )
-from sim.units import nearest_ns
+from sim.quantities.nanoseconds import nearest_ns
 
 _LESSON_PACKAGES = tuple(str(path) for path in sorted(ROOT.glob("unit*")))
 """Folders of the lessons' packages."""

@@ -8,7 +8,7 @@ from stat import S_ISDIR, S_ISREG
 from typing import TYPE_CHECKING, NamedTuple
 
 from cbtui.runs.setup.recent import RecentEntry, RecentKind
-from sim.foreign_file import mode_of
+from sim.files.untrusted import mode_of
 
 if TYPE_CHECKING:
     from sim.recording import Recording

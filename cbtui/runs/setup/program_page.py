@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
 from cbtui.runs.setup.changeable import programs_own
-from sim.durations import duration
-from sim.plural import counted, plural
+from sim.quantities.durations import duration
+from sim.quantities.plural import counted, plural
 from sim.trace.descriptions import executor_label
 from sim.trace.events import EntityKind
 from sim.trace.model import EntityInfo

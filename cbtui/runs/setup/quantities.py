@@ -3,7 +3,8 @@
 import math
 from typing import NamedTuple, Protocol, TypeVar
 
-from sim.profiles import DISTROS, Profile
+from sim.releases.distros import DISTROS
+from sim.releases.profile import Profile
 
 Value = TypeVar("Value")
 

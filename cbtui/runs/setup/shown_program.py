@@ -14,10 +14,10 @@ from lessons.lesson import Lesson
 from lessons.puzzles import SECONDS, Puzzle
 from sim.engine.inputs import inputs_of
 from sim.engine.setup import Keyboard, PhysicsChoice, RealRos, RobotUse, RunSetup, ServiceChoice
-from sim.plural import counted
+from sim.quantities.nanoseconds import SECOND
+from sim.quantities.plural import counted
 from sim.trace.events import AnyEvent
 from sim.trace.model import Nanoseconds
-from sim.units import SECOND
 
 if TYPE_CHECKING:
     from sim.real.wire import Hello

@@ -20,7 +20,7 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.screens.windows.chain import names_in
 from cbtui.screens.windows.export import CHOICES
 from cbtui.screens.windows.setup_rows import GroupRow, ValueRow, rows_of
-from sim.durations import duration, timestamp
+from sim.quantities.durations import duration, timestamp
 from sim.trace.figures.chains import ChainError, chain
 
 

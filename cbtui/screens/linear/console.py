@@ -26,9 +26,9 @@ from cbtui.screens.parts.runs import MakeRun, RunController, RunT_co
 from cbtui.screens.windows.moment import seconds_in
 from lessons.lesson import Lesson
 from lessons.progress import Progress
-from sim.durations import timestamp
+from sim.quantities.durations import timestamp
+from sim.quantities.nanoseconds import nearest_ns
 from sim.trace.events import AnyEvent
-from sim.units import nearest_ns
 
 _TURN = 0.25
 """Seconds between two looks at what is new."""

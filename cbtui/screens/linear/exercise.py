@@ -21,7 +21,7 @@ from cbtui.screens.parts.part import ScreenPart
 from lessons.judge import Judge
 from lessons.lesson import BadLesson, Lesson
 from lessons.progress import Progress
-from sim.foreign_file import text_of_program
+from sim.files.untrusted import program_text
 
 
 @dataclass
@@ -88,7 +88,7 @@ class ExerciseInLines(ScreenPart):
         file = Path(lesson.file_name)
         begun = file if file.is_file() else lesson.starter_path
         self.host.tell(f"So {file.name} becomes the solution; {lesson.solution_path} has all of it.")
-        texts = [text_of_program(path) or "" for path in (begun, lesson.solution_path) if path is not None]
+        texts = [program_text(path) or "" for path in (begun, lesson.solution_path) if path is not None]
         lines = list(told_difference(*texts))
         for line in lines or ["It is the solution, word for word."]:
             self.host.tell(line)

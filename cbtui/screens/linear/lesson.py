@@ -28,12 +28,12 @@ from cbtui.screens.parts.keys import Refusals
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.parts.restarts import Restarts
 from lessons.lesson import Lesson
-from sim.durations import timestamp
+from sim.quantities.durations import timestamp
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.figures.comparison import compare, first_difference
 from sim.trace.figures.comparison_text import comparison_lines
 from sim.trace.incremental import run_to_end
 from sim.trace.model import Nanoseconds, Window
-from sim.units import SECOND
 
 _COMPARED: Nanoseconds = 10 * SECOND
 """How far a run has to come until it is compared, unless the one before was shorter."""

@@ -10,8 +10,8 @@ from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.log.line import line_of
 from cbtui.widgets.narrator import narration, returning, waiting
 from sim.diagnosis import location_text
-from sim.durations import duration, timestamp
-from sim.plural import counted
+from sim.quantities.durations import duration, timestamp
+from sim.quantities.plural import counted
 from sim.trace.descriptions import name_of
 from sim.trace.events import Logged, Severity
 from sim.trace.model import Nanoseconds, Span, Wait, Window

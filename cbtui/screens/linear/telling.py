@@ -14,8 +14,8 @@ from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.diagnosis import diagnosis_on_screen
 from cbtui.widgets.narrator import narration
-from sim.durations import duration, timestamp
-from sim.foreign_file import text_of_program
+from sim.files.untrusted import program_text
+from sim.quantities.durations import duration, timestamp
 from sim.trace.events import AnyEvent, KeyboardAsked, TimeHalted
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -143,7 +143,7 @@ class Telling(ScreenPart):
     @property
     def _source(self) -> str:
         subject = self.subject
-        return subject.source or text_of_program(subject.node_path) or "# There is no code to be read."
+        return subject.source or program_text(subject.node_path) or "# There is no code to be read."
 
     def action_show_pane(self, name: str) -> None:
         """Read the guide or the code, or tell the whole log."""

@@ -9,7 +9,7 @@ from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.windows.chain import ChainScreen
-from sim.durations import duration, timestamp
+from sim.quantities.durations import duration, timestamp
 from sim.trace.figures.chains import Chain, ChainError, ChainRun, chain
 from sim.trace.model import Nanoseconds
 

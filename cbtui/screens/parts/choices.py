@@ -17,7 +17,7 @@ from lessons.catalogue import find
 from lessons.puzzles import Puzzle
 from sim.clock.played import Moves, moves_of, moves_text
 from sim.engine.setup import RunSetup
-from sim.plural import counted
+from sim.quantities.plural import counted
 from sim.trace.events import AnyEvent, ChoiceAsked
 
 

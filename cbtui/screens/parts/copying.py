@@ -12,7 +12,7 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.diagnosis import call_note, diagnosis_at
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.details import details_of_selection
-from sim.durations import duration, timestamp
+from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import executor_label, name_of, why_waiting
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Nanoseconds

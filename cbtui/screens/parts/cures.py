@@ -16,8 +16,8 @@ from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
 from sim.engine.inputs import UnknownInputError, inputs_of, stops
 from sim.engine.setup import TimedInput
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.model import Nanoseconds
-from sim.units import SECOND
 
 _SHORTEST: Nanoseconds = 5 * SECOND
 _LONGEST: Nanoseconds = 40 * SECOND

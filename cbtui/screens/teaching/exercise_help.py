@@ -12,7 +12,7 @@ from cbtui.learning.lesson_page import PageSection, PageState
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.teaching.learning import Learning
 from lessons.description import Exercise
-from sim.foreign_file import text_of_program
+from sim.files.untrusted import program_text
 
 _READING = 15.0
 """Seconds for which a hint is shown as a notification."""
@@ -86,5 +86,5 @@ class ExerciseHelp(ScreenPart):
         if not wanted or lesson.solution_path is None or begun is None:
             return
         self.learning.store.look_at_solution(lesson.id)
-        texts = [(path.name, text_of_program(path) or "") for path in (begun, lesson.solution_path)]
+        texts = [(path.name, program_text(path) or "") for path in (begun, lesson.solution_path)]
         self.host.ask(SolutionScreen(texts[0], texts[1], self.host.charset), None)

@@ -24,8 +24,8 @@ from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
 from lessons.lesson import Lesson
 from sim.diagnosis import location_text, sentence
-from sim.durations import timestamp
-from sim.plural import counted
+from sim.quantities.durations import timestamp
+from sim.quantities.plural import counted
 
 _ALL_IS_WELL = "✓ Nothing has gone wrong so far: no rule has found a problem."
 _TIME = 10

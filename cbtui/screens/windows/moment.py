@@ -9,9 +9,9 @@ from cbtui.keys.action import Scope
 from cbtui.looks.theme import Charset
 from cbtui.screens.windows.typed_line import TypedLine
 from cbtui.screens.windows.window import WindowScreen
-from sim.durations import timestamp
+from sim.quantities.durations import timestamp
+from sim.quantities.nanoseconds import nearest_ns
 from sim.trace.model import Nanoseconds
-from sim.units import nearest_ns
 
 
 class MomentScreen(WindowScreen[Nanoseconds]):

@@ -20,8 +20,8 @@ from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, Release, TypedValue
 from cbtui.screens.windows.group import UNCHANGED, GroupScreen
 from cbtui.screens.windows.threads import ThreadsScreen
 from cbtui.screens.windows.value import ValueScreen
-from sim.plural import counted
-from sim.units import SECOND, nearest_ns
+from sim.quantities.nanoseconds import SECOND, nearest_ns
+from sim.quantities.plural import counted
 
 
 class SettingRow(Protocol):

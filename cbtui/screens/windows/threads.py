@@ -11,7 +11,7 @@ from cbtui.runs.setup.changeable import ChangeableSetup
 from cbtui.runs.setup.equivalent_code import code_of_threads
 from cbtui.screens.windows.window import WindowScreen
 from cbtui.widgets.pageable_option_list import PageableOptionList
-from sim.plural import counted
+from sim.quantities.plural import counted
 
 MOST = 8
 

@@ -10,9 +10,9 @@ from cbtui.widgets.checks import CheckRow, ChecksSheet, CheckStatus
 from lessons.checks import Check
 from lessons.judge import JudgedCheck
 from lessons.lesson import Lesson
-from sim.plural import counted
+from sim.quantities.nanoseconds import SECOND
+from sim.quantities.plural import counted
 from sim.trace.model import Nanoseconds
-from sim.units import SECOND
 
 
 @dataclass(frozen=True)

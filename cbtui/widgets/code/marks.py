@@ -9,7 +9,7 @@ from typing import TypeAlias
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.lanes.names import short_thread
-from sim.durations import duration
+from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.events import EntityId
 from sim.trace.model import EntityInfo, Moment, Nanoseconds, Span, Window

@@ -10,7 +10,7 @@ from rich.cells import cell_len
 
 import sim
 from cbtui.widgets.code.highlight import SourceToken, highlight
-from sim.foreign_file import text_of_program
+from sim.files.untrusted import program_text
 
 _LIBRARY_FOLDERS = tuple(
     {
@@ -41,7 +41,7 @@ class SourceFile:
 
     def has_changed(self) -> bool:
         """Whether the file on disk has another text; False if it is recorded or cannot be read."""
-        text = None if self.recorded else text_of_program(self.path)
+        text = None if self.recorded else program_text(self.path)
         return text is not None and text != self.text
 
 
@@ -57,7 +57,7 @@ class SourceFiles:
     ) -> None:
         self._recorded = recorded
         self._found: dict[str, SourceFile | None] = {}
-        text = source if source is not None else text_of_program(main)
+        text = source if source is not None else program_text(main)
         self.main = _source_file(main, text or "", recorded=source is not None)
         self._real_main = main.resolve()
         self._by_path = {self._real_main: self.main}
@@ -88,7 +88,7 @@ class SourceFiles:
         for path, known in self._by_path.items():
             text = copies.get(path)
             if text is None and (known.recorded or known.has_changed()):
-                text = text_of_program(known.path)
+                text = program_text(known.path)
             if text is not None:
                 self._by_path[path] = _source_file(
                     known.path, text, recorded=path in copies, is_copy=path in copies
@@ -107,7 +107,7 @@ class SourceFiles:
         if self._is_library_code(real):
             return None
         recorded = self._recorded.get(file)
-        text = text_of_program(path) if recorded is None else recorded
+        text = program_text(path) if recorded is None else recorded
         if text is None:
             return None
         self._by_path[real] = _source_file(path, text, recorded=recorded is not None or self.main.recorded)

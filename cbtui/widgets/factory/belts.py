@@ -6,7 +6,7 @@ from cbtui.looks.theme import GLYPHS, Ink, Role
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
 from cbtui.widgets.factory.scene import Area, Belt, FactoryScene
 from cbtui.widgets.factory.texts import belt_details, belt_name, first_fitting, queue_level, wait_texts
-from sim.durations import duration
+from sim.quantities.durations import duration
 from sim.trace.events import EntityKind
 
 _MOST_BOXES = 10

@@ -10,7 +10,7 @@ from cbtui.widgets.factory.plan import LARGE, LEAST_HEIGHT, LEAST_WIDTH, AreaPla
 from cbtui.widgets.factory.scene import FactoryScene, scene_of
 from cbtui.widgets.factory.texts import Headline, first_fitting, headlines
 from cbtui.widgets.factory.yard import draw_bench, draw_large_yard, draw_yard
-from sim.plural import plural
+from sim.quantities.plural import plural
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 

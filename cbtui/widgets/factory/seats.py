@@ -9,7 +9,7 @@ from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
 from cbtui.widgets.factory.plan import AreaPlacement, FactoryColumns
 from cbtui.widgets.factory.scene import STEPS, FactoryScene, FactoryWorker, WorkerState
 from cbtui.widgets.factory.texts import blocked_texts, finished_texts, first_fitting, suspended_texts
-from sim.durations import duration
+from sim.quantities.durations import duration
 from sim.trace.model import EntityInfo
 
 _FREE_SEATS = 4

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 from cbtui.text.callback_names import short_name
 from cbtui.widgets.factory.scene import Area, Belt, FactoryScene, FactoryWorker, WorkerState
-from sim.durations import duration
-from sim.plural import counted
+from sim.quantities.durations import duration
+from sim.quantities.plural import counted
 from sim.trace.descriptions import name_of
 from sim.trace.events import EntityKind, GroupKind, Reason
 from sim.trace.model import EntityInfo, Nanoseconds

@@ -11,7 +11,7 @@ from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.scale import TimeScale
 from cbtui.widgets.lanes.selection import Bar, end_of, start_of
 from cbtui.widgets.lanes.status import is_late
-from sim.durations import duration
+from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.events import Doing, EntityId, EntityKind, GroupKind, Reason
 from sim.trace.figures.chains import ChainStep

@@ -8,7 +8,7 @@ from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from cbtui.widgets.lanes.selection import Bar, Selection
-from sim.durations import duration, timestamp
+from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import doing_of, name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import Call, EntityInfo, Nanoseconds, Position, Span, Wait, Window

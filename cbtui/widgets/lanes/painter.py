@@ -30,7 +30,7 @@ from cbtui.widgets.lanes.scale import TimeScale, scale_for, whole_scale
 from cbtui.widgets.lanes.selection import Selection
 from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls, marked_columns
 from cbtui.widgets.lanes.status import LaneStatus
-from sim.durations import duration
+from sim.quantities.durations import duration
 from sim.trace.events import EntityKind
 from sim.trace.figures.chains import ChainStep
 from sim.trace.model import Blocked, Moment, Nanoseconds, Span, ThreadInfo, Wait, Window

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from cbtui.looks.theme import TextRun
 from cbtui.widgets.lanes.rows import Lane
 from cbtui.widgets.lanes.scale import TimeScale
-from sim.durations import duration
+from sim.quantities.durations import duration
 
 LEAST_WIDTH = 20
 """Columns below which lanes are left blank."""

@@ -3,11 +3,11 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, GroupId, ThreadId
 from sim.trace.model import EntityInfo, GroupInfo, Nanoseconds, ThreadInfo, Window
 from sim.trace.roster import MOST_LANES, roster_of
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.model import Nanoseconds, Window
-from sim.units import SECOND
 
 _MANTISSAS = (10, 12, 15, 18, 20, 22, 25, 30, 35, 40, 45, 50, 60, 70, 80, 90)
 _LABEL_STEPS = (1, 2, 5)

@@ -6,8 +6,8 @@ from itertools import islice
 from cbtui.looks.theme import GLYPHS, Ink, Role
 from cbtui.text.cells import CellRow
 from cbtui.widgets.lanes.scale import TimeScale
-from sim.durations import duration
-from sim.plural import counted
+from sim.quantities.durations import duration
+from sim.quantities.plural import counted
 from sim.trace.model import Call, Nanoseconds
 from sim.trace.timeline import Timeline
 

@@ -6,7 +6,7 @@ from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.text.callback_names import short_name
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane, ever_ran
 from cbtui.widgets.lanes.service_calls import LatestCalls
-from sim.durations import duration
+from sim.quantities.durations import duration
 from sim.trace.events import EntityKind, GroupKind
 from sim.trace.figures.waiting import waits_for_others
 from sim.trace.model import EntityInfo, GroupInfo, Moment, Span, ThreadInfo, Window

@@ -23,8 +23,8 @@ from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.log.filter import Filter, LogEvent
 from cbtui.widgets.log.line import line_of, width_of
 from cbtui.widgets.log.search import LogSearch
-from sim.durations import timestamp
-from sim.plural import plural
+from sim.quantities.durations import timestamp
+from sim.quantities.plural import plural
 from sim.trace.events import Printed, Severity
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline

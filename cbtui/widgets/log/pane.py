@@ -14,7 +14,7 @@ from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.widgets.log.filter import Filter, FilterError, filter_of
 from cbtui.widgets.log.lines import LogLines
-from sim.plural import plural
+from sim.quantities.plural import plural
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 

@@ -12,7 +12,7 @@ from cbtui.widgets.robot.extents import MapView, full_arena, robot_surroundings
 from cbtui.widgets.robot.figures import figures
 from cbtui.widgets.robot.pane_regions import PaneRegions, RobotViewMode, arrange
 from cbtui.widgets.robot.scene import RobotScene
-from sim.durations import duration
+from sim.quantities.durations import duration
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 

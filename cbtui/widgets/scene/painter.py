@@ -8,8 +8,8 @@ from cbtui.text.cells import fit
 from cbtui.widgets.dots import DotGrid
 from cbtui.widgets.scene.figures import ACROSS, DOWN, FIGURES
 from lessons.description import Actor
-from sim.durations import duration
-from sim.plural import counted
+from sim.quantities.durations import duration
+from sim.quantities.plural import counted
 from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.model import EntityInfo, Moment, Nanoseconds, Window
 from sim.trace.timeline import Timeline

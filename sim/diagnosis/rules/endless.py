@@ -8,12 +8,12 @@ from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight,
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_waiting
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, who
-from sim.durations import duration
+from sim.quantities.durations import duration
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import doing_of
 from sim.trace.events import Doing, EntityId, Notice, NoticeKind, Severity
 from sim.trace.model import Position, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 _ADVICE = "wait with a timeout, and see that something ends the wait"
 """For notices without advice, as of waits on the real clock, and in old recordings."""

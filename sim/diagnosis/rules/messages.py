@@ -10,12 +10,12 @@ from sim.diagnosis.edits.profiles import match_quality
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, by_edit, entity_of, place_of
 from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import often, who
-from sim.durations import duration
+from sim.quantities.durations import duration
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 
 class DroppedMessages(Rule):

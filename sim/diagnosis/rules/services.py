@@ -20,10 +20,10 @@ from sim.diagnosis.rules.edits import edits_for_waiting
 from sim.diagnosis.rules.names import offer
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, who
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind
 from sim.trace.model import EntityInfo, Span, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 
 class UnreturnedResponse(Rule):

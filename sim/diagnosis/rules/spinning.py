@@ -9,10 +9,10 @@ from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES
 from sim.diagnosis.words import often, threads_for, who, with_threads
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import Doing, GroupKind, SpinClashed
 from sim.trace.model import Nanoseconds, Position
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 
 class NestedSpin(Rule):

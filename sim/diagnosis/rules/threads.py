@@ -6,10 +6,10 @@ from itertools import islice
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, thread_count
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind, GroupKind, NodeId
 from sim.trace.model import EntityInfo, ExecutorInfo, GroupInfo, Nanoseconds
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 _WARMED_UP: Nanoseconds = SECOND
 """Shorter runs are not judged: their nodes may not be complete."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, line_of
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import often, threads_for, who, with_threads
-from sim.durations import duration
+from sim.quantities.durations import duration
 from sim.trace.events import EntityKind, GroupKind
 from sim.trace.model import EntityInfo, Window
 from sim.trace.timeline import Timeline

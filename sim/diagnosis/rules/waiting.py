@@ -8,11 +8,11 @@ from sim.diagnosis.cures import Remedy, remedy_for_waits
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, line_of, place_of
 from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import group_of, listed, often, threads_for, who
-from sim.durations import duration
+from sim.quantities.durations import duration
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 HALF_A_SECOND = SECOND // 2
 

@@ -13,7 +13,7 @@ from sim.engine.exploration.conflicts import Conflicts
 from sim.engine.exploration.shared_data import SharedData, shared_data
 from sim.engine.exploration.split_lines import split_lines
 from sim.engine.programs import source
-from sim.marks import calls_the_program
+from sim.interpreter.function_marks import calls_the_program
 from sim.probes.own_code import is_library, is_own, outwards
 
 

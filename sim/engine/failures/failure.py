@@ -7,7 +7,7 @@ from types import FrameType
 
 from sim.engine.failures.advice import advice_on, rejected_callback
 from sim.engine.failures.missing_names import names_for_programs
-from sim.error_text import error_text
+from sim.interpreter.exception_text import error_text
 
 _MODEL = Path(__file__).parents[2]
 

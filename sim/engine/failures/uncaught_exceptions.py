@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from sim.engine.failures.failure import place_of
-from sim.error_text import error_text
+from sim.interpreter.exception_text import error_text
 
 Tell = Callable[[str], None]
 

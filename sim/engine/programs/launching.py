@@ -9,9 +9,9 @@ from sim.engine.programs.program import ProgramOutcome, ProgramSpec
 from sim.engine.programs.programs import ProgramSupervisor, RunningProgram
 from sim.engine.programs.starting import ProgramStarter
 from sim.launch import LaunchRun, OnOutput, ProcessSpec, RunningProcess
+from sim.quantities.nanoseconds import wait_ns
 from sim.shell import OnExit
 from sim.trace.events import Printed
-from sim.units import wait_ns
 
 
 class ModelLaunch:

@@ -20,7 +20,7 @@ from sim.engine.failures.failure import Failure, failure, place_of
 from sim.engine.programs.ending import run_thread_exit_functions
 from sim.engine.programs.source import NothingToRunError, compiled, read_source
 from sim.engine.stdio.output import finish_lines
-from sim.error_text import error_line
+from sim.interpreter.exception_text import error_line
 from sim.ros.context.signals import deliver_sigint
 from sim.ros.middleware.process import Process, current_process, process_of
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from types import CodeType
 
-from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
+from sim.files.untrusted import MAX_PROGRAM_BYTES, read_bytes
 
 
 class NothingToRunError(Exception):
@@ -34,7 +34,7 @@ def read_source(path: Path) -> str:
         NothingToRunError: it cannot be read or is no text.
     """
     try:
-        data = read_bytes(path, MOST_OF_A_PROGRAM)
+        data = read_bytes(path, MAX_PROGRAM_BYTES)
     except OSError as error:
         raise NothingToRunError(f"{path.name} cannot be read: {error.strerror}") from None
     if b"\0" in data:

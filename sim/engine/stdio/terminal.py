@@ -24,11 +24,11 @@ from sim.engine.stdio.output import ProcessStream
 from sim.engine.stdio.polling import Polling
 from sim.engine.stdio.pseudo_terminal import PseudoTerminal
 from sim.engine.watchdogs.wait_descriptions import WaitProblem
-from sim.marks import waits_for_keyboard
+from sim.interpreter.function_marks import waits_for_keyboard
 from sim.probes.own_code import place_of_caller
+from sim.quantities.nanoseconds import wait_ns
 from sim.ros.middleware.process import Process, current_process
 from sim.trace.events import AnyEvent, KeyboardAsked, Notice, Reading, Severity, Typed
-from sim.units import wait_ns
 
 if TYPE_CHECKING:
     from typing_extensions import Buffer  # Python has it from 3.12 on

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from types import FrameType
 
 from sim.clock import RunClock
-from sim.marks import calls_the_program, waits_for_keyboard, waits_for_time
+from sim.interpreter.function_marks import calls_the_program, waits_for_keyboard, waits_for_time
 from sim.probes.own_code import is_own, outwards, place_of
 from sim.trace.events import AnyEvent, EntityId, Notice, NoticeKind, Severity
 

@@ -12,7 +12,7 @@ from typing import Any, TypeGuard
 
 import numpy as np
 
-from sim import plain_yaml
+from sim.files import plain_yaml
 from sim.interfaces.base import Message
 from sim.interfaces.field_types import FieldType, SequenceType
 

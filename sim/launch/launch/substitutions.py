@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, ClassVar
 
-from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
+from sim.files.untrusted import MAX_PROGRAM_BYTES, read_text
 from sim.launch.errors import unsupported
 from sim.launch.launch.conditions import evaluate_condition_expression
 from sim.launch.launch.launch_context import LaunchContext
@@ -178,7 +178,7 @@ class FileContent(Substitution):
     def perform(self, context: LaunchContext) -> str:
         path = Path(performed(context, self._path))
         try:
-            return read_text(path, MOST_OF_A_PROGRAM)
+            return read_text(path, MAX_PROGRAM_BYTES)
         except OSError as error:
             raise SubstitutionFailure(f"{path}: {error.strerror}") from None
 

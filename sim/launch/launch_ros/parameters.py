@@ -12,12 +12,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
-from sim import plain_yaml
+from sim.files import plain_yaml
+from sim.files.plain_yaml import YamlError
 from sim.launch.errors import LaunchFailure
 from sim.launch.launch.launch_context import LaunchContext
 from sim.launch.launch.substitution import Substitution, performed
 from sim.launch.launch_ros.parameter_descriptions import Parameter, ParameterFile, ParameterValue
-from sim.plain_yaml import YamlError
 
 _NAME = re.compile(r"[\w.~/-]+")
 _SCALARS = (bool, int, float, str)

@@ -5,10 +5,10 @@ import sys
 from collections.abc import Sequence
 from typing import cast
 
+from sim.quantities.nanoseconds import wait_ns
 from sim.ros.context.context import Context
 from sim.ros.middleware.process import current_process
 from sim.ros.naming.remapping import is_rule
-from sim.units import wait_ns
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import msgspec
 
 from sim.interfaces import copy_message
+from sim.quantities.nanoseconds import wait_ns
 from sim.ros.context.context import NODE_ENDED
 from sim.ros.entities.client_or_service import ClientOrService
 from sim.ros.entities.entity_handles import ClientHandle
@@ -18,7 +19,6 @@ from sim.ros.qos.qos import QoSProfile
 from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
 from sim.ros.scheduling.task import Future
 from sim.trace.events import EntityKind
-from sim.units import wait_ns
 
 if TYPE_CHECKING:
     from sim.ros.context.context import Context

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from sim.interfaces import copy_message
-from sim.marks import sends_responses
+from sim.interpreter.function_marks import sends_responses
 from sim.ros.entities.client_or_service import ClientOrService
 from sim.ros.entities.entity_handles import RequestId, ServiceHandle, ServiceInfo, answered
 from sim.ros.middleware.delivery import Request

@@ -14,7 +14,7 @@ from weakref import ref
 
 from sim.clock import PacedClock, RunClock
 from sim.probes.probe import Probe, SilentProbe
-from sim.profiles import Profile
+from sim.releases.profile import Profile
 from sim.ros.middleware.callback_overrides import CallbackOverrides
 from sim.ros.middleware.domain import domain_of_machine
 from sim.ros.middleware.host_lock import lock_on

@@ -7,10 +7,10 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from sim.interfaces import rcl_interfaces
+from sim.quantities.nanoseconds import wait_ns
 from sim.ros.parameters.parameter import Parameter, parameter_dict_from_yaml_file
 from sim.ros.qos.qos import QoSProfile, qos_profile_services_default
 from sim.ros.scheduling.task import Future
-from sim.units import wait_ns
 
 if TYPE_CHECKING:
     from sim.ros.entities.client import Client

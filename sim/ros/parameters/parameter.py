@@ -8,7 +8,7 @@ from enum import IntEnum
 from pathlib import Path
 from typing import Any, Generic, TypeAlias, TypeVar
 
-from sim import foreign_file
+from sim.files import untrusted
 from sim.interfaces import rcl_interfaces
 from sim.ros.parameters import yaml_files as parameter_yaml
 from sim.ros.parameters.yaml_files import ParameterYamlError, PlainValue
@@ -208,7 +208,7 @@ def parameter_dict_from_yaml_file(
         OSError: the file cannot be read.
         ParameterYamlError: it is no parameter file.
     """
-    by_node = parameter_yaml.read_nodes(foreign_file.read_text(Path(parameter_file)))
+    by_node = parameter_yaml.read_nodes(untrusted.read_text(Path(parameter_file)))
     chosen = ["/**"] if use_wildcard and "/**" in by_node else []
     for node in target_nodes or ():
         if node not in by_node:

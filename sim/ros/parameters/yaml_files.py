@@ -11,8 +11,8 @@ import re
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from sim import foreign_file, plain_yaml
-from sim.plain_yaml import YamlError
+from sim.files import plain_yaml, untrusted
+from sim.files.plain_yaml import YamlError
 
 PlainValue: TypeAlias = "bool | int | float | str | list[bool] | list[int] | list[float] | list[str] | None"
 """What a parameter can be set to in YAML; an empty list has no type and comes as None."""
@@ -58,7 +58,7 @@ def read_file(path: str) -> NodeParameters:
         ParameterYamlError: the file cannot be read, or is no parameter file.
     """
     try:
-        text = foreign_file.read_text(Path(path))
+        text = untrusted.read_text(Path(path))
     except OSError as error:
         raise ParameterYamlError(f"Error opening YAML file: {error.strerror}") from None
     except ValueError as error:

@@ -13,7 +13,7 @@ from enum import Enum, auto
 from itertools import count
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from sim.profiles import Profile
+from sim.releases.profile import Profile
 from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.wait_set import snapshot

@@ -15,8 +15,9 @@ from collections.abc import Coroutine, Iterable
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
-from sim.marks import sends_responses
+from sim.interpreter.function_marks import sends_responses
 from sim.probes.own_code import is_own
+from sim.quantities.nanoseconds import wait_ns
 from sim.ros.context.utilities import get_default_context, timeout_sec_to_nsec
 from sim.ros.logging.logger import get_logger
 from sim.ros.scheduling.clock_timers import ClockTimer, ClockTimers
@@ -27,7 +28,6 @@ from sim.ros.scheduling.task import Future, Task
 from sim.ros.scheduling.waitable_entity import WaitableEntity, ask_waitables
 from sim.ros.scheduling.waiting_ends import ExternalShutdownException
 from sim.trace.events import EntityKind
-from sim.units import wait_ns
 
 if TYPE_CHECKING:
     from sim.clock import AutoResetEvent

@@ -7,7 +7,7 @@ import weakref
 from collections.abc import Coroutine
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from sim.marks import calls_the_program
+from sim.interpreter.function_marks import calls_the_program
 from sim.ros.scheduling.entity import Entity, Taken
 from sim.ros.scheduling.handlers import Handler
 from sim.ros.scheduling.task import Task

@@ -8,8 +8,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from sim import plain_yaml
-from sim.atomic_file import write_atomically
+from sim.files import plain_yaml
+from sim.files.atomic import write_atomically
 from sim.ros.node.parameter_client import AsyncParameterClient
 from sim.ros.parameters.parameter import (
     Parameter,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from xml.etree import ElementTree
 
-from sim.foreign_file import read_text
+from sim.files.untrusted import read_text
 from sim.shell.parser import LineParser
 from sim.shell.programs import known_packages, package
 from sim.shell.session import CommandFailed, ShellSession

@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import Any
 
-from sim import plain_yaml
+from sim.files import plain_yaml
 from sim.interfaces.rosidl_runtime_py import message_to_csv, message_to_ordereddict
 from sim.ros.entities.client import Client
 from sim.ros.qos.qos import qos_profile_services_default

@@ -6,7 +6,7 @@ from argparse import Namespace
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from sim import plain_yaml
+from sim.files import plain_yaml
 from sim.interfaces.rosidl_runtime_py import message_to_csv, message_to_yaml
 from sim.ros.scheduling.task import Future
 from sim.shell.filters import add_filter_option, compiled_filter

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from sim.interfaces import Message
+from sim.quantities.nanoseconds import SECOND
 from sim.ros.qos.qos import qos_profile_sensor_data
 from sim.shell.filters import add_filter_option, compiled_filter
 from sim.shell.graph import known_topics, topic_type
@@ -16,7 +17,6 @@ from sim.shell.messages import message_class
 from sim.shell.parser import LineParser, positive_int
 from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.verb import Verb, add_graph_options
-from sim.units import SECOND
 
 _TYPE_POLL = 0.1
 _WINDOW = 10_000

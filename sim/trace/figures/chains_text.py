@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 
-from sim.durations import duration, timestamp
-from sim.plural import counted
+from sim.quantities.durations import duration, timestamp
+from sim.quantities.plural import counted
 from sim.trace.figures.chains import Chain, ChainError, ChainRun, chain
 from sim.trace.figures.statistics import distribution
 from sim.trace.model import Nanoseconds

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import NamedTuple, TypeAlias, TypeVar
 
-from sim.durations import duration
-from sim.plural import counted
+from sim.quantities.durations import duration
+from sim.quantities.plural import counted
 from sim.trace.figures.comparison import CallbackInRun, CallbackPair, Comparison, RunFigures
 from sim.trace.figures.statistics import Distribution
 from sim.trace.figures.summary import RobotFigures

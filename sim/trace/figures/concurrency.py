@@ -5,10 +5,10 @@ from collections.abc import Iterator, Sequence
 from enum import IntEnum
 from operator import itemgetter
 
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.incremental import Incremental, run_to_end, split
 from sim.trace.model import Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 _SETTLED_AFTER: Nanoseconds = SECOND
 """How far threads of a real-clock run may report out of order; younger calls are checked again."""

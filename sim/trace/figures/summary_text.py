@@ -3,8 +3,8 @@
 import math
 from collections.abc import Iterator, Sequence
 
-from sim.durations import duration
-from sim.plural import counted
+from sim.quantities.durations import duration
+from sim.quantities.plural import counted
 from sim.trace.figures.summary import CallbackFigures, RobotFigures, ServiceFigures, Summary
 
 HEADS = ("callback", "group", "calls", "running", "late by", "drops", "errors")

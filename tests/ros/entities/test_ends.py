@@ -8,7 +8,7 @@ import pytest
 from sim.clock import PacedClock
 from sim.interfaces import message, service
 from sim.probes.probe import SilentProbe
-from sim.profiles import Profile
+from sim.releases.profile import Profile
 from sim.ros.context.context import Context
 from sim.ros.entities.subscription import Subscription
 from sim.ros.entities.timer import Rate, Timer

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from cbtui.commands.options.changes import release_of
-from sim.profiles import DISTROS, Profile, UnknownProfileError
 from sim.real.programs import claimed_domain, unbootstrapped
+from sim.releases.distros import DISTROS, UnknownProfileError
+from sim.releases.profile import Profile
 from sim.trace.events import Notice, Printed, RunStarted
 from tests.real.programs import needs_ros
 from tests.ros.profiles.programs import DIFFERING, Differing

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from sim.quantities.nanoseconds import wait_ns
 from sim.ros.entities.subscription import Subscription
 from sim.ros.entities.type_support import check_is_valid_msg_type
 from sim.ros.middleware.delivery import Delivery
 from sim.ros.qos.qos import QoSProfile, as_profile
-from sim.units import wait_ns
 
 if TYPE_CHECKING:
     from sim.ros.node.node import Node

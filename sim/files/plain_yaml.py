@@ -1,4 +1,4 @@
-"""Plain values read from YAML and written as YAML, with PyYAML as ROS 2's own tools do."""
+"""Reads and writes plain values as YAML, with PyYAML as ROS 2's own tools do."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _DEEPEST: Final = 100
 
 
 class YamlError(ValueError):
-    """The text is no YAML, or YAML that is not taken; ``line`` counts from 1."""
+    """The text is not YAML, or is refused; ``line`` counts from 1."""
 
     def __init__(self, problem: str, line: int) -> None:
         super().__init__(f"{problem} (line {line})")
@@ -27,18 +27,18 @@ class YamlError(ValueError):
 
 
 def load(text: str) -> Any:
-    """The value that a text stands for, with the types of YAML 1.1; None if it is empty.
+    """Parse a YAML document with the types of YAML 1.1; an empty text gives None.
 
-    Only plain values are made, whatever the text's tags ask for.
+    Tags in the text do not make other values than plain ones.
 
     Raises:
-        YamlError: it is no YAML, more than one document, nested too deeply, or holds an alias.
+        YamlError: the text is not YAML, has more than one document, is nested too deeply, or has an alias.
     """
     return _read(text, _loader(), methodcaller("get_single_data"))
 
 
 def compose(text: str) -> Node | None:
-    """The text's tree of nodes; a scalar has a tag only if it is written there.
+    """Parse a text into PyYAML's tree of nodes; a scalar has a tag only if the text writes one.
 
     Raises:
         YamlError: as ``load``.
@@ -48,7 +48,7 @@ def compose(text: str) -> Node | None:
 
 
 def dump(values: Mapping[str, Any], *, flow_style: bool = False) -> str:
-    """Dictionaries, lists and plain values in them as YAML, keys in order; on one line if ``flow_style``."""
+    """Write dictionaries, lists and plain values as YAML, keys in order; on one line if ``flow_style``."""
     import yaml
 
     return yaml.dump(
@@ -61,7 +61,7 @@ def dump(values: Mapping[str, Any], *, flow_style: bool = False) -> str:
     )
 
 
-# Loading PyYAML takes longer than most programs that read no YAML would care to wait.
+# PyYAML is imported when it is first used: the import takes long, and most programs read no YAML.
 
 
 @cache
@@ -76,7 +76,7 @@ def _untyped_loader() -> Any:
     loader_class = _loader()
 
     class UntypedLoader(loader_class):  # type: ignore[misc, valid-type]
-        """Leaves it to the reader to tell numbers and truth values from texts."""
+        """Gives scalars no type of their own: the caller tells numbers and booleans from texts."""
 
         def resolve(self, kind: type[Node], value: str | None, implicit: object) -> str:
             return ""
@@ -89,7 +89,7 @@ def _dumper() -> type[SafeDumper]:
     from yaml import SafeDumper
 
     class Dumper(SafeDumper):
-        """Writes the dictionaries that messages are made into as any other."""
+        """Writes an ordered dictionary, which messages are turned into, as a plain mapping."""
 
     Dumper.add_representer(
         OrderedDict, lambda dumper, value: dumper.represent_mapping("tag:yaml.org,2002:map", value.items())
@@ -101,7 +101,7 @@ def _read(text: str, loader_class: Any, result_of: Callable[[Any], Any]) -> Any:
     import yaml
 
     def line(index: int) -> int:
-        # libyaml finds the end of a text one line below its last.
+        # libyaml places the end of a text one line below its last line.
         return min(index + 1, max(1, len(text.splitlines())))
 
     try:
@@ -116,7 +116,7 @@ def _read(text: str, loader_class: Any, result_of: Callable[[Any], Any]) -> Any:
         problem = error.problem or error.context or "it is no YAML"
         raise YamlError(problem, 1 if mark is None else line(mark.line)) from None
     except yaml.reader.ReaderError as error:
-        # The position counts characters or bytes, as the loader has it.
+        # The C loader's position counts bytes, the other one's counts characters.
         before = text.encode(errors="replace")[: error.position]
         raise YamlError(error.reason, line(before.count(b"\n"))) from None
     except YamlError:
@@ -126,7 +126,7 @@ def _read(text: str, loader_class: Any, result_of: Callable[[Any], Any]) -> Any:
 
 
 def _check(text: str, loader_class: Any) -> None:
-    """Refuse what could make a small text into a huge or endless value."""
+    """Refuse aliases and deep nesting, by which a small text can become a huge or endless value."""
     import yaml
 
     depth = 0
@@ -140,5 +140,5 @@ def _check(text: str, loader_class: Any) -> None:
         elif isinstance(event, yaml.CollectionEndEvent):
             depth -= 1
         if depth > _DEEPEST:
-            # libyaml refuses what is nested far deeper in the same words.
+            # libyaml has the same words for its own, far higher limit.
             raise YamlError("exceeded maximum nesting depth", line)

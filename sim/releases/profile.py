@@ -1,68 +1,46 @@
 """What differs between releases of rclpy, each as a named behaviour with its source.
 
 A profile is a distribution of ROS 2 at a patch of rclpy. ``#1469`` and the like are pull requests and issues
-of ros2/rclpy; the notes of its releases tell which patch has them. Jazzy 7.1.5 and Kilted 9.1.2 were
-run, too: ``tests/ros/profiles`` has a program for each behaviour in which they differ. (Jazzy's wheels call
-themselves 7.1.6; their rclpy says 7.1.5, and has nothing of what the notes of 7.1.6 list.) Humble and Lyrical
-follow source and release notes alone.
+of ros2/rclpy; its release notes name the patch that has them. Jazzy 7.1.5 and Kilted 9.1.2 were also run:
+``tests/ros/profiles`` has a program for each behaviour in which they differ. (Jazzy's wheels call themselves
+7.1.6; their rclpy says 7.1.5, and has no change that the notes of 7.1.6 list.) Humble and Lyrical follow
+source and release notes alone.
 
 Known, but not modelled: before #1469 a callback that waits for a worker is handed over again whenever the
-executor wakes. A program sees it only by chance: by exceptions that come out twice, or earlier, and by a
-second worker for a single timer. ``with`` blocks of ``rclpy.init()``, of nodes and of what they make came
-with Kilted (#1291 to #1298), and raise TypeError before; here every release has them. None has what Kilted
-added besides: content filters of subscriptions, introspection of actions, ``rosout_qos_profile``.
+executor wakes. A program notices this only by chance: an exception comes out twice or earlier, or a second
+worker takes a single timer. ``with`` blocks of ``rclpy.init()``, of nodes and of their entities came with
+Kilted (#1291 to #1298), and raise TypeError before; here every release has them. No release here has
+Kilted's content filters of subscriptions, introspection of actions and ``rosout_qos_profile``.
 """
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
 
-DISTROS = {"humble": "3.3.22", "jazzy": "7.1.12", "kilted": "9.1.2", "lyrical": ""}
-"""The distributions, and the patch that is meant where none is named; those of Lyrical are not known."""
-
-RUN = ("jazzy", "kilted")
-"""Those of which real rclpy was run beside the model."""
-
-
-class UnknownProfileError(ValueError):
-    """There is no such distribution, or no such patch of it; the text is a sentence on that."""
+from sim.releases.distros import DISTROS, distro_and_patch
 
 
 @dataclass(frozen=True)
 class Profile:
-    """A distribution, and a patch of its rclpy. Its properties are the behaviours."""
+    """A distribution at a patch of its rclpy; each property is a behaviour."""
 
     distro: str = "jazzy"
     patch: str = DISTROS["jazzy"]
 
     @classmethod
     def named(cls, name: str) -> Profile:
-        """The profile of a name such as ``kilted`` or ``jazzy@7.1.5``.
+        """Return the profile of a name such as ``kilted`` or ``jazzy@7.1.5``.
 
         Raises:
-            UnknownProfileError: there is none.
+            UnknownProfileError: there is no such distribution or patch.
         """
-        distro, _, patch = name.partition("@")
-        usual = DISTROS.get(distro)
-        if usual is None:
-            *others, last = DISTROS
-            give = f"{', '.join(others)} or {last}"
-            raise UnknownProfileError(f"{distro!r} is no distribution; give {give}")
-        if "@" not in name:
-            return cls(distro, usual)
-        line = usual.rpartition(".")[0]
-        if not line:
-            raise UnknownProfileError(f"which patches {distro} has is not known; give {distro} alone")
-        if not re.fullmatch(rf"{re.escape(line)}\.\d{{1,4}}", patch):
-            raise UnknownProfileError(f"{distro} has no rclpy {patch!r}; give one like {distro}@{usual}")
-        return cls(distro, patch)
+        return cls(*distro_and_patch(name))
 
     def __str__(self) -> str:
         return f"{self.distro}@{self.patch}" if self.patch else self.distro
 
     def _since(self, **first: str) -> bool:
-        """Whether a change is in; ``first`` has the first patch of a distribution with it, "" for all."""
+        """Return whether a change is in; ``first`` has its first patch in each distribution, "" for all."""
         if self.distro not in first:
             return False
         return not self.patch or _numbers(self.patch) >= _numbers(first[self.distro])
@@ -71,7 +49,7 @@ class Profile:
 
     @property
     def newest_task_first(self) -> bool:
-        """Tasks that are due together run in the reverse order of their making.
+        """Tasks that are due together run in the reverse of the order in which they were created.
 
         Source: #1304 has them run in order, from Kilted on; #1560 says that Jazzy keeps the order it had.
         """
@@ -79,17 +57,17 @@ class Profile:
 
     @property
     def resumes_at_once(self) -> bool:
-        """What awaits a future goes on when that is done, in the executor whose the future is then.
+        """A coroutine that awaits a future resumes when it is done, in the executor that has the future then.
 
-        Else it is asked again whenever its own executor has been woken. Source: #1469.
+        Else its own executor polls it after each wake-up. Source: #1469.
         """
         return self._since(humble="3.3.21", jazzy="7.1.9", kilted="9.1.4", lyrical="")
 
     @property
     def loses_errors_after_await(self) -> bool:
-        """What a coroutine raises after an await does not come out of a single-threaded ``spin``.
+        """An error that a coroutine raises after an await does not come out of a single-threaded ``spin``.
 
-        Source: #1642, which came with #1469 and is mended by #1643.
+        Source: #1642, which came with #1469 and is fixed by #1643.
         """
         return self.resumes_at_once and not self._since(humble="3.3.22", lyrical="")
 
@@ -97,12 +75,12 @@ class Profile:
 
     @property
     def refuses_second_spin(self) -> bool:
-        """Who spins an executor that spins, in a callback or another thread, gets an error. Source: #1510."""
+        """A second spin of an executor, in a callback or another thread, raises an error. Source: #1510."""
         return self._since(jazzy="7.1.9", kilted="9.1.5", lyrical="")
 
     @property
     def wakes_once_for_a_future(self) -> bool:
-        """``spin_until_future_complete`` leaves one task that wakes it, not one for each callback it ran.
+        """``spin_until_future_complete`` leaves one task that wakes it, not one for each callback run.
 
         Source: #1374.
         """
@@ -110,12 +88,12 @@ class Profile:
 
     @property
     def keeps_attached_nodes(self) -> bool:
-        """``rclpy.spin_once`` and its like let go only of a node that they added. Source: #1316, #1446."""
+        """``rclpy.spin_once`` and its like remove only a node that they added. Source: #1316, #1446."""
         return self._since(humble="3.3.17", jazzy="7.1.5", kilted="", lyrical="")
 
     @property
     def warns_of_one_thread(self) -> bool:
-        """A ``MultiThreadedExecutor`` with one thread warns. Source: run on Humble 3.3, which does not."""
+        """A ``MultiThreadedExecutor`` with one thread warns. Source: Humble 3.3, as run, does not."""
         return self._since(jazzy="", kilted="", lyrical="")
 
     @property
@@ -132,7 +110,7 @@ class Profile:
 
     @property
     def ends_nodes_with_context(self) -> bool:
-        """Shutting a context down destroys its nodes; a signal does not. Source: #1298."""
+        """``shutdown`` of a context destroys its nodes; a signal does not. Source: #1298."""
         return self._since(kilted="", lyrical="")
 
     @property
@@ -145,9 +123,9 @@ class Profile:
 
     @property
     def refuses_transitions(self) -> bool:
-        """A transition that a life cycle's state does not have is answered with an error.
+        """A transition that the current life-cycle state does not allow returns an error.
 
-        Else RCLError comes out of who asks; where a service asks, out of ``spin``. Source: #1319.
+        Else the call raises RCLError; if a service asked for it, ``spin`` raises. Source: #1319.
         """
         return self._since(kilted="", lyrical="")
 
@@ -160,14 +138,14 @@ class Profile:
 
     @property
     def call_raises_timeout(self) -> bool:
-        """``Client.call`` raises TimeoutError when time runs out; else it returns None. Source: #1271."""
+        """``Client.call`` raises TimeoutError at its timeout; else it returns None. Source: #1271."""
         return self._since(kilted="", lyrical="")
 
     @property
     def gives_timer_info(self) -> bool:
         """A timer's callback may ask for a ``TimerInfo``.
 
-        A timer without a callback fails with UnboundLocalError then, for its parameters are looked for.
+        A timer without a callback then fails with UnboundLocalError, as rclpy reads its parameters.
         Source: #1292.
         """
         return self._since(kilted="", lyrical="")
@@ -177,7 +155,7 @@ class Profile:
         """A timer that is cancelled while its call waits for a worker is not called.
 
         Else ``spin`` raises, the timer is never called again, and its group stays held.
-        Source: #1488, #1487 for Jazzy and #1486 for Humble, whose patch is placed by its date; run on both.
+        Source: #1488, #1487 for Jazzy and #1486 for Humble, whose patch follows from its date; run on both.
         """
         return self._since(humble="3.3.18", jazzy="7.1.6", kilted="", lyrical="")
 

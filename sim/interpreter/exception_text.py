@@ -1,4 +1,4 @@
-"""What an exception says, whatever it does when it is asked."""
+"""An exception as text, also when its own ``__str__`` fails."""
 
 
 def error_line(error: BaseException) -> str:
@@ -7,8 +7,8 @@ def error_line(error: BaseException) -> str:
 
 
 def error_text(error: BaseException) -> str:
-    """Return an exception's text; for one that cannot give it, what Python prints in its place."""
+    """Return an exception's text; if ``__str__`` fails, what Python prints in its place."""
     try:
         return str(error)
-    except Exception:  # noqa: BLE001 -- programs make exceptions of their own, and mistakes in them
+    except Exception:  # noqa: BLE001 -- a program's own exceptions may have faults
         return "<exception str() failed>"

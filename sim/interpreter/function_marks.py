@@ -1,6 +1,6 @@
-"""Marks on functions: a thread that is looked at from outside tells by its frames what it does.
+"""Marks on functions, by which another thread's stack shows what that thread does.
 
-A mark is a decorator. It changes nothing about the function, so that it costs nothing when that is called.
+A mark is a decorator that returns the function unchanged, so that a call costs no more.
 """
 
 from collections.abc import Callable
@@ -12,7 +12,7 @@ FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 
 
 class FunctionMark:
-    """Functions that do one kind of thing; ``frame in mark`` tells whether a frame runs one of them."""
+    """A set of functions of one kind; ``frame in mark`` tells whether a frame runs one of them."""
 
     def __init__(self) -> None:
         self._codes: set[CodeType] = set()
@@ -26,16 +26,16 @@ class FunctionMark:
         return frame.f_code in self._codes
 
     def raised(self, error: BaseException) -> bool:
-        """Whether one of them raised an exception, and nothing that it called."""
+        """Return whether a marked function itself raised an exception, not a function that it called."""
         frames = [frame for frame, _ in walk_tb(error.__traceback__)]
         return frames != [] and frames[-1] in self
 
 
 calls_the_program = FunctionMark()
-"""Calls a callback or a task that the program wrote."""
+"""Functions that call a callback or a task of the program."""
 waits_for_time = FunctionMark()
-"""Waits for time to pass."""
+"""Functions that wait for time to pass."""
 waits_for_keyboard = FunctionMark()
-"""Waits for what is typed at the run's terminal."""
+"""Functions that wait for input from the run's terminal."""
 sends_responses = FunctionMark()
-"""Sends what a service's callback returned, and raises a TypeError if that is no response."""
+"""Functions that send what a service's callback returned, and raise a TypeError if it is not a response."""

@@ -1,6 +1,6 @@
-"""Lengths and moments of a run's time as text, for people."""
+"""Durations and moments of a run as text for people."""
 
-from sim.units import SECOND
+from sim.quantities.nanoseconds import SECOND
 
 _FORMS = (
     (99_500, 1_000, 0, "µs"),
@@ -9,11 +9,11 @@ _FORMS = (
     (99_950_000_000, SECOND, 1, "s"),
     (599_500_000_000, SECOND, 0, "s"),
 )
-"""Lengths below the first of each are written in a unit, with so many decimals."""
+"""For each: the durations below this limit (ns), the unit (ns), its decimals and its name."""
 
 
 def duration(length: int) -> str:
-    """A length of time (nanoseconds) in few characters: ``12 µs``, ``0.8 ms``, ``9.9 s``, ``12 min``."""
+    """Return a duration (nanoseconds) in few characters: ``12 µs``, ``0.8 ms``, ``9.9 s``, ``12 min``."""
     if length == 0:
         return "0 s"
     for limit, unit, decimals, name in _FORMS:
@@ -23,5 +23,5 @@ def duration(length: int) -> str:
 
 
 def timestamp(at: int) -> str:
-    """A moment of a run (nanoseconds), to the millisecond: ``12.345 s``."""
+    """Return a moment of a run (nanoseconds) to the millisecond: ``12.345 s``."""
     return f"{at / SECOND:.3f} s"

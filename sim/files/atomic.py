@@ -1,4 +1,4 @@
-"""Writes files atomically: after a full disk, Ctrl-C or another failure the file is as it was before."""
+"""Writes files atomically: after a full disk, Ctrl-C or another failure the old file is still there."""
 
 import errno
 import os
@@ -15,14 +15,14 @@ _DEVICES = Path("/dev")
 def atomic_file(
     path: Path, *, replace: bool = True, follow: bool = True, mode: int = 0o666
 ) -> Iterator[BinaryIO]:
-    """A file to write to, which replaces ``path`` once it is complete, and is removed if anything is raised.
+    """Open a file that replaces ``path`` at the end of the block, or is removed if the block raises.
 
     An existing file is replaced only with ``replace``, and keeps its permissions; a new one gets ``mode``,
-    less the bits that the process masks. A link is followed, or replaced itself without ``follow``. Pipes
+    less the bits of the process's umask. A link is followed, or replaced itself without ``follow``. Pipes
     and devices are written to directly.
 
     Raises:
-        FileExistsError: there is such a file, and it is not to be replaced.
+        FileExistsError: ``path`` exists, and ``replace`` is False.
         OSError: the file cannot be written.
     """
     target = Path(os.path.realpath(path)) if follow else path
@@ -51,6 +51,6 @@ def atomic_file(
 
 
 def write_atomically(path: Path, content: bytes, **how: Any) -> None:
-    """Write a file as ``atomic_file`` does, which takes ``how``."""
+    """Write a file through ``atomic_file``, which gets the options ``how``."""
     with atomic_file(path, **how) as file:
         file.write(content)

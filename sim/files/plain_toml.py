@@ -5,26 +5,26 @@ import tomllib
 from typing import Any
 
 _DEEPEST = 32
-"""Parts of a key, and tables and lists inside each other."""
+"""Limit for the parts of a key, and for tables and lists inside each other."""
 _PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+"""
 _LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:\.[ \t]*+{_PART}){{{_DEEPEST}}}")
-"""For each part of a key, ``tomllib`` keeps all parts before: 100 kB of them would take 10 GB."""
+"""For each part of a key ``tomllib`` keeps all parts before it: a key of 100 kB would take 10 GB."""
 
 
 class DeepTomlError(tomllib.TOMLDecodeError):
     """A document is nested too deeply."""
 
     def __init__(self, text: str) -> None:
-        # Python 3.14 wants the document and a position, which not everything here has.
+        # TOMLDecodeError asks for the document and a position from Python 3.14 on; not every fault has one.
         ValueError.__init__(self, text)
 
 
 def load(text: str) -> dict[str, Any]:
-    """The table that a text stands for.
+    """Parse a TOML document.
 
     Raises:
-        tomllib.TOMLDecodeError: it is no TOML, or nested too deeply (`DeepTomlError`).
-        ValueError: it holds a number that Python does not read.
+        tomllib.TOMLDecodeError: the text is not TOML, or is nested too deeply (`DeepTomlError`).
+        ValueError: a number in it has more digits than Python reads.
     """
     if found := _LONG_KEY.search(text):
         line = text.count("\n", 0, found.start()) + 1

@@ -1,0 +1,1 @@
+"""Lengths of time and counts of things, as numbers and as text."""

@@ -1,0 +1,1 @@
+"""Releases of rclpy, and how their behaviour differs."""
