@@ -90,7 +90,7 @@ class ProcessSignals:
 
         def fire() -> None:
             if setting != self._setting:
-                return  # it was set again
+                return  # another setitimer() replaced this timer
             self._due_at = 0
             if self._interval:
                 self._set(moment + self._interval)
@@ -140,7 +140,7 @@ class ProcessSignals:
         return signal.Signals(number) if number else None
 
     def _deliver(self, number: int) -> bool:
-        """Handle a signal for this process; False if it has no handler."""
+        """Handle a signal for this process; False if the program has no handler for it."""
         if not callable(self.getsignal(number)):
             return False
         self._queue(number)
@@ -149,7 +149,7 @@ class ProcessSignals:
         return True
 
     def _on_outside_signal(self, number: int, _frame: FrameType | None) -> None:
-        """Handle a signal from outside, at any real time."""
+        """Queue a signal that another process sent."""
         self._clock.time.inject(lambda: self._queue(number))
 
     def _queue(self, number: int) -> None:
@@ -178,7 +178,7 @@ def _blocked() -> set[Any]:
 
 
 def _info(number: Any) -> Any:
-    """The result of ``sigwaitinfo`` for a signal from this process; None: no signal."""
+    """The result of ``sigwaitinfo`` for a signal from this process; None without a signal."""
     if number is None:
         return None
     return signal.struct_siginfo((number, 0, 0, os.getpid(), os.getuid(), 0, 0))

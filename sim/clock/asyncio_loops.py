@@ -1,4 +1,4 @@
-"""Event loops of asyncio that live on a run's clock, and the loops of programs that run on threads."""
+"""Event loops of asyncio on a run's clock, and a policy for programs that run on threads."""
 
 import asyncio
 import selectors
@@ -23,10 +23,10 @@ with warnings.catch_warnings(action="ignore"):  # deprecated since Python 3.14, 
 
 
 class ProgramLoops(_PythonsOwn):
-    """Python's policy, for programs whose main threads are threads of one process.
+    """Python's event loop policy for programs whose main threads are threads of one process.
 
-    Before Python 3.14 each of these gets a loop on first access, like a main thread. Loops wait on ``clock``:
-    on a virtual one they let its time pass, on a paced one they keep its pace.
+    Before Python 3.14 each of these threads gets a loop on first access. Loops wait on ``clock``: a virtual
+    clock's time passes meanwhile, and a paced clock's pace is kept.
     """
 
     def __init__(self, clock: RunClock) -> None:
@@ -35,24 +35,24 @@ class ProgramLoops(_PythonsOwn):
         self._thread = threading.local()
 
     def install(self) -> None:
-        """Make it the policy of this process."""
+        """Make this the policy of the process."""
         with warnings.catch_warnings(action="ignore"):
             asyncio.set_event_loop_policy(self)
 
     def get_event_loop(self) -> asyncio.AbstractEventLoop:
-        """The calling thread's loop; a main thread that has none gets one where Python gives it one."""
+        """The calling thread's loop; a program's main thread gets a new one where Python would make one."""
         is_given = sys.version_info < (3, 14) and threading.current_thread().name == _MAIN
         if is_given and not getattr(self._thread, "was_set", False):
             self.set_event_loop(self.new_event_loop())
         return super().get_event_loop()
 
     def set_event_loop(self, loop: asyncio.AbstractEventLoop | None) -> None:
-        """Make ``loop`` the calling thread's."""
+        """Make ``loop`` the calling thread's loop."""
         self._thread.was_set = True
         super().set_event_loop(loop)
 
     def new_event_loop(self) -> asyncio.AbstractEventLoop:
-        """A new loop on the calling thread's time."""
+        """A new loop that waits on the calling thread's time."""
         if isinstance(self._clock, VirtualClock) and self._clock.owns_current_thread():
             return VirtualEventLoop(self._clock)
         if isinstance(self._clock, PacedClock):
@@ -61,7 +61,7 @@ class ProgramLoops(_PythonsOwn):
 
 
 class VirtualEventLoop(asyncio.SelectorEventLoop):
-    """An event loop that waits in virtual time; in real time while it serves sockets or pipes."""
+    """An event loop that waits in virtual time, and in real time while it serves sockets or pipes."""
 
     def __init__(self, clock: VirtualClock) -> None:
         self._waiting = _VirtualSelector(clock)
@@ -95,7 +95,7 @@ class _PacedSelector(selectors.DefaultSelector):
 
 
 class _VirtualSelector(selectors.PollSelector):
-    """Waits on the clock only, unless it has more than the pipe by which a loop wakes itself."""
+    """Waits on the clock only, unless a program's file descriptors are registered."""
 
     def __init__(self, clock: VirtualClock) -> None:
         super().__init__()
@@ -103,12 +103,12 @@ class _VirtualSelector(selectors.PollSelector):
         self._signal: VirtualAutoResetEvent = clock.auto_reset_event()
 
     def wake(self) -> None:
-        """End the current wait, or the next one. Any thread may call it."""
+        """End the current wait, or the next one. Thread-safe."""
         self._signal.set()
 
     @property
     def reaches_outside(self) -> bool:
-        """Whether it also waits for the program's sockets or pipes."""
+        """Whether sockets or pipes of the program are registered, besides the pipe that wakes the loop."""
         return len(self.get_map()) > 1
 
     def select(self, timeout: float | None = None) -> _Ready:

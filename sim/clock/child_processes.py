@@ -84,6 +84,6 @@ class ChildProcesses:
 
 
 def _runs(pid: int) -> bool:
-    with suppress(ChildProcessError):  # it was waited for
+    with suppress(ChildProcessError):  # somebody has waited for it
         return _waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT) is None
     return False

@@ -1,8 +1,8 @@
 """Dates and clocks of a virtual run: ``datetime``, ``time.localtime`` and the clocks of the system.
 
-``datetime.datetime`` itself gets new ``now`` and ``utcnow``, so that whoever has imported the class, and each
-subclass, follows, and ``isinstance`` and ``pickle`` are as ever. Its dictionary is reached as CPython 3.11 to
-3.14 let it be reached.
+``datetime.datetime`` itself gets a new ``now`` and ``utcnow``: modules that have imported the class see them,
+subclasses inherit them, and ``isinstance`` and ``pickle`` work as before. The class's dictionary is reached
+in a way that works in CPython 3.11 to 3.14.
 """
 
 import ctypes
@@ -25,7 +25,7 @@ _OF_COMPUTING = ("CLOCK_PROCESS_CPUTIME_ID", "CLOCK_THREAD_CPUTIME_ID")
 
 
 def replace_dates(replacements: Replacements, outside: OutsideWork) -> None:
-    """Replace functions for dates and clocks by virtual time; CPU time is always 0."""
+    """Replace the functions for dates and clocks with virtual time; CPU time is always 0."""
     clock = replacements.clock
 
     def wall() -> int:
@@ -37,10 +37,9 @@ def replace_dates(replacements: Replacements, outside: OutsideWork) -> None:
     local, ascii_time, formatted = time.localtime, time.asctime, time.strftime
     replacements.put(time, "asctime", lambda moment=None: ascii_time(moment or local()))
     replacements.put(time, "strftime", lambda text, moment=None: formatted(text, moment or local()))
-    replacements.put(time, "process_time", lambda: 0.0)
-    replacements.put(time, "thread_time", lambda: 0.0)
-    replacements.put(time, "process_time_ns", lambda: 0)
-    replacements.put(time, "thread_time_ns", lambda: 0)
+    for name in ("process_time", "thread_time"):
+        replacements.put(time, name, lambda: 0.0)
+        replacements.put(time, f"{name}_ns", lambda: 0)
     replacements.put(os, "times", lambda: os.times_result((0.0, 0.0, 0.0, 0.0, clock.now() / SECOND)))
     usage = resource.getrusage
 

@@ -15,10 +15,10 @@ class Deadlines:
     """A heap of deadlines; equal ones are in order of registration."""
 
     def __init__(self) -> None:
-        # Called in every wait, so they are bound C functions.
+        # Every wait calls these, so they are bound C functions.
         self._heap: list[Entry] = []
         self.add: Callable[[Entry], None] = partial(heappush, self._heap)
-        """Adds a moment, the number of the wait, and the thread or action."""
+        """Adds a deadline: its time, the number of the wait, and the thread or action."""
         self.take: Callable[[], Entry] = partial(heappop, self._heap)
         """Removes and returns the first entry; call ``first`` before."""
         self.number: Callable[[], int] = count(1).__next__
@@ -35,13 +35,9 @@ class Deadlines:
         return None
 
     def first_is_thread(self) -> bool:
-        """Whether a thread waits for the earliest moment; call ``first`` before."""
+        """Whether a thread waits for the earliest deadline; call ``first`` before."""
         return isinstance(self._heap[0][2], VirtualThread)
 
     def later_than(self, now: int) -> list[int]:
-        """Return all moments after ``now``."""
+        """Return all deadlines after ``now``."""
         return [moment for moment, *_ in self._heap if moment > now]
-
-    def clear(self) -> None:
-        """Remove all deadlines."""
-        self._heap.clear()

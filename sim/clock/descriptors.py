@@ -1,4 +1,4 @@
-"""Waits for files, pipes and sockets on virtual time: each checks first whether it would block."""
+"""Waits for files, pipes and sockets on virtual time: each call checks first whether it would block."""
 
 import contextlib
 import fcntl
@@ -20,7 +20,7 @@ _poll = select.poll
 
 
 def replace_descriptors(replacements: Replacements, outside: OutsideWork) -> None:
-    """Let virtual time pass as real time during waits for descriptors, while other threads go on."""
+    """Replace waits for descriptors: virtual time passes as real time meanwhile, and other threads run."""
     _replace_polls(replacements, outside)
     _replace_files(replacements, outside)
     _replace_sockets(replacements, outside)
@@ -58,7 +58,7 @@ def _replace_polls(replacements: Replacements, outside: OutsideWork) -> None:
     kinds: Any = selectors
     selects.poll = kinds.PollSelector._selector_cls = Poll
     kinds.SelectSelector._select = staticmethod(select.select)
-    if not hasattr(select, "epoll"):  # Linux alone has it
+    if not hasattr(select, "epoll"):  # only Linux has it
         return
 
     class Epoll(_Wrapped):
@@ -77,7 +77,7 @@ def _replace_polls(replacements: Replacements, outside: OutsideWork) -> None:
 
 
 class _Wrapped:
-    """Wraps a polling object of the system, whose type allows no subclass."""
+    """Wraps a polling object of the system, whose type allows no subclasses."""
 
     make: Callable[..., Any]
 
@@ -155,7 +155,7 @@ def _replace_files(replacements: Replacements, outside: OutsideWork) -> None:
 
 
 def _may_block(descriptor: int) -> bool:
-    """Whether reading or writing may wait for somebody: a pipe, a socket or a terminal that blocks."""
+    """Whether reading or writing may wait: the descriptor is a blocking pipe, socket or terminal."""
     with contextlib.suppress(OSError):
         mode = os.fstat(descriptor).st_mode
         waits = stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode) or os.isatty(descriptor)

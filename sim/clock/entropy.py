@@ -1,4 +1,4 @@
-"""Randomness of a virtual run: the system's random numbers come from a seed, the same in each run."""
+"""Randomness of a virtual run: the system's random numbers come from a seed and are the same in every run."""
 
 import os
 import random
@@ -14,7 +14,7 @@ _SEED = 0
 
 
 def replace_entropy(replacements: Replacements, outside: OutsideWork) -> None:
-    """Replace ``os.urandom`` and its users, and reseed the generators that the system seeded."""
+    """Replace ``os.urandom`` and its users, and seed the generators that the system had seeded."""
     owns = replacements.clock.owns_current_thread
     source = random.Random(_SEED)
     generator: Any = random.Random
@@ -53,8 +53,8 @@ def replace_entropy(replacements: Replacements, outside: OutsideWork) -> None:
     random.seed(_SEED)
     numpy_random: Any = sys.modules.get("numpy.random")
     if numpy_random is not None:
-        numpy_random.seed(_SEED)  # imported later, it seeds itself from os.urandom
+        numpy_random.seed(_SEED)  # if it is imported later, it is seeded from os.urandom
     uuids: Any = uuid
     uuids._generate_time_safe = None  # uuid1 then asks time.time_ns, random and getnode
-    node = source.getrandbits(48) | 1 << 40  # as RFC 4122 has it for a random node
+    node = source.getrandbits(48) | 1 << 40  # the multicast bit of a random node, as in RFC 4122
     replacements.put(uuid, "getnode", lambda: node)

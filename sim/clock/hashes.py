@@ -14,7 +14,7 @@ from sim.clock.virtual import VirtualClock
 
 
 def _numbering(clock: VirtualClock) -> Callable[[Any], int]:
-    """A ``__hash__``: a number assigned at the first call on the clock; elsewhere Python's own hash."""
+    """A ``__hash__`` that numbers objects at their first call on the clock; elsewhere Python's own hash."""
     numbers = count(1)
 
     def number(self: Any) -> int:
@@ -27,17 +27,17 @@ def _numbering(clock: VirtualClock) -> Callable[[Any], int]:
 
 
 def number_threads(clock: VirtualClock) -> None:
-    """Give threads, and futures of pools, deterministic hashes."""
+    """Give threads and futures of pools deterministic hashes."""
     kinds: tuple[Any, ...] = (threading.Thread, concurrent.futures.Future)
     for kind in kinds:
         kind.__hash__ = _numbering(clock)
     futures: Any = concurrent.futures._base
-    futures.id = hash  # it takes the locks of several futures in the order of their ids
+    futures.id = hash  # this module takes the locks of several futures in the order of their ids
 
 
 def number_tasks(clock: VirtualClock) -> None:
-    """Give tasks and futures of asyncio deterministic hashes. Call it before they are imported by name."""
-    import asyncio  # takes long, and most programs do without
+    """Give tasks and futures of asyncio deterministic hashes. Call this before they are imported by name."""
+    import asyncio  # slow to import, and most programs do not use it
 
     for module, name in ((asyncio.futures, "Future"), (asyncio.tasks, "Task")):
         in_c: Any = getattr(module, name)

@@ -1,7 +1,7 @@
 """Imports on virtual time: there are no switch points during an import.
 
-An importing thread holds the interpreter's own lock of the module: another thread would wait for it while
-holding the baton. CPython 3.11 to 3.13 look up the function that loads a module each time.
+An importing thread holds the interpreter's lock of the module. Another thread would wait for this lock while
+it has the baton. CPython 3.11 to 3.13 look up the function that loads a module at every import.
 """
 
 import importlib
@@ -11,7 +11,7 @@ from sim.clock.replacing import Replacements
 
 
 def replace_imports(replacements: Replacements) -> None:
-    """Let each import run to its end, or to a wait, before other threads go on."""
+    """Let each import run to its end, or to a wait, before other threads run."""
     clock = replacements.clock
     machinery: Any = importlib
     bootstrap = machinery._bootstrap

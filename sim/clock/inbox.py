@@ -1,4 +1,4 @@
-"""Queues for what reaches a run from outside: actions of other threads, and inputs."""
+"""Queues of what comes from outside a run: actions of other threads, and inputs."""
 
 import threading
 from collections import deque
@@ -20,7 +20,7 @@ class Inbox:
         """Whether the run waits for its pace, for the end of a pause, or for something from outside."""
 
     def put(self, action: Callable[[], None], *, steers: bool = False) -> None:
-        """Queue an action; one that ``steers`` also runs while time is stopped within a moment."""
+        """Queue an action; an action that ``steers`` also runs while time is stopped within a moment."""
         self.waiting.append(_Steering(action) if steers else action)
         self.ring()
 
@@ -56,16 +56,16 @@ class Inbox:
 
 
 class Inputs:
-    """Inputs of a run: live ones, and those scheduled for a moment or one of its recesses."""
+    """Inputs of a run: live inputs, and inputs scheduled for a moment or for one of its recesses."""
 
     def __init__(self) -> None:
         self.given: deque[Callable[[], None]] = deque()
-        """Live inputs, for the end of the current moment or its recess; any thread may add one."""
+        """Live inputs for the end of the current moment, or for its recess. Any thread may append one."""
         self.scheduled: deque[tuple[int, int, Callable[[], None]]] = deque()
-        """With the moment, and the recess in it (0: its end), in their order."""
+        """Scheduled inputs in order: the moment, the recess in the moment (0: its end), and the action."""
 
     def take(self, now: int, recess: int) -> Callable[[], None] | None:
-        """Remove and return the input that is due at the end of the moment or in its recess, or None."""
+        """Remove and return the input due at the end of this moment, or in this recess; None without one."""
         if self.scheduled:
             moment, wanted, action = self.scheduled[0]
             if moment <= now and (not recess or 0 < wanted <= recess):

@@ -8,10 +8,10 @@ class AutoResetEvent(Protocol):
     """An auto-reset event: one thread waits, any thread sets it, and a successful wait clears it."""
 
     def wait(self, deadline: int | None) -> bool:
-        """Wait until the flag is set or the clock shows ``deadline`` nanoseconds; False: deadline passed."""
+        """Wait until the event is set or ``deadline`` (nanoseconds) passes; False: the deadline passed."""
 
     def set(self) -> None:
-        """Set the flag and let the waiting thread go on. Any thread may call it."""
+        """Set the event, and let the waiting thread continue. Thread-safe."""
 
 
 class RunClock(Protocol):
@@ -26,11 +26,11 @@ class RunClock(Protocol):
 
     @property
     def turn(self) -> int:
-        """Another number once the running thread has waited, or may have been left for another one."""
+        """A number that changes once the running thread has waited or may have been preempted."""
 
     @property
     def able(self) -> int:
-        """How many threads can run as soon as the running one lets them, where they take turns; else 0."""
+        """How many threads can run as soon as the running one waits; 0 if threads do not take turns."""
 
     def sleep(self, duration: int) -> None:
         """Let ``duration`` nanoseconds pass on the calling thread."""
@@ -39,35 +39,35 @@ class RunClock(Protocol):
         """A new event, not set."""
 
     def choose(self, number: int) -> int:
-        """Which of ``number`` equals gets what they all wait for: 0, the oldest, unless orders are explored.
+        """The index of the one of ``number`` equal waiters that is served: 0, the oldest, unless explored.
 
-        Call it with a lock held that keeps others from calling it.
+        Call it with a lock held that keeps other threads from calling it.
         """
 
     def start_thread(self, target: Callable[[], None], name: str) -> None:
-        """Run ``target`` on a new daemon thread called ``name`` that lives on this clock's time."""
+        """Run ``target`` on a new daemon thread called ``name``, on this clock's time."""
 
     def switch_point(self) -> None:
-        """Let another thread go first, where orders are explored and the schedule wants it.
+        """Let another thread run first, if orders are explored and the schedule decides so.
 
-        The calling thread must hold nothing that others wait for outside this clock.
+        The calling thread must hold nothing that other threads wait for outside this clock.
         """
 
     def poll(self) -> None:
-        """Tell that the calling thread asked for something that takes no time, and goes on at once.
+        """Report that the calling thread polls something and continues at once.
 
-        Where computing takes no time, a loop that does nothing else ends so once its deadline is over. The
-        calling thread must hold nothing that others wait for outside this clock.
+        If computing takes no time, a polling loop so reaches its deadline. The
+        calling thread must hold nothing that other threads wait for outside this clock.
         """
 
     def end_thread(self) -> None:
-        """Tell that the calling thread comes to its end now, without waiting: others are about to join it."""
+        """Report that the calling thread ends now, without waiting: other threads are about to join it."""
 
     def interrupt(self, thread: int) -> None:
-        """Raise KeyboardInterrupt in a thread (its ``get_ident``) once it waits or goes on, as Ctrl-C would.
+        """Raise KeyboardInterrupt in a thread (its ``get_ident``) once it waits or runs, as Ctrl-C does.
 
-        Any thread may call it; nothing happens if that thread has ended.
+        Thread-safe. Nothing happens if that thread has ended.
         """
 
     def call_at(self, time: int, action: Callable[[], None]) -> None:
-        """Run ``action`` at ``time`` nanoseconds, on whichever thread is at hand; it must not wait."""
+        """Run ``action``, which must not wait, at ``time`` nanoseconds, on any thread."""

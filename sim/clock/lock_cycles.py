@@ -1,4 +1,4 @@
-"""Cycles in the wait-for graph of threads: each waits for a lock that the next one holds, or for its end."""
+"""Cycles in the wait-for graph of threads: each waits for a lock of the next one, or for its end."""
 
 from sim.clock.virtual_threads import HeldResource, VirtualThread
 
@@ -6,8 +6,8 @@ from sim.clock.virtual_threads import HeldResource, VirtualThread
 def cycle_of(thread: VirtualThread) -> list[VirtualThread]:
     """The threads of the wait cycle through ``thread``, which comes first.
 
-    Empty if there is none. A thread that waits for its own lock counts only if the lock ``guards``: else the
-    lock may be a signal that another thread releases.
+    Empty without a cycle. A thread that waits for its own lock is a cycle only if the lock ``guards``:
+    otherwise the lock may be a signal that another thread releases.
     """
     chain = [thread]
     wanted: HeldResource | None = thread.wants

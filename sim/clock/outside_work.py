@@ -1,7 +1,7 @@
-"""Waits for what happens outside virtual time: processes, sockets, pipes, signals, locks of files.
+"""Waits for events outside virtual time: processes, sockets, pipes, signals, file locks.
 
-The thread polls in small steps of virtual time, which meanwhile passes as real time. So outside work takes as
-long as it lasts, rounded up to a step, and the other threads run at their moments.
+The waiting thread polls in small steps of virtual time, which passes as real time meanwhile. So outside work
+takes its real duration, rounded up to a step, and the other threads run at their times.
 """
 
 import math
@@ -10,8 +10,8 @@ from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
-from sim.clock.outside import start_outside
 from sim.clock.virtual import VirtualClock
+from sim.clock.virtual_threads import start_outside
 from sim.quantities.nanoseconds import wait_ns
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
@@ -19,10 +19,10 @@ _Thread = threading.Thread
 
 _FIRST_STEP = 1_000_000
 _LONGEST_STEP = 16_000_000
-"""Virtual nanoseconds between two polls; they double up to the longest."""
+"""Virtual nanoseconds between two polls; the step doubles up to the longest."""
 
 _GLANCE = 1_000
-"""Virtual nanoseconds of a failed poll, so that a polling loop ends."""
+"""Virtual nanoseconds that a failed poll takes, so that a polling loop ends."""
 
 Found = TypeVar("Found")
 
@@ -33,13 +33,13 @@ class OutsideWork:
     def __init__(self, clock: VirtualClock, tell: Callable[[str], None]) -> None:
         self.clock = clock
         self.tell = tell
-        """Called on the thread in question with what is not repeatable, as a clause."""
+        """Called on the thread that works outside, with a clause on what is not repeatable."""
         self._waits = 0
         self._others: list[Callable[[], bool]] = []
         clock.time.outside_works = self._goes_on
 
     def also(self, goes_on: Callable[[], bool]) -> None:
-        """Let time also pass as real time while ``goes_on`` returns true; it must not wait."""
+        """Let time also pass as real time while ``goes_on`` returns true; ``goes_on`` must not wait."""
         self._others.append(goes_on)
 
     def begin(self) -> None:
@@ -47,7 +47,7 @@ class OutsideWork:
         self.clock.time.pace.keep_real(True, self.clock.now())
 
     def glance(self) -> None:
-        """Let the time of one failed poll pass."""
+        """Let the duration of one failed poll pass."""
         self._pass(_GLANCE, math.inf)
 
     def wait(self, look: Callable[[], Found], timeout: float | None, what: str) -> Found:
@@ -81,7 +81,7 @@ class OutsideWork:
         def work() -> None:
             try:
                 result.append(function(*args, **named))
-            except BaseException as raised:  # noqa: BLE001 -- it is raised where it was called for
+            except BaseException as raised:  # noqa: BLE001 -- the waiting thread raises it
                 error.append(raised)
 
         start_outside(_Thread(target=work, name=what, daemon=True))
@@ -91,9 +91,9 @@ class OutsideWork:
         return result[0]
 
     def _pass(self, step: int, limit: float) -> int:
-        """Let a step of time pass, and the lag behind real time; return its length.
+        """Let time pass by a step, or by the lag behind real time; return the nanoseconds that passed.
 
-        It is at most ``limit``, and shorter if a signal came.
+        The step is at most ``limit``. It ends early if a signal comes.
         """
         before = self.clock.now()
         step = int(min(max(step, self.clock.time.pace.lag(before)), limit))

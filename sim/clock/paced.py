@@ -1,4 +1,4 @@
-"""Wall time that can be paused, slowed down and sped up: threads run freely, their waits are scaled."""
+"""Wall time that can be paused, slowed down and sped up. Threads run freely; their waits are scaled."""
 
 import math
 import threading
@@ -16,7 +16,7 @@ _allocate_lock = threading.Lock
 _Thread = threading.Thread
 
 _ASIDE = 20e-6
-"""Seconds for which a thread that asks for the time yields while the pace is being changed."""
+"""Seconds between two attempts to read the time while another thread changes the pace."""
 
 
 class PacedAutoResetEvent:
@@ -63,12 +63,12 @@ class PacedAutoResetEvent:
         if bell.locked():
             try:
                 bell.release()
-            except RuntimeError:  # another thread rang it between the question and the answer
+            except RuntimeError:  # another thread released it after locked() was read
                 return
 
     def ring(self) -> None:
-        """Have a waiting thread look at the clock again."""
-        with suppress(RuntimeError):  # it rings already
+        """Make a waiting thread read the clock again."""
+        with suppress(RuntimeError):  # it is released already
             self._bell.release()
 
 
@@ -83,7 +83,7 @@ class _Rate(NamedTuple):
 class PacedClock:
     """The machine's monotonic clock, counted from its creation, at a speed. Thread-safe.
 
-    A thread that computes cannot be stopped: it goes on while the clock is paused, and sees no time pass.
+    A thread that computes cannot be stopped: it continues while the clock is paused, and sees no time pass.
     """
 
     def __init__(self, speed: float = 1.0) -> None:
@@ -96,14 +96,14 @@ class PacedClock:
         self._speed = speed
         self._rate: _Rate | None = _Rate(0, self.origin, speed)
         self._began: Any = self.origin if speed == 1 else None
-        """Equal to ``origin`` while the clock has always had the machine's pace; None after the first change.
+        """``origin`` as long as the clock has always had the machine's pace; None after the first change.
         """
 
     def now(self) -> int:
         """Nanoseconds of this clock since its creation."""
         try:
             now: int = _monotonic_ns() - self._began
-        except TypeError:  # there is no quicker way to ask, and this is asked several times a callback
+        except TypeError:  # every callback reads the time several times, and a test for None would be slower
             return self._scaled_now()
         return now
 
@@ -114,7 +114,7 @@ class PacedClock:
                 _sleep(_ASIDE)
                 continue
             now = _at(rate, _monotonic_ns())
-            if self._rate is rate:  # else the clock may have stopped before that
+            if self._rate is rate:  # otherwise the clock may have been paused before that reading
                 return now
 
     def wall_seconds_until(self, moment: int) -> float:
@@ -137,7 +137,7 @@ class PacedClock:
         return PacedAutoResetEvent(self)
 
     def choose(self, number: int) -> int:
-        """The first."""
+        """0, the first."""
         return 0
 
     def start_thread(self, target: Callable[[], None], name: str) -> None:
@@ -145,27 +145,27 @@ class PacedClock:
         _Thread(target=target, name=name, daemon=True).start()
 
     def switch_point(self) -> None:
-        """Nothing: the machine switches at will."""
+        """Do nothing: the operating system switches threads at any time."""
 
     @property
     def turn(self) -> int:
-        """The millisecond: Python leaves a thread that does not wait after some of them."""
+        """The milliseconds so far: after a few of them Python switches to another thread."""
         return _monotonic_ns() // 1_000_000
 
     @property
     def able(self) -> int:
-        """None: threads do not take turns."""
+        """0: threads do not take turns."""
         return 0
 
     def poll(self) -> None:
-        """Nothing: asking takes time."""
+        """Do nothing: on this clock a poll takes time."""
 
     def end_thread(self) -> None:
-        """Nothing: a join waits until the thread has ended."""
+        """Do nothing: a join waits until the thread has ended."""
 
     def interrupt(self, thread: int) -> None:
-        """Have the interpreter raise it there; a wait without deadline is ended first."""
-        import ctypes  # seldom needed, and the console imports clocks as it starts
+        """Raise KeyboardInterrupt in the thread; a wait with a deadline ends first."""
+        import ctypes  # rarely needed, and the console imports this module as it starts
 
         ctypes.pythonapi.PyThreadState_SetAsyncExc(
             ctypes.c_ulong(thread), ctypes.py_object(KeyboardInterrupt)
@@ -202,7 +202,7 @@ class PacedClock:
     def _change_rate(self) -> None:
         before = self._rate
         assert before is not None
-        self._began = self._rate = None  # whoever reads the time from here on waits for the new rate
+        self._began = self._rate = None  # from here on readers of the time wait for the new rate
         wall = _monotonic_ns()
         run = _at(before, wall)
         speed = 0.0 if self._paused else self._speed

@@ -1,8 +1,8 @@
-"""Makes Python's own ways to wait follow a paced clock: sleep, time, timeouts of locks, threads and queues.
+"""Makes Python's waits follow a paced clock: sleep, time, timeouts of locks, threads and queues.
 
-They are replaced once, in the engine process, before the program is imported; the engine's own threads have
+They are replaced once, in the engine process, before the program is imported; the engine's own modules have
 kept the real ones. Events, conditions, semaphores, barriers, timers, queues and futures follow by
-themselves, since Python builds them from what is replaced here.
+themselves, since Python builds them on what is replaced here.
 """
 
 import queue
@@ -22,11 +22,11 @@ _RLock: Any = type(threading.RLock())
 _thread_join = threading.Thread.join
 
 _SLICE = 0.02
-"""Real seconds after which a timeout is looked at again: the pace may have changed."""
+"""Real seconds between two checks of a timeout: the pace may have changed."""
 
 
 def follow(clock: PacedClock) -> None:
-    """Replace Python's ways to wait by paced ones, for this process and for good."""
+    """Replace Python's waits with paced ones, for this process and permanently."""
     PacedLock._clock = PacedRLock._clock = clock
     _replace_time(clock)
     threading_module: Any = threading
@@ -51,7 +51,7 @@ class PacedLock:
         self.locked = lock.locked
         self.release = lock.release
         self.holder_ident = 0
-        """The identifier of the thread that took it last, by ``with``; of its holder while it is locked."""
+        """The ident of the thread that last took the lock by ``with``; 0 after ``acquire``."""
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock; False if it is not available at once (or within ``timeout`` seconds)."""
@@ -60,7 +60,7 @@ class PacedLock:
         else:
             taken = _within(timeout, self._clock, lambda seconds: self._lock.acquire(timeout=seconds))
         if taken:
-            self.holder_ident = 0  # it may be a signal, which another thread releases
+            self.holder_ident = 0  # the lock may be a signal, which another thread releases
         return taken
 
     def __enter__(self) -> bool:
@@ -75,7 +75,7 @@ class PacedLock:
 
     def _at_fork_reinit(self) -> None:
         lock: Any = self._lock
-        lock._at_fork_reinit()  # in place: conditions keep the bound release of this very lock
+        lock._at_fork_reinit()  # in place: conditions keep the bound release of this lock
 
 
 class PacedRLock(_RLock):  # type: ignore[misc]
@@ -83,7 +83,7 @@ class PacedRLock(_RLock):  # type: ignore[misc]
 
     _clock: PacedClock
     holder_ident = 0
-    """The identifier of the thread that took it last; of its holder while it is locked."""
+    """The ident of the thread that last took the lock."""
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock once more; False if it is not available at once (or within ``timeout`` seconds)."""
@@ -106,7 +106,7 @@ class PacedRLock(_RLock):  # type: ignore[misc]
 
 @waits_for_time
 def _within(timeout: float, clock: PacedClock, attempt: Callable[[float], bool]) -> bool:
-    """Try again and again, each time for some real seconds, until it works or the timeout is over."""
+    """Retry ``attempt``, each time for some real seconds, until it succeeds or the timeout is over."""
     deadline = clock.now() + wait_ns(timeout)
     while not attempt(min(max(clock.wall_seconds_until(deadline), 0.0), _SLICE)):
         if clock.now() >= deadline:

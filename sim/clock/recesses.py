@@ -1,26 +1,26 @@
-"""Recesses: where a moment of virtual time that does not end by itself can be stopped and given inputs."""
+"""Recesses: points in a long moment of virtual time at which a run can be paused and given inputs."""
 
 WAITS_TO_RECESS = 1_000
 """Waits between two recesses of a moment."""
 RECESS = 1_000
-"""Nanoseconds that a recess lasts at most; a float of the seconds since 1970 can tell 238."""
+"""Nanoseconds that a recess lasts at most; a float of the seconds since 1970 has steps of 238 ns."""
 
 
 class Recesses:
-    """Counts the waits of threads (``steps``), and of one moment its recesses and its waits for no time."""
+    """Counts the waits of threads (``steps``), and a moment's recesses and zero-length waits."""
 
     def __init__(self) -> None:
         self.steps = 0
         self.current = 0
-        """Which recess of its moment the run is in; 0: none."""
+        """The number of the recess that the run is in; 0 outside of a recess."""
         self.idle_waits = 0
         self._taken = 0
         self.due = WAITS_TO_RECESS
-        """How many steps it takes to the next recess."""
+        """The number of steps at which the next recess begins."""
 
     @property
     def idles(self) -> bool:
-        """Whether most of the waits in this moment up to its last recess were for no time."""
+        """Whether most waits in this moment, up to its last recess, had a length of 0."""
         return self.idle_waits * 2 > self._taken * WAITS_TO_RECESS
 
     def begin(self) -> int:
@@ -35,6 +35,6 @@ class Recesses:
         self.current = 0
 
     def begin_moment(self) -> None:
-        """Begin to count anew: time has passed."""
+        """Restart the counts: time has passed."""
         self._taken = self.idle_waits = 0
         self.due = self.steps + WAITS_TO_RECESS

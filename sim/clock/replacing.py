@@ -1,4 +1,4 @@
-"""Puts functions of virtual time in the place of Python's, for the threads that live on a clock."""
+"""Replaces functions of Python with those of virtual time, for the threads that live on a clock."""
 
 import sys
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from sim.clock.virtual import VirtualClock
 
 
 class Replacements:
-    """Functions that threads of a clock get in place of Python's own; other threads keep the real ones."""
+    """Functions that threads of a clock get instead of Python's own; other threads get the real ones."""
 
     def __init__(self, clock: VirtualClock) -> None:
         self.clock = clock
@@ -18,7 +18,7 @@ class Replacements:
         self._old: list[Any] = []
 
     def put(self, owner: Any, name: str, virtual: Callable[..., Any]) -> None:
-        """Have threads of the clock get ``virtual`` when they call ``owner.name``, if the system has it."""
+        """Make ``owner.name`` call ``virtual`` on threads of the clock, if the system has that function."""
         real = getattr(owner, name, None)
         if real is None:
             return
@@ -33,12 +33,12 @@ class Replacements:
             self.note(real, chosen)
 
     def note(self, real: Any, new: Any) -> None:
-        """A function of Python's has been replaced."""
+        """Remember that ``new`` has replaced a function of Python."""
         self._new[id(real)] = new
         self._old.append(real)  # while it is kept, nothing else gets its id
 
     def hand_on(self) -> None:
-        """Give the new functions to those modules of Python's that have imported the old ones by name."""
+        """Replace the functions in all standard modules that have imported them by name."""
         for module in tuple(sys.modules.values()):
             if getattr(module, "__name__", "").partition(".")[0] in sys.stdlib_module_names:
                 for name, value in tuple(vars(module).items()):

@@ -1,9 +1,9 @@
-"""Makes Python's own ways to wait live on a virtual clock: sleep, time, locks, threads and queues.
+"""Makes Python's waits use a virtual clock: sleep, time, locks, threads and queues.
 
-A program under the virtual clock uses ``time`` and ``threading`` as it always does. Their functions are
+A program uses ``time`` and ``threading`` as usual. Their functions are
 replaced once, in the engine process, before the program is imported; a thread that does not live on the
-clock (the engine's own) still gets the real ones. Events, conditions, semaphores, barriers, timers and
-queues follow by themselves, since Python builds them from the locks replaced here.
+clock (such as the engine's own) gets the real ones. Events, conditions, semaphores, barriers, timers and
+queues follow by themselves, since Python builds them on the locks replaced here.
 """
 
 import queue
@@ -22,12 +22,11 @@ from sim.clock.descriptors import replace_descriptors
 from sim.clock.entropy import replace_entropy
 from sim.clock.hashes import number_threads
 from sim.clock.imports import replace_imports
-from sim.clock.outside import start_outside
 from sim.clock.outside_work import OutsideWork
-from sim.clock.played import NO_ACCESSES
 from sim.clock.replacing import Replacements
+from sim.clock.schedule import NO_ACCESSES
 from sim.clock.virtual import VirtualAutoResetEvent, VirtualClock
-from sim.clock.virtual_threads import VirtualThread
+from sim.clock.virtual_threads import VirtualThread, start_outside
 from sim.quantities.nanoseconds import wait_ns
 
 _allocate_lock = threading.Lock
@@ -44,8 +43,8 @@ Number = TypeVar("Number", int, float)
 class VirtualLock:
     """``threading.Lock`` on virtual time: handed over in the order in which threads asked for it.
 
-    With a seed, any waiting thread may get it, or it is left free for the first to ask, and threads switch
-    before and after it. Threads outside the clock may share it; they wait in real time.
+    With a seed, any waiting thread may get the lock, or it stays free for the next thread that asks; and
+    threads switch before and after each use. Threads outside the clock may share it; they wait in real time.
     """
 
     _clock: VirtualClock
@@ -57,7 +56,7 @@ class VirtualLock:
         self.holder: VirtualThread | None = None
         self.guards = False
         self.taken_at: tuple[CodeType, int] | None = None
-        self._clock.did(self)
+        self._clock.record_use(self)
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock; False if it is not available at once (or within ``timeout`` seconds)."""
@@ -88,7 +87,7 @@ class VirtualLock:
     def _wait_in_line(self, deadline: int | None) -> bool:
         me = self._clock.current
         self._waiters.append(me)
-        if self._real.acquire(blocking=False):  # a thread outside let go of it before it could see us
+        if self._real.acquire(blocking=False):  # a thread outside released it before it saw this waiter
             self._waiters.remove(me)
             return True
         if deadline is None:
@@ -97,8 +96,8 @@ class VirtualLock:
         taken = False
         try:
             while not taken and self._clock.park(deadline) and self._granted is not me:
-                taken = self._real.acquire(blocking=False)  # it was left to whoever comes first
-        except BaseException:  # it was interrupted, or the run is over
+                taken = self._real.acquire(blocking=False)  # it is free for the first thread that asks
+        except BaseException:  # the wait was interrupted, or the run is over
             self._give_up_place(me)
             raise
         finally:
@@ -123,7 +122,7 @@ class VirtualLock:
         if not self._real.locked():
             raise RuntimeError("release unlocked lock")
         self.holder = None
-        self._clock.did(self)
+        self._clock.record_use(self)
         if not self._clock.owns_current_thread():
             self._real.release()
             if self._waiters:
@@ -149,8 +148,8 @@ class VirtualLock:
         self._clock.unpark(following)
 
     def _note_taking(self, frame: FrameType) -> None:
-        """Record which thread has the lock; ``frame`` is the call that took it, below the library's own."""
-        self._clock.did(self)
+        """Record which thread took the lock, and where: the first frame outside the library."""
+        self._clock.record_use(self)
         self.holder = self._clock.current
         code = frame.f_code
         self.guards = code is _ENTERS or code is _RLOCK_TAKES or code is _RLOCK_TAKES_AGAIN
@@ -161,16 +160,16 @@ class VirtualLock:
 
     @property
     def holder_ident(self) -> int:
-        """The identifier of the thread that alone can release it; 0 for none."""
+        """The ident of the only thread that can release the lock; 0 if any thread can."""
         return self.holder.ident if self.holder is not None and self.guards else 0
 
     def _is_owned(self) -> bool:
-        """Whether the calling thread has it, as conditions ask; not a poll."""
+        """Whether the lock is held, as conditions ask; this does not count as a poll."""
         self._clock.switch_point()
         return self._real.locked()
 
     def locked(self) -> bool:
-        """Whether a thread holds it."""
+        """Whether a thread holds the lock."""
         return self._real.locked()
 
     def __enter__(self) -> bool:
@@ -187,19 +186,15 @@ class VirtualLock:
         self.holder = None
 
 
-def _ignore_report(_what: str) -> None:
-    """Ignore a report."""
-
-
 _ENTERS = VirtualLock.__enter__.__code__
 _LIBRARY = {__file__, _RLOCK_TAKES.co_filename, queue.Queue.get.__code__.co_filename}
 
 
-def live_on(clock: VirtualClock, tell: Callable[[str], None] = _ignore_report) -> None:
-    """Replace Python's waits, its clocks and its random numbers for this process, for good.
+def live_on(clock: VirtualClock, tell: Callable[[str], None] = lambda _what: None) -> None:
+    """Replace Python's waits, clocks and random numbers in this process, permanently.
 
-    Call it on the clock's main thread. ``tell`` is called on a program's thread with a clause about each
-    thing it does that is not reproducible.
+    Call this on the clock's main thread. ``tell`` is called on a program's thread with a clause about each
+    action that is not reproducible.
     """
     VirtualLock._clock = clock
     replacements = Replacements(clock)
@@ -259,7 +254,7 @@ def _replace_locks() -> None:
     queues: Any = queue
     queues.SimpleQueue = queues._PySimpleQueue
     pools: Any = sys.modules.get("concurrent.futures.thread")
-    if pools is not None:  # its lock was made when it was imported
+    if pools is not None:  # the module made its lock when it was imported
         pools._global_shutdown_lock = VirtualLock()
 
 

@@ -1,11 +1,11 @@
-"""Virtual time: real threads of which one runs at a time, and time that jumps when none of them can.
+"""Virtual time: real threads of which one runs at a time, and a time that jumps when none can run.
 
-The threads pass a baton. A thread that waits hands it to the next one that can run, first come, first
-served; when nobody can, time jumps to the earliest deadline (ties: the one that began to wait first).
-Computing takes no virtual time, so the same inputs give the same run, whatever the machine does.
+The threads pass a baton. A thread that waits hands the baton to the next thread that can run, first come,
+first served. When no thread can run, time jumps to the earliest deadline (ties: the first that waited).
+Computing takes no virtual time, so the same inputs give the same run on every machine.
 
-A schedule may choose other orders, those that a real machine could come to: any thread that can run goes on,
-and one that runs is left at a switch point, in front of or behind a lock or a question for the time.
+A schedule may choose other orders that are possible on a real machine: any thread that can run continues,
+and the running thread may be preempted at a switch point, before or after it uses a lock or reads the time.
 """
 
 import threading
@@ -13,10 +13,8 @@ from collections import deque
 from collections.abc import Callable, Generator, Hashable, Set
 from contextlib import contextmanager
 
-from sim.clock.outside import start_outside
-from sim.clock.played import NO_ACCESSES, Accesses
-from sim.clock.schedule import FirstCome, Schedule
-from sim.clock.virtual_threads import VirtualThread
+from sim.clock.schedule import NO_ACCESSES, Accesses, Schedule
+from sim.clock.virtual_threads import VirtualThread, start_outside
 from sim.clock.virtual_time import VirtualTime
 from sim.quantities.nanoseconds import SECOND
 
@@ -25,15 +23,15 @@ _get_ident = threading.get_ident
 _Thread = threading.Thread
 
 VIRTUAL_EPOCH = 1_700_000_000 * SECOND
-"""Every virtual run begins at this moment (14 November 2023), so its stamps are the same each time."""
+"""The date at which every virtual run begins (14 November 2023), so that stamps are the same in every run."""
 
 
 class VirtualClock:
     """A deterministic clock and the scheduler of the threads that live on it.
 
-    The thread that makes it becomes its main thread. Only threads started through the clock (or adopted
-    by it) may wait on it; any other thread reaches into the run with ``time.inject``. Up to ``explored_from``
-    (nanoseconds) threads run first come, first served, from then on as the schedule says.
+    The thread that creates the clock becomes its main thread. Only threads that the clock started or adopted
+    may wait on it; any other thread acts on the run through ``time.inject``. Up to ``explored_from``
+    (nanoseconds) threads run first come, first served; then the schedule decides.
     """
 
     epoch = VIRTUAL_EPOCH
@@ -41,11 +39,11 @@ class VirtualClock:
     def __init__(
         self, speed: float | None = None, schedule: Schedule | None = None, explored_from: int = 0
     ) -> None:
-        self.schedule = self._schedule = schedule or FirstCome()
+        self.schedule = self._schedule = schedule or Schedule()
         self.explores = self.schedule.explores
-        """Whether its schedule chooses among the orders that are possible."""
+        """Whether the schedule explores other orders than first come, first served."""
         self.turn = 0
-        """How often the running thread has waited, or was left for another one."""
+        """How often a running thread has waited or was preempted."""
         self.no_switching = 0
         """How many callers have disabled thread switches at switch points."""
         self._ready: deque[VirtualThread] = deque()
@@ -53,19 +51,19 @@ class VirtualClock:
         self._deadlines = self.time.deadlines
         self._recesses = self.time.recesses
         self._threads: set[VirtualThread] = set()
-        self.on_lock_wait: Callable[[VirtualThread], None] = _ignore
-        """Called when a thread begins to wait without an end for a lock, or for another thread to end.
+        self.on_lock_wait: Callable[[VirtualThread], None] = lambda _thread: None
+        """Called when a thread starts to wait without a timeout for a lock or for the end of a thread.
 
-        It is called on that thread, and must not wait.
+        It is called on the waiting thread and must not wait.
         """
-        self.handle_signals: Callable[[], None] = _ignore
-        """Called on the main thread when it goes on after a wait."""
+        self.handle_signals: Callable[[], None] = lambda: None
+        """Called on the main thread when it continues after a wait."""
         self.current = VirtualThread("MainThread")
         self.current.is_main = True
         self.current.ident = _get_ident()
         self._threads.add(self.current)
         if explored_from:
-            self._schedule = FirstCome()
+            self._schedule = Schedule()
             self.call_at(explored_from, self._explore)
 
     def now(self) -> int:
@@ -74,39 +72,39 @@ class VirtualClock:
 
     @property
     def able(self) -> int:
-        """How many threads can run as soon as the running one lets them."""
+        """How many threads can run as soon as the running thread waits."""
         return len(self._ready)
 
     @property
     def threads(self) -> Set[VirtualThread]:
-        """The threads that live on it; to be asked for by the one that has the baton."""
+        """The threads that live on the clock. Only the thread that has the baton may read them."""
         return self._threads
 
     def sleep(self, duration: int) -> None:
         """Let ``duration`` virtual nanoseconds pass; 0 lets every other thread that can run go first."""
         deadline = self.time.now + max(duration, 0)
         while self.park(deadline) and self.time.now < deadline:
-            continue  # it handled a signal
+            continue  # the thread handled a signal
 
     def auto_reset_event(self) -> "VirtualAutoResetEvent":
-        """A new signal, not set."""
+        """A new event, not set."""
         return VirtualAutoResetEvent(self)
 
     def owns_current_thread(self) -> bool:
-        """Whether the calling thread lives on this clock and has the baton."""
+        """Whether the calling thread lives on this clock and has the baton. Thread-safe."""
         return self.current.ident == _get_ident()
 
     def start_thread(self, target: Callable[[], None], name: str) -> None:
-        """Run ``target`` on a new daemon thread; it comes after those that can run already."""
+        """Run ``target`` on a new daemon thread, after the threads that can run already."""
         thread = _Thread(target=self.adopt(target, name), name=name, daemon=True)
         start_outside(thread)
 
     def adopt(self, target: Callable[[], None], name: str) -> Callable[[], None]:
-        """Make room for one more thread and return what that thread has to run."""
+        """Register one more thread, and return the function that this thread has to run."""
         virtual = VirtualThread(name)
         self._threads.add(virtual)
         self._ready.append(virtual)
-        self.did(virtual)
+        self.record_use(virtual)
 
         def run() -> None:
             virtual.ident = _get_ident()
@@ -119,11 +117,11 @@ class VirtualClock:
         return run
 
     def call_at(self, time: int, action: Callable[[], None]) -> None:
-        """Run ``action`` when virtual time reaches ``time``, on whichever thread is at hand."""
+        """Run ``action`` when virtual time reaches ``time``, on any thread of the clock."""
         self._deadlines.add((max(time, self.time.now), self._deadlines.number(), action))
 
     def park(self, deadline: int | None) -> bool:
-        """Hand the baton on until unparked or until ``deadline``; True if unparked, which a signal does, too.
+        """Wait until ``unpark`` or ``deadline``; True if unparked. A signal also unparks the main thread.
 
         Raises:
             KeyboardInterrupt: the thread was interrupted.
@@ -146,9 +144,9 @@ class VirtualClock:
         return woken
 
     def poll(self) -> None:
-        """Count a question that was answered at once as a wait for no time; it is one if a recess is due.
+        """Count a poll as a wait of length 0; if a recess is due, the thread does wait.
 
-        The calling thread must hold nothing that others wait for outside this clock.
+        The calling thread must hold nothing that other threads wait for outside this clock.
         """
         if self.no_switching or not self.owns_current_thread():
             return
@@ -160,46 +158,46 @@ class VirtualClock:
             recesses.steps += 1
 
     def unpark(self, thread: VirtualThread) -> None:
-        """Let a parked thread run again, after those that can run already; else nothing happens."""
+        """Let a parked thread run, after the threads that can run already. Any other thread is left alone."""
         if thread.waiting:
             thread.waiting = False
             thread.woken = True
             self._ready.append(thread)
-            self.did(thread)
+            self.record_use(thread)
 
-    def did(self, what: Hashable) -> None:
-        """Tell the schedule that the running thread has done something with what others depend on."""
+    def record_use(self, what: Hashable) -> None:
+        """Tell the schedule that the running thread has used ``what``, which other threads depend on."""
         if self.explores and self.owns_current_thread():
-            self._schedule.did(self.current, what)
+            self._schedule.record_use(self.current, what)
 
     def hands_over(self) -> bool:
-        """Whether a released lock goes to a thread that waits for it, and is not left free."""
+        """Whether a released lock goes to a waiting thread; otherwise it stays free."""
         return self._schedule.hands_over()
 
     def choose(self, number: int) -> int:
-        """Which of ``number`` equals that wait for something gets it, from 0: the oldest, unless explored."""
+        """The index of the one of ``number`` equal waiters that is served: 0, the oldest, unless explored."""
         return self._schedule.choose(number)
 
     def switch_point(self, accesses: Accesses = NO_ACCESSES) -> None:
-        """Let another thread go first that can run, if the schedule wants it. Any thread may call this.
+        """Let another thread that can run go first, if the schedule decides so. Thread-safe.
 
-        Put it where a real machine could switch, and where the calling thread holds nothing that another one
-        would wait for outside this clock. ``accesses`` is what the next step touches, if it is one of the
-        program's own.
+        Call it where a real machine could switch threads, and where the calling thread holds nothing that
+        another one would wait for outside this clock. ``accesses`` is what the next step touches, if it is a
+        step of the program.
         """
         if not self.explores or self.no_switching or not self.owns_current_thread():
             return
         me = self.current
-        if (self._ready or accesses) and not me.stays and self._schedule.leaves(me, self._ready, accesses):
+        if (self._ready or accesses) and not me.stays and self._schedule.yields(me, self._ready, accesses):
             self._ready.append(me)
             self._hand_on(me)
 
     def end_thread(self) -> None:
-        """Have the calling thread run to its end from here, which it is near: others may join it for real."""
+        """Disable switch points for the calling thread, which ends now: others may join it in real time."""
         self.current.stays = True
 
     def interrupt(self, thread: int) -> None:
-        """Raise KeyboardInterrupt out of a thread's wait, its present or its next one."""
+        """Raise KeyboardInterrupt in a thread's present or next wait. Thread-safe."""
 
         def interrupt() -> None:
             for each in self._threads:
@@ -213,12 +211,12 @@ class VirtualClock:
             self.time.inject(interrupt)
 
     def halt(self) -> None:
-        """Let time stand right here, in the middle of this moment, until it is steered on.
+        """Pause time in the middle of this moment, until an action of ``time.steer`` resumes it.
 
-        Call it on the thread that has the baton. It may hold locks: no other thread of the run goes on.
+        Call it on the thread that has the baton. The thread may hold locks: no other thread of the run runs.
         """
         with self._without_switching():
-            self.time.stand_in_moment()
+            self.time.pause_in_moment()
 
     def _explore(self) -> None:
         self._schedule = self.schedule
@@ -274,12 +272,8 @@ class VirtualClock:
             self.no_switching -= 1
 
 
-def _ignore(*_what: object) -> None:
-    """The default listener, which does nothing."""
-
-
 class VirtualAutoResetEvent:
-    """A signal between threads on virtual time; others may set it through ``VirtualTime.inject``."""
+    """An auto-reset event on virtual time; other threads may set it through ``VirtualTime.inject``."""
 
     __slots__ = ("_clock", "_set", "_waiter")
 
@@ -303,7 +297,7 @@ class VirtualAutoResetEvent:
         return was_set
 
     def set(self) -> None:
-        """Set the flag; the waiting thread becomes able to run."""
+        """Set the flag, and let the waiting thread run."""
         self._set = True
         if self._waiter is not None:
             self._clock.unpark(self._waiter)

@@ -1,13 +1,13 @@
-"""The time of a run on virtual time: the moment it has reached, and what brings it forward.
+"""The time of a run on a virtual clock: the moment that it has reached, and what advances it.
 
-Time jumps to the earliest deadline when no thread can run. Paced to a speed, a jump takes as long as the pace
-says, and what comes from outside (a key pressed in the console) takes effect at the moment that the pace has
-reached. Time can stand, between two jumps or in the middle of a moment, and go on from there step by step.
+Time jumps to the earliest deadline when no thread can run. At a speed, a jump takes its share of real time,
+and an input from outside (a key pressed in the console) takes effect at the moment that time has reached by
+then. Time can be paused, between two jumps or in the middle of a moment, and continue step by step.
 
-Threads that only ever wait for no time, as a loop around ``time.sleep(0)`` does, keep a moment from ending.
-So that such a run can be stopped and given inputs, a moment has a recess after every thousand waits. It lasts
-a microsecond where most of these waits were for no time: a loop that asks whether its deadline is behind it,
-and waits for the 0 s that are left, ends so as on a machine, where asking takes time.
+Threads that only wait for no time, as a loop around ``time.sleep(0)`` does, keep a moment from ending. So
+that such a run can be stopped and given inputs, a moment has a recess after every thousand waits. The recess
+lasts a microsecond if most of these waits had a length of 0: a loop that polls its deadline, and waits for
+the 0 s that are left, then ends as on a real machine, where polling takes time.
 """
 
 from collections.abc import Callable
@@ -19,14 +19,14 @@ from sim.clock.recesses import RECESS, Recesses
 from sim.clock.virtual_threads import VirtualThread
 
 _CHECK_PERIOD = 20_000_000
-"""Real nanoseconds between checks whether outside work goes on."""
+"""Real nanoseconds between two checks whether outside work continues."""
 
 
 class VirtualTime:
-    """Nanoseconds of a run, changed by the thread that has the baton.
+    """The nanoseconds of a run, changed by the thread that has the baton.
 
-    Any thread may call ``inject``, ``steer`` and ``give``. ``resume_thread`` is called with each thread whose
-    deadline has come.
+    ``inject``, ``steer`` and ``give`` are thread-safe. ``resume_thread`` is called with each thread whose
+    deadline is reached.
     """
 
     def __init__(self, speed: float | None, resume_thread: Callable[[VirtualThread], None]) -> None:
@@ -38,31 +38,31 @@ class VirtualTime:
         self._resume_thread = resume_thread
         self._inbox = Inbox()
         self._inputs = Inputs()
-        self.before_jump: Callable[[], int | None] = _no_stopover
-        """Called whenever time is about to pass, on whichever thread is at hand; it must not wait.
+        self.before_jump: Callable[[], int | None] = lambda: None
+        """Called whenever time is about to pass, on any thread of the clock; it must not wait.
 
-        It may return a moment at which time is to stop over, so that it is called there too.
+        It may return a moment at which time stops, so that it is called there too.
         """
-        self.on_recess: Callable[[int], None] = _ignore
-        """Called in every recess, with its number, on the thread that waits; it must not wait."""
-        self.outside_works: Callable[[], bool] = _no
-        """Whether something outside is at work, so that time passes as on the wall; it must not wait."""
+        self.on_recess: Callable[[int], None] = lambda _recess: None
+        """Called in every recess with its number, on the waiting thread; it must not wait."""
+        self.outside_works: Callable[[], bool] = lambda: False
+        """Whether outside work is going on, so that time passes as real time; it must not wait."""
         self.in_moment = False
         """Whether time is stopped within a moment; then only ``steer`` reaches the run."""
 
     @property
     def idles(self) -> bool:
-        """Whether most of the waits in this moment up to its last recess were for no time."""
+        """Whether most waits in this moment, up to its last recess, had a length of 0."""
         return self.recesses.idles
 
     @property
     def recess(self) -> int:
-        """Which recess of its moment the run is in; 0: none."""
+        """The number of the recess that the run is in; 0 outside of a recess."""
         return self.recesses.current
 
     @property
     def steps(self) -> int:
-        """How often a thread came to a wait; a run that neither takes steps nor rests is stuck."""
+        """How often a thread waited. A run that neither takes steps nor rests is stuck."""
         return self.recesses.steps
 
     @property
@@ -71,66 +71,66 @@ class VirtualTime:
         return self._inbox.rests
 
     def inject(self, action: Callable[[], None]) -> None:
-        """Have ``action`` run at the moment the run has reached; it must not wait. Any thread may call it."""
+        """Run ``action``, which must not wait, at the moment that the run has reached. Thread-safe."""
         self._inbox.put(action)
 
     def steer(self, action: Callable[[], None]) -> None:
-        """As ``inject``, but also while time is stopped within a moment; for pausing and stepping."""
+        """Do as ``inject``, also while time is stopped within a moment. For pausing and stepping."""
         self._inbox.put(action, steers=True)
 
     def give(self, action: Callable[[], None]) -> None:
-        """Have an input carried out at the end of the moment the run has reached; any thread may call this.
+        """Carry out an input at the end of the moment that the run has reached. Thread-safe.
 
-        By then every deadline of the moment is served, each thread waits and ``before_jump`` was called, and
+        By then every deadline of the moment is served, every thread waits, ``before_jump`` was called, and
         the inputs given before have had all their effects on that moment. A long moment takes one input in
-        each recess. So the moments and recesses of its inputs and their order determine a run, whatever their
-        real times were: ``schedule_input`` repeats it. The action must not wait.
+        each recess. So a run is determined by the moments, recesses and order of its inputs, whatever their
+        real times were: ``schedule_input`` repeats a run. The action must not wait.
         """
         self._inputs.given.append(action)
         self._inbox.ring()
 
     def schedule_input(self, moment: int, action: Callable[[], None], recess: int = 0) -> None:
-        """Have an input carried out at the end of ``moment``, or in a recess of it.
+        """Carry out an input at the end of ``moment``, or in a recess of it.
 
         Call it in the order of the moments and recesses.
         """
         self._inputs.scheduled.append((moment, recess, action))
 
     def set_speed(self, speed: float | None) -> None:
-        """Pass ``speed`` virtual seconds per real second, None: all it can. Call it through ``steer``."""
+        """Pass ``speed`` virtual seconds a real second; None: no limit. Call it through ``steer``."""
         self.pace.set_speed(speed, self.now)
 
     def pause(self) -> None:
-        """Stop time at the moment the run has reached; call through ``steer``."""
-        self.pace.stand()
+        """Pause time at the moment that the run has reached. Call it through ``steer``."""
+        self.pace.pause()
 
     def resume(self) -> None:
-        """Let time go on after ``pause``; call through ``steer``."""
-        self.pace.go_on(self.now)
+        """Resume time after ``pause``. Call it through ``steer``."""
+        self.pace.resume(self.now)
 
     def step(self) -> None:
-        """Go on until time has jumped or the clock is halted, and let time stand; call through ``steer``."""
+        """Continue until time has jumped or the clock is halted, then pause. Call it through ``steer``."""
         self.pace.step()
 
     def run_until(self, moment: int) -> None:
-        """Hurry until everything up to ``moment`` has happened, and let time stand there.
+        """Run as fast as possible until everything up to ``moment`` has happened, then pause.
 
         Call it through ``steer``.
         """
-        self.pace.hurry(moment)
+        self.pace.fast_forward(moment)
 
-    def stand_in_moment(self) -> None:
-        """Let time stand in the middle of this moment until it is steered on; blocks the calling thread."""
+    def pause_in_moment(self) -> None:
+        """Pause time in the middle of this moment; block the calling thread until ``steer`` resumes time."""
         self.pace.halt()
-        self.in_moment = self.pace.stands
-        while self.pace.stands:
-            self._inbox.run_steering(lambda: self.pace.stands)
-            if self.pace.stands:
+        self.in_moment = self.pace.paused
+        while self.pace.paused:
+            self._inbox.run_steering(lambda: self.pace.paused)
+            if self.pace.paused:
                 self._inbox.rest(None)
         self.in_moment = False
 
     def take_recess(self) -> None:
-        """Do what the end of a moment does, without letting time pass."""
+        """Do what happens at the end of a moment, without letting time pass."""
         number = self.recesses.begin()
         self.before_jump()
         self.on_recess(number)
@@ -138,7 +138,7 @@ class VirtualTime:
         if self.pace.steps:
             self.pace.halt()
         self._inbox.run_all()
-        while self.pace.stands and not self._inputs.given:
+        while self.pace.paused and not self._inputs.given:
             self._inbox.rest(None)
             self._inbox.run_all()
         self.recesses.end()
@@ -146,7 +146,7 @@ class VirtualTime:
             self.now = min([self.now + RECESS, *self.deadlines.later_than(self.now)])
 
     def jump(self) -> None:
-        """Bring time to the next deadline, or to where something from outside makes a thread able to run."""
+        """Advance time to the next deadline, or until an event from outside lets a thread run."""
         deadline = self.deadlines.first()
         target = deadline
         if deadline is None or deadline > self.now:
@@ -164,12 +164,12 @@ class VirtualTime:
         if target > self.now:
             self._advance_to(target)
             if self.pace.steps:
-                self.stand_in_moment()
+                self.pause_in_moment()
         if target == deadline:
             self._serve_deadline()
 
     def serve_equals(self) -> None:
-        """Let all threads go on whose deadline is this moment, up to the next action."""
+        """Resume all threads whose deadline is this moment, up to the next action."""
         while self.deadlines.first() == self.now and self.deadlines.first_is_thread():
             self._serve_deadline()
 
@@ -185,7 +185,7 @@ class VirtualTime:
         return stopover if deadline is None else min(stopover, deadline)
 
     def _input_is_taken(self) -> bool:
-        """Carry out one input, if there is one for the end of the moment or its recess."""
+        """Carry out one input if one is due at the end of the moment or in its recess; return whether."""
         inputs = self._inputs
         if not (inputs.given or inputs.scheduled):
             return False
@@ -212,13 +212,13 @@ class VirtualTime:
             due()
 
     def _pass_until(self, target: int | None) -> bool:
-        """Wait as long as the pace wants; False if something from outside came first.
+        """Wait until ``target`` at the present pace; False if something from outside came first.
 
-        What was injected has been done then; an input comes when the moment that the run has reached ends.
+        Injected actions are done by then; an input is carried out when the present moment ends.
         """
         while not self._inbox.waiting:
             if target is not None and target <= self.now:
-                return True  # the moment goes on to its end, even if time stands
+                return True  # the moment continues to its end, even if time is paused
             if self._inputs.given:
                 break
             works = self.outside_works()
@@ -230,15 +230,3 @@ class VirtualTime:
         self._advance_to(self.pace.reached(self.now, target))
         self._inbox.run_all()
         return False
-
-
-def _no_stopover() -> int | None:
-    return None
-
-
-def _ignore(_recess: int) -> None:
-    pass
-
-
-def _no() -> bool:
-    return False

@@ -16,8 +16,8 @@ import msgspec
 
 from sim.clock import PacedClock, RunClock, VirtualClock
 from sim.clock.paced_stdlib import follow
-from sim.clock.schedule import schedule_of
 from sim.clock.stdlib import live_on
+from sim.clock.strategies import schedule_of
 from sim.engine.batches import Batches
 from sim.engine.callback_overrides import overrides_of
 from sim.engine.callback_positions import CallbackPositions

@@ -95,7 +95,7 @@ class VirtualControl:
         self._sink(given(clock.now(), command))
 
     def _note_halt(self) -> None:
-        if self._clock.time.pace.stands:
+        if self._clock.time.pace.paused:
             self._wanted = None
         self._sink(TimeHalted(self._clock.now(), self._goal))
 

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.clock.schedule import FirstCome, Schedule, Seed, Seeded, schedule_of
+from sim.clock.schedule import Schedule, Seed
+from sim.clock.strategies import PctSchedule, schedule_of
 
 SEEDS = st.integers(1, 2**63)
 QUESTIONS = st.lists(st.tuples(st.sampled_from("nlc"), st.integers(1, 5)), max_size=60)
@@ -21,7 +22,7 @@ def answers(schedule: Schedule, questions: list[tuple[str, int]]) -> list[int]:
             case "n":
                 said.append(schedule.next(threads))
             case "l":
-                said.append(int(schedule.leaves("me", threads)))
+                said.append(int(schedule.yields("me", threads)))
             case _:
                 said.append(schedule.choose(number))
     return said
@@ -29,12 +30,12 @@ def answers(schedule: Schedule, questions: list[tuple[str, int]]) -> list[int]:
 
 def order(seed: int, names: str) -> str:
     """In which order threads go on that all wait at once."""
-    schedule, ready = Seeded(seed), list(names)
+    schedule, ready = PctSchedule(seed), list(names)
     return "".join(ready.pop(schedule.next(ready)) for _ in names)
 
 
 def test_without_a_seed_the_first_goes_on_and_nobody_is_left() -> None:
-    for schedule in (FirstCome(), schedule_of(None), schedule_of(0)):
+    for schedule in (Schedule(), schedule_of(None), schedule_of(0)):
         assert not schedule.explores
         assert answers(schedule, [("n", 5), ("l", 5), ("c", 5)]) == [0, 0, 0]
 
@@ -57,14 +58,14 @@ def test_seeds_come_to_every_order_of_a_few_threads() -> None:
 
 def test_no_thread_is_left_out_for_ever() -> None:
     for seed in range(1, 50):
-        schedule = Seeded(seed)
+        schedule = PctSchedule(seed)
         assert {schedule.next("ab") for _ in range(2_000)} == {0, 1}
 
 
 def test_some_seeds_keep_to_one_thread_for_long_and_others_switch_often() -> None:
     switches = []
     for seed in range(1, 50):
-        schedule = Seeded(seed)
+        schedule = PctSchedule(seed)
         chosen = [schedule.next("ab") for _ in range(1_000)]
         switches.append(sum(one != two for one, two in pairwise(chosen)))
     assert min(switches) < 50
@@ -73,9 +74,9 @@ def test_some_seeds_keep_to_one_thread_for_long_and_others_switch_often() -> Non
 
 def test_a_running_thread_is_left_only_for_one_that_is_to_go_first() -> None:
     for seed in range(1, 50):
-        schedule = Seeded(seed)
+        schedule = PctSchedule(seed)
         for _ in range(50):
-            if schedule.leaves("a", ["b", "c"]):
+            if schedule.yields("a", ["b", "c"]):
                 ready = ["b", "c", "a"]
                 assert schedule._priority("a") < max(map(schedule._priority, ready[:2]))
 
@@ -86,7 +87,7 @@ def order_of_steps(schedule: Schedule, steps: dict[str, list[str]]) -> list[tupl
     while ready:
         running = ready.pop(schedule.next(ready))
         while steps[running] and (
-            running in left or not schedule.leaves(running, ready, {steps[running][0]: True})
+            running in left or not schedule.yields(running, ready, {steps[running][0]: True})
         ):
             left.discard(running)
             order.append((running, steps[running].pop(0)))
@@ -114,7 +115,7 @@ def test_a_seed_with_a_strategy_makes_the_same_choices_again(seed: Seed) -> None
 
 
 def test_what_a_schedule_knows_of_a_thread_goes_with_it() -> None:
-    schedule = Seeded(3)
+    schedule = PctSchedule(3)
     schedule.next(["a", "b"])
     schedule.forget("a")
     schedule.forget("never seen")

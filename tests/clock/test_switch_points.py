@@ -6,7 +6,7 @@ from collections.abc import Callable
 import pytest
 
 from sim.clock import VirtualClock, recesses
-from sim.clock.schedule import Seeded
+from sim.clock.strategies import PctSchedule
 from tests.support.simulation import EndedClock, no_thread_left
 
 SEEDS = range(1, 9)
@@ -18,7 +18,7 @@ def run(seed: int, program: Callable[[VirtualClock], object]) -> None:
     trouble: list[BaseException] = []
 
     def main() -> None:
-        clock = EndedClock(schedule=Seeded(seed))
+        clock = EndedClock(schedule=PctSchedule(seed))
         try:
             program(clock)
         except BaseException as error:  # noqa: BLE001 -- it belongs to the test's own thread

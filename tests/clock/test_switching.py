@@ -14,7 +14,7 @@ import queue, sys, threading, time
 import concurrent.futures.thread as futures
 from sim.clock import VirtualClock
 from sim.clock.lock_cycles import cycle_of
-from sim.clock.schedule import schedule_of
+from sim.clock.strategies import schedule_of
 from sim.clock.stdlib import live_on
 clock = VirtualClock(schedule=schedule_of(int(sys.argv[1])))
 live_on(clock)

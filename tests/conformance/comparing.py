@@ -6,7 +6,7 @@ from enum import Enum
 from itertools import repeat
 from typing import NamedTuple
 
-from sim.clock.played import Moves
+from sim.clock.moves import Moves
 from tests.conformance.drawing import drawn
 from tests.conformance.programs import program
 from tests.conformance.running import Said, run_all

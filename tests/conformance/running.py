@@ -9,7 +9,7 @@ from itertools import chain, repeat
 from pathlib import Path
 from typing import NamedTuple
 
-from sim.clock.played import Moves
+from sim.clock.moves import Moves
 from sim.real.programs import claimed_domain, unbootstrapped
 from tests.conformance import copies
 

@@ -6,7 +6,7 @@ from functools import partial
 from heapq import heappop, heappush
 from random import Random
 
-from sim.clock.played import Moves
+from sim.clock.moves import Moves
 from tests.conformance.comparing import Outcome, Result, on_model, outcome, place_of, words_of
 from tests.conformance.running import Said
 

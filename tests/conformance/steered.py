@@ -2,10 +2,10 @@
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 
-from sim.clock.played import NO_ACCESSES, Accesses
+from sim.clock.schedule import NO_ACCESSES, Accesses, Schedule
 
 
-class Steered:
+class Steered(Schedule):
     """First come, first served, but for some choices, by their numbers from 0."""
 
     explores = True
@@ -22,7 +22,7 @@ class Steered:
         following, self._following = self._following, None
         return self.choose(len(ready)) if following is None else list(ready).index(following)
 
-    def leaves(self, running: Hashable, ready: Sequence[Hashable], accesses: Accesses = NO_ACCESSES) -> bool:
+    def yields(self, running: Hashable, ready: Sequence[Hashable], accesses: Accesses = NO_ACCESSES) -> bool:
         """A choice among going on and each of the others."""
         place = self._choose(1 + len(ready), preempts=True)
         if place:
@@ -43,9 +43,3 @@ class Steered:
         self.options.append((self._said(), number, preempts))
         move = self._moves.get(len(self.options) - 1, 0)
         return move if move < number else 0
-
-    def did(self, thread: Hashable, what: Hashable) -> None:
-        """Nothing to do."""
-
-    def forget(self, thread: Hashable) -> None:
-        """Nothing to do."""

@@ -199,7 +199,7 @@ def test_a_step_of_a_run_in_which_nothing_can_happen_any_more_ends_at_once() -> 
         signal.wait(None)
 
     def steering(helm: Helm) -> None:
-        helm.clock.time.steer(helm.clock.time.deadlines.clear)
+        helm.clock.time.steer(helm.clock.time.deadlines._heap.clear)
         helm.give(Step())
         helm.until_halted()
         helm.clock.interrupt(helm.clock.current.ident)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from cbtui.runs.judged.exploring import Exploration
 from cbtui.runs.setup.lesson_setup import RunRequest
-from sim.clock.schedule import STRATEGIES
+from sim.clock.strategies import STRATEGIES
 from tests.exploring.seeded_bugs import BUGS, SECONDS
 from tests.soak.results import record, today
 

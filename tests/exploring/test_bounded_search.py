@@ -7,8 +7,8 @@ from math import factorial
 import pytest
 
 from cbtui.runs.judged.bounded_search import BoundedSearch
-from sim.clock.played import Choice, Played, moves_of, moves_text
-from sim.clock.schedule import schedule_of
+from sim.clock.moves import Choice, MovesSchedule, moves_of, moves_text
+from sim.clock.strategies import schedule_of
 from sim.trace.events import ThreadChosen
 from tests.support.simulation import Simulation, simulate
 
@@ -31,7 +31,7 @@ def played(program: Program, seed: str) -> tuple[str, list[ThreadChosen]]:
     choices: list[ThreadChosen] = []
     noted: list[str] = []
     schedule = schedule_of(seed)
-    assert isinstance(schedule, Played)
+    assert isinstance(schedule, MovesSchedule)
     decide = schedule.decide
 
     def take(choice: Choice) -> int:

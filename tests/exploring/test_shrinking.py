@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from cbtui.runs.judged.bounded_search import BoundedSearch
 from cbtui.runs.judged.shrinking import Shrinking
-from sim.clock.played import moves_of, moves_text
+from sim.clock.moves import moves_of, moves_text
 from sim.trace.events import ThreadChosen
 from tests.exploring.test_bounded_search import played, searched, threads
 

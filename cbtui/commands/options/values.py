@@ -99,8 +99,8 @@ def shard(text: str) -> tuple[int, int]:
 
 def schedule(text: str) -> "Seed":
     """Read what names a schedule: a seed, one behind a strategy's name (``pct:5``), or moves."""
-    from sim.clock.played import moves_of
-    from sim.clock.schedule import STRATEGIES
+    from sim.clock.moves import moves_of
+    from sim.clock.strategies import STRATEGIES
 
     strategy, colon, choices = text.partition(":")
     if not colon:

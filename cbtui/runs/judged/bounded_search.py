@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from heapq import heappop, heappush
 
-from sim.clock.played import Moves, moves_text
+from sim.clock.moves import Moves, moves_text
 from sim.trace.events import ThreadChosen
 
 

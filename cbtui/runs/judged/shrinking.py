@@ -4,7 +4,7 @@ from collections.abc import Collection, Hashable, Iterator, Sequence
 from itertools import count
 from math import inf
 
-from sim.clock.played import Moves, moves_text
+from sim.clock.moves import Moves, moves_text
 from sim.trace.events import ThreadChosen
 
 

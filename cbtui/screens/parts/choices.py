@@ -15,7 +15,7 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.choice import ChoiceSheet, kept_of, options_of
 from lessons.catalogue import find
 from lessons.puzzles import Puzzle
-from sim.clock.played import Moves, moves_of, moves_text
+from sim.clock.moves import Moves, moves_of, moves_text
 from sim.engine.setup import RunSetup
 from sim.quantities.plural import counted
 from sim.trace.events import AnyEvent, ChoiceAsked

@@ -5,7 +5,7 @@ from collections.abc import Callable, Hashable
 from types import FrameType
 
 from sim.clock import VirtualClock
-from sim.clock.played import Choice, Played
+from sim.clock.moves import Choice, MovesSchedule
 from sim.clock.virtual_threads import VirtualThread
 from sim.engine.watchdogs.wait_descriptions import waits
 from sim.probes.own_code import own_frame, place_of
@@ -21,7 +21,7 @@ class AskedChoices:
     """
 
     def __init__(
-        self, clock: VirtualClock, schedule: Played, host: Host, record: Callable[[AnyEvent], None]
+        self, clock: VirtualClock, schedule: MovesSchedule, host: Host, record: Callable[[AnyEvent], None]
     ) -> None:
         self._clock = clock
         self._schedule = schedule

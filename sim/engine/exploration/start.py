@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from sim.clock import VirtualClock
-from sim.clock.played import Choice, Played
+from sim.clock.moves import Choice, MovesSchedule
 from sim.engine.exploration.asking import AskedChoices, position
 from sim.engine.exploration.conflicts import Conflicts
 from sim.engine.exploration.line_switches import LineSwitches
@@ -17,7 +17,7 @@ def explore(clock: VirtualClock, host: Host, record: Callable[[AnyEvent], None])
     Returns what gets the answers, None for a schedule that asks nobody.
     """
     schedule, asked = clock.schedule, None
-    if isinstance(schedule, Played):
+    if isinstance(schedule, MovesSchedule):
         if schedule.asks:
             asked = AskedChoices(clock, schedule, host, record)
             schedule.decide = asked.decide
@@ -26,7 +26,7 @@ def explore(clock: VirtualClock, host: Host, record: Callable[[AnyEvent], None])
     return asked
 
 
-def _tell_choices(clock: VirtualClock, schedule: Played, record: Callable[[AnyEvent], None]) -> None:
+def _tell_choices(clock: VirtualClock, schedule: MovesSchedule, record: Callable[[AnyEvent], None]) -> None:
     decide = schedule.decide
 
     def told(choice: Choice) -> int:

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-from sim.clock.outside import start_outside
+from sim.clock.virtual_threads import start_outside
 
 GRACE = 3.0
 """Real seconds that a program gets to end once its run is over; then it is ended by force."""

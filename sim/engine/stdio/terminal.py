@@ -204,11 +204,11 @@ class Terminal:
     def _awaited(self, live: bool) -> Iterator[None]:
         """Meanwhile a run that goes as fast as it can waits for the person who types."""
         if isinstance(self._clock, VirtualClock) and live and self._keyboard is Keyboard.LIVE:
-            self._clock.time.pace.awaits += 1
+            self._clock.time.pace.awaited_inputs += 1
             try:
                 yield
             finally:
-                self._clock.time.pace.awaits -= 1
+                self._clock.time.pace.awaited_inputs -= 1
         else:
             yield
 

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager
 from types import TracebackType
 
 from sim.clock import RunClock, VirtualClock
-from sim.clock.played import NO_ACCESSES
+from sim.clock.schedule import NO_ACCESSES
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _RLock = threading.RLock
@@ -46,7 +46,7 @@ class SwitchedLock:
     def __enter__(self) -> bool:
         self._clock.switch_point({self: True} if self._in_callback() else NO_ACCESSES)
         self._lock.__enter__()
-        self._clock.did(self)
+        self._clock.record_use(self)
         if self._clock.owns_current_thread():
             self._clock.no_switching += 1
         return True

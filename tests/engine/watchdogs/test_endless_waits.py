@@ -12,7 +12,7 @@ _RANDOM_THREADS = r"""
 import os, random, re, sys, threading, time
 from collections import Counter
 from sim.clock import VirtualClock
-from sim.clock.schedule import schedule_of
+from sim.clock.strategies import schedule_of
 from sim.clock.stdlib import live_on
 from sim.engine.watchdogs.endless_waits import EndlessWaits
 from sim.ros.middleware.host import Host, install

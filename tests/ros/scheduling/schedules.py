@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import chain
 from random import Random
 
-from sim.clock.schedule import schedule_of
+from sim.clock.strategies import schedule_of
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.trace.events import CallbackStarted, EntityKind, Published
 from tests.ros.scheduling.replay import Replay

@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 import sim.ros.rclpy as rclpy
-from sim.clock.schedule import RandomWalk, Schedule
+from sim.clock.schedule import Schedule
+from sim.clock.strategies import RandomWalk
 from sim.interfaces import action, message, service
 from sim.ros.actions import ActionClient, ActionServer, GoalResponse
 from sim.ros.entities.event_handler import SubscriptionEventCallbacks

@@ -1,32 +1,29 @@
-"""A schedule that is played move by move: by a list of moves, or by whoever is asked at each choice.
+"""Schedules made of moves: the options chosen at the numbered choices of a run.
 
-Threads are left only in front of the program's own steps: a line that touches shared data, a lock, a call of
-ROS in a callback, the callback's end. Where the running thread could go on, leaving it is a preemption; where
-it waits, any thread that can run may go on.
+Threads switch only before the program's own steps: a line that touches shared data, a lock, a call of ROS in
+a callback, the end of a callback. Choosing another thread than the running one is a preemption; where the
+running thread waits, any thread that can run may continue.
 """
 
 from collections.abc import Callable, Hashable, Mapping, Sequence
 from dataclasses import dataclass
 from random import Random
-from types import MappingProxyType
 from typing import TypeAlias
 from zlib import crc32
 
-Accesses: TypeAlias = Mapping[Hashable, bool]
-"""What a step of a thread touches that others may touch, each with whether it writes that."""
-NO_ACCESSES: Accesses = MappingProxyType({})
+from sim.clock.schedule import NO_ACCESSES, Accesses, Schedule
 
 Moves: TypeAlias = Mapping[int, int]
-"""What is chosen at some choices, by their numbers from 0; at the others it is the first option."""
+"""The index of the chosen option by the number of the choice, from 0; elsewhere the first is chosen."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """A choice among threads, the first of which goes on if nobody wants otherwise.
+    """A choice among threads; the first one continues by default.
 
-    ``preempts``: the first is the one that runs, and to choose another is a preemption. Where the ``state``
-    of two runs of a program is equal, the steps so far that depend on each other came in the same order, and
-    what can follow is the same.
+    ``preempts``: the first option is the running thread, and another option is a preemption. If the ``state``
+    of two runs of a program is equal, all dependent steps so far came in the same order, and the same steps
+    can follow.
     """
 
     number: int
@@ -35,20 +32,20 @@ class Choice:
     state: int
 
 
-class Played:
-    """Plays moves. ``decide`` may be replaced: it gets each choice, and returns the index of an option."""
+class MovesSchedule(Schedule):
+    """Plays moves. ``decide`` may be replaced: it gets each choice and returns the index of an option."""
 
     explores = True
 
     def __init__(self, moves: Moves, *, asks: bool = False) -> None:
         self._moves = moves
         self.last_move = max(moves, default=-1)
-        """The number of the last choice at which the moves want something."""
+        """The number of the last choice that has a move; -1 without moves."""
         self.asks = asks
-        """Whether somebody is to be asked behind the last move."""
+        """Whether a person is asked at the choices after the last move."""
         self.decide: Callable[[Choice], int] = self.move_at
         self.now: Callable[[], int] = int
-        """The time, which is part of a state."""
+        """The time in nanoseconds, which is part of a state."""
         self._made = 0
         self._following: Hashable = None
         self._chosen: Hashable = None
@@ -57,20 +54,20 @@ class Played:
         self._pasts: dict[int, int] = {}
 
     def move_at(self, choice: Choice) -> int:
-        """The option that the moves want; the first where they want one that there is not."""
+        """The option that the moves name; the first if there is no such option."""
         move = self._moves.get(choice.number, 0)
         return move if move < len(choice.options) else 0
 
     def next(self, ready: Sequence[Hashable]) -> int:
-        """The one for which the running thread was left, or else a choice."""
+        """The thread that the running one yielded to, or else a choice."""
         following, self._following = self._following, None
         place = self._choose(ready, preempts=False) if following is None else list(ready).index(following)
         self._chosen = ready[place]
         self._access(ready[place], self._steps.pop(ready[place], NO_ACCESSES))
         return place
 
-    def leaves(self, running: Hashable, ready: Sequence[Hashable], accesses: Accesses = NO_ACCESSES) -> bool:
-        """A choice in front of each step of the program."""
+    def yields(self, running: Hashable, ready: Sequence[Hashable], accesses: Accesses = NO_ACCESSES) -> bool:
+        """A choice before each step of the program."""
         if not accesses:
             return False
         options = [running, *ready]
@@ -83,19 +80,12 @@ class Played:
             self._access(running, accesses)
         return place > 0
 
-    def choose(self, number: int) -> int:
-        """The first: they are alike, or the order in which they came was a choice itself."""
-        return 0
-
     def hands_over(self) -> bool:
-        """Never: who waits for a lock may go on next, or later."""
+        """False: a thread that waits for a lock may continue next, or later."""
         return False
 
-    def forget(self, thread: Hashable) -> None:
-        """Nothing to do: what it did remains part of the state."""
-
-    def did(self, thread: Hashable, what: Hashable) -> None:
-        """Note that what it did depends on all that was done with ``what`` before, and later uses on it."""
+    def record_use(self, thread: Hashable, what: Hashable) -> None:
+        """Make this step depend on all earlier uses of ``what``, and later uses on this step."""
         self._access(thread, {what: True})
 
     def _access(self, thread: Hashable, accesses: Accesses) -> None:
@@ -121,21 +111,21 @@ class Played:
         return self.decide(choice)
 
     def _number(self, what: Hashable) -> int:
-        """A number for a thread or for data; its negative is for the threads that have read the data."""
+        """A number for a thread or for data; the negative number stands for the readers of the data."""
         if isinstance(what, str):
             return crc32(what.encode())
         return self._numbers.setdefault(what, len(self._numbers) + 1)
 
     def _past(self, number: int) -> int:
-        """A hash of the steps that the latest one of a thread, or with data, depends on."""
+        """A hash of the steps that the latest step of a thread, or on data, depends on."""
         return self._pasts.get(number, number)
 
 
-class Walked(Played):
-    """Chooses by a seed where moves are played, so that moves can play it again."""
+class RandomMovesSchedule(MovesSchedule):
+    """Makes random moves, so that a list of moves can repeat the run."""
 
     _RATES = (0.5, 0.2, 0.05)
-    """How likely a thread is to be stopped that could go on; the seed draws one for its run."""
+    """Probabilities of a preemption; the seed draws one of them for its run."""
 
     def __init__(self, seed: int) -> None:
         super().__init__({})
@@ -153,12 +143,12 @@ def moves_of(seed: str) -> dict[int, int]:
     """Read the moves of a seed, with or without the strategy in front.
 
     Raises:
-        ValueError: it is none.
+        ValueError: a move is not written as ``number=option``.
     """
     pairs = (each.partition("=") for each in seed.rpartition(":")[2].split(",") if each)
     return {int(number): int(option) for number, _, option in pairs}
 
 
 def moves_text(moves: Moves, strategy: str = "moves") -> str:
-    """The seed of a schedule that plays moves, such as ``moves:3=1,9=2``."""
+    """The seed that plays moves, such as ``moves:3=1,9=2``."""
     return f"{strategy}:" + ",".join(f"{number}={option}" for number, option in sorted(moves.items()))
