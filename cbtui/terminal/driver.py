@@ -34,6 +34,19 @@ class TerminalDriver(LinuxDriver):
         else:
             self._app.exit(None, 128 + signal.SIGHUP)
 
+    def stop_application_mode(self) -> None:
+        """Give the terminal back; from now on SIGCONT, which a closing terminal sends as well, is ignored.
+
+        Otherwise the driver would take the terminal again, with an input thread that nobody ends.
+        """
+        signal.signal(signal.SIGCONT, signal.SIG_DFL)
+        super().stop_application_mode()
+
+    def suspend_application_mode(self) -> None:
+        """Give the terminal back until SIGCONT or ``resume_application_mode``."""
+        super().suspend_application_mode()
+        signal.signal(signal.SIGCONT, self._sigcont_application)
+
     def _sigcont_application(self, *signal_and_frame: Any) -> None:
         """Continue after SIGCONT; after SIGSTOP, which has no handler, the terminal is first released.
 

@@ -17,6 +17,8 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are l
 
 _ESCAPE = "\x1b"
 """Out of the question what one expects, without an answer."""
+_LEFT = "\x1b[?1049l"
+"""Leaves the console's screen for the one before, as the terminal is given back."""
 HUNG_UP = 128 + signal.SIGHUP
 
 
@@ -59,6 +61,18 @@ def test_a_console_that_is_told_to_hang_up_gives_the_terminal_back(tmp_path: Pat
         assert console.ended() == HUNG_UP
         assert console.left_on() == set()
         assert "Recorded" in console.said()
+
+
+@pytest.mark.slow
+def test_a_console_that_is_told_to_go_on_while_it_ends_ends_all_the_same(tmp_path: Path) -> None:
+    # A terminal multiplexer that closes a window hangs up, and then the kernel, which sends SIGCONT, too.
+    with nothing_left(), opened(80, 24, tmp_path) as console:
+        console.until("Split groups")
+        console.process.send_signal(signal.SIGHUP)
+        console.until(_LEFT)
+        console.process.send_signal(signal.SIGCONT)
+        assert console.ended() == HUNG_UP
+        assert console.left_on() == set()
 
 
 @pytest.mark.slow
