@@ -137,7 +137,10 @@ def _search(shard: "Shard", exploration: "Exploration", part: int, parts: int) -
     interrupted = _interrupted(exploration.search(search), found)
     done = (part,) if search.is_complete and not interrupted else ()
     preempted = {seed: search.preempted(seed) for seed in found}
-    return structs.replace(shard, results=found, done=done, preempted=preempted), interrupted
+    branches = search.branches
+    return structs.replace(
+        shard, results=found, done=done, preempted=preempted, branches=branches
+    ), interrupted
 
 
 def _tell(shard: "Shard", whose: str = "", exploration: "Exploration | None" = None) -> None:

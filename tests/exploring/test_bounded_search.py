@@ -6,7 +6,7 @@ from math import factorial
 
 import pytest
 
-from cbtui.runs.judged.bounded_search import BoundedSearch
+from cbtui.runs.judged.bounded_search import BoundedSearch, Branch, of_all_parts
 from sim.clock.moves import Choice, MovesSchedule, moves_of, moves_text
 from sim.clock.strategies import schedule_of
 from sim.trace.events import ThreadChosen
@@ -121,6 +121,32 @@ def test_two_locks_in_two_orders_come_to_every_deadlock() -> None:
     for preemptions, number, deadlocks in ((0, 2, 0), (1, 4, 2), (2, 6, 4)):
         found, _ = searched(program, preemptions)
         assert (len(found), sum("!!" in noted for noted in found.values())) == (number, deadlocks)
+
+
+@pytest.mark.parametrize(
+    ("data", "preemptions", "number"), [("wxyz", 0, 18), ("xxxx", 0, 24), (("xxx", "xxx"), 2, 14)]
+)
+@pytest.mark.parametrize("parts", [1, 2, 3, 5])
+def test_parts_together_count_the_schedules_of_the_whole_search(
+    data: Sequence[str], preemptions: int, number: int, parts: int
+) -> None:
+    whole, _ = searched(threads(*data), preemptions)
+    found: dict[str, str] = {}
+    branches: dict[str, tuple[Branch, ...]] = {}
+    for part in range(1, parts + 1):
+        noted, search = searched(threads(*data), preemptions, part=part, parts=parts)
+        found |= noted
+        branches |= search.branches
+    seeds = of_all_parts(preemptions, branches)
+    assert len(seeds) == number
+    assert {seed: found[seed] for seed in seeds} == whole
+
+
+def test_all_runs_count_where_one_is_missing_that_another_order_needs() -> None:
+    _, search = searched(threads(*"wxyz"), 0)
+    branches = dict(search.branches)
+    branches.popitem()
+    assert of_all_parts(0, branches) == list(branches)
 
 
 def test_a_search_stops_at_its_limit_and_says_so() -> None:

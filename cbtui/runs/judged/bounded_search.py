@@ -1,10 +1,20 @@
 """The search through all schedules of a program that have at most so many preemptions."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from heapq import heappop, heappush
+from typing import NamedTuple
 
 from sim.clock.moves import Moves, moves_text
 from sim.trace.events import ThreadChosen
+
+
+class Branch(NamedTuple):
+    """A choice of a run, as ``ThreadChosen`` has it, at which the search can go on with other runs."""
+
+    number: int
+    able: int
+    preempts: bool
+    state: int
 
 
 class BoundedSearch:
@@ -13,7 +23,8 @@ class BoundedSearch:
     It may have a next seed again after it had none. Those with fewer preemptions come first, and of two runs
     that come to the same state only one is followed further: the other can find nothing new. At most
     ``limit`` seeds are given out. Of several ``parts``, each follows its share of the first run's choices; a
-    run that several parts come to is in each of them.
+    run that several parts come to is in each of them, and what follows from it; ``of_all_parts`` says which
+    of these runs a search in one part makes.
     """
 
     def __init__(self, preemptions: int, limit: int, part: int = 1, parts: int = 1) -> None:
@@ -23,6 +34,8 @@ class BoundedSearch:
         self._given: dict[str, tuple[int, Moves]] = {}
         self._waiting: list[tuple[int, int, str, Moves]] = []
         self._seen: set[tuple[int, int]] = set()
+        self.branches: dict[str, tuple[Branch, ...]] = {}
+        """The branches of each run that was taken, behind its last move."""
         self._add(0, {})
 
     @property
@@ -46,19 +59,44 @@ class BoundedSearch:
 
     def take(self, seed: str, _failures: object, choices: Sequence[ThreadChosen]) -> None:
         """Add what can be chosen otherwise behind the last move of a run."""
+        last = max(self._given[seed][1], default=-1)
+        self.follow(
+            seed,
+            tuple(
+                Branch(choice.number, choice.able, choice.preempts, choice.state)
+                for choice in choices
+                if choice.number > last
+            ),
+        )
+
+    def follow(self, seed: str, branches: tuple[Branch, ...]) -> None:
+        """Do what ``take`` does, from the branches behind the last move of a run."""
+        self.branches[seed] = branches
         used, moves = self._given[seed]
         found: list[tuple[int, Moves]] = []
-        for choice in choices:
-            if choice.number <= max(moves, default=-1):
-                continue
-            if (choice.state, used) in self._seen:
+        for number, able, preempts, state in branches:
+            if (state, used) in self._seen:
                 break
-            self._seen.add((choice.state, used))
-            more = used + choice.preempts
+            self._seen.add((state, used))
+            more = used + preempts
             if more <= self._preemptions:
-                found += [(more, {**moves, choice.number: option}) for option in range(1, choice.able)]
+                found += [(more, {**moves, number: option}) for option in range(1, able)]
         for more, each in found if moves else found[self._mine]:
             self._add(more, each)
 
     def _add(self, used: int, moves: Moves) -> None:
         heappush(self._waiting, (used, len(moves), moves_text(moves), moves))
+
+
+def of_all_parts(preemptions: int, branches: Mapping[str, tuple[Branch, ...]]) -> list[str]:
+    """Return the seeds of a search in one part, from the branches of all runs of its parts.
+
+    These are all the seeds if the parts did not take their runs in order, as when several run at once, so
+    that one left out a run which another order needs.
+    """
+    search = BoundedSearch(preemptions, len(branches))
+    for seed in search:
+        if seed not in branches:
+            return list(branches)
+        search.follow(seed, branches[seed])
+    return list(search.branches)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import msgspec
 
+from cbtui.runs.judged.bounded_search import Branch, of_all_parts
 from cbtui.runs.judged.exploring import ScheduleResult
 from sim.files.untrusted import read_bytes
 
@@ -20,7 +21,7 @@ class Shard(msgspec.Struct, frozen=True, kw_only=True):
 
     ``replays`` are the commands that repeat a schedule, without its seed. Of a search within a bound of
     ``preemptions`` there are so many ``parts``; the results are of those that are ``done``, each to its end,
-    and ``preempted`` has the preemptions of each seed.
+    and ``preempted`` has the preemptions of each seed, ``branches`` where the search could go on from it.
     """
 
     program: str
@@ -33,6 +34,7 @@ class Shard(msgspec.Struct, frozen=True, kw_only=True):
     parts: int = 1
     done: tuple[int, ...] = ()
     preempted: dict[str, int] = {}
+    branches: dict[str, tuple[Branch, ...]] = {}
 
     @property
     def missing(self) -> str:
@@ -67,6 +69,8 @@ class Shard(msgspec.Struct, frozen=True, kw_only=True):
 def merged(paths: Sequence[Path]) -> Shard:
     """All results of some files; those of a seed that is in several are taken once.
 
+    Of a search whose parts are all there, these are the results of a search in one part.
+
     Raises:
         BadShardError: a file cannot be read, or is of another exploration than the first.
     """
@@ -80,13 +84,17 @@ def merged(paths: Sequence[Path]) -> Shard:
             results={**whole.results, **other.results},
             done=(*whole.done, *other.done),
             preempted={**whole.preempted, **other.preempted},
+            branches={**whole.branches, **other.branches},
         )
-    return whole
+    if whole.preemptions is None or whole.missing:
+        return whole
+    seeds = of_all_parts(whole.preemptions, whole.branches)
+    return msgspec.structs.replace(whole, results={seed: whole.results[seed] for seed in seeds})
 
 
 def _of_all_parts(shard: Shard) -> Shard:
     """What all parts of an exploration have in common."""
-    return msgspec.structs.replace(shard, results={}, done=(), preempted={})
+    return msgspec.structs.replace(shard, results={}, done=(), preempted={}, branches={})
 
 
 def _read(path: Path) -> Shard:
