@@ -116,7 +116,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         )
         self._exports = Exports(self, runs, self.navigation, self.finisher)
         self._chain = ChainPath(self, runs, self.navigation)
-        self._copy = DetailsCopy(self, self, runs, self.navigation, subject.heading)
+        self._copy = DetailsCopy(self, self, runs, self.navigation, subject)
 
     def add_parts(self, *parts: ScreenPart, **more: Callable[[], object]) -> None:
         """Add a screen's own parts, and actions by their ids, to the common ones."""
@@ -295,7 +295,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         run, told, keymap = self.runs.run, self.runs.findings.findings, keymap_of(self.app)
         self.panes.set_robot(has_robot(run) or bool(self.subject.scene))
         self.query_one(StatusLine).status = status_of(
-            self.subject.heading,
+            self.subject.heading_of(run.timeline),
             run,
             self.navigation.playhead,
             self.subject.executor,

@@ -10,10 +10,11 @@ import msgspec
 
 from sim.clock import RunClock, VirtualClock
 from sim.engine import commands
+from sim.engine.failures.cause import Cause
 from sim.engine.programs.ros2_lines import Lines
 from sim.engine.requests import Requests
 from sim.engine.setup import RunSetup
-from sim.engine.shutdown import Cause, RunShutdown
+from sim.engine.shutdown import RunShutdown
 from sim.engine.stdio.terminal import Terminal
 from sim.engine.time_control import RealControl, VirtualControl
 from sim.ros.middleware.contents import Contents

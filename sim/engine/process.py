@@ -23,6 +23,7 @@ from sim.engine.callback_overrides import overrides_of
 from sim.engine.callback_positions import CallbackPositions
 from sim.engine.command_loop import CommandLoop
 from sim.engine.exploration.start import explore
+from sim.engine.failures.cause import Cause
 from sim.engine.failures.crash_dump import enable_crash_dump, exit_unless_renewed
 from sim.engine.failures.failure import breakdown, is_learners
 from sim.engine.failures.tracebacks import leave_out_own_frames
@@ -42,7 +43,7 @@ from sim.engine.release import profile_of
 from sim.engine.requests import Requests
 from sim.engine.robot import provide_robot
 from sim.engine.setup import RunSetup
-from sim.engine.shutdown import Cause, RunShutdown
+from sim.engine.shutdown import RunShutdown
 from sim.engine.stdio.descriptors import Descriptors, leave_terminal
 from sim.engine.stdio.redirection import redirect_output
 from sim.engine.stdio.terminal import Terminal

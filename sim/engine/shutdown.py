@@ -5,12 +5,11 @@ import signal
 import sys
 import threading
 import time
-from dataclasses import dataclass
 from functools import partial
 from typing import NoReturn
 
 from sim.clock import RunClock, VirtualClock
-from sim.engine.failures.failure import Failure
+from sim.engine.failures.cause import Cause
 from sim.engine.outbox import Outbox
 from sim.engine.programs.ending import GRACE, VIRTUAL_GRACE, flush_files_soon
 from sim.engine.programs.program import STOPPED, ProgramOutcome, threads_left_by
@@ -22,7 +21,7 @@ from sim.engine.time_control import RealControl, VirtualControl
 from sim.engine.watchdogs.endless_waits import EndlessWaits
 from sim.probes import own_code
 from sim.ros.middleware.host import Host
-from sim.trace.events import Notice, RunEnded, RunEnding, Severity
+from sim.trace.events import Notice, RunEnding, Severity
 
 _SIGNAL_AFTER = 0.5
 """Real seconds after which a program on virtual time that comes to no wait is interrupted by a signal."""
@@ -30,17 +29,6 @@ _SIGNAL_AFTER = 0.5
 # Kept from before a clock or a program puts its own in their place.
 _real_sleep = time.sleep
 _allocate_lock = threading.Lock
-
-
-@dataclass(frozen=True, slots=True)
-class Cause:
-    """Why a run ends, as ``RunEnded`` tells it."""
-
-    reason: str
-    failed: bool
-    error: str = ""
-    failure: Failure | None = None
-    time_was_up: bool = False
 
 
 class RunShutdown:
@@ -156,11 +144,7 @@ class RunShutdown:
                 _real_sleep(GRACE)  # another thread is at it
         self._descriptors.finish()
         cause = self._cause or Cause(STOPPED, failed=False)
-        found = cause.failure or Failure("", 0, "")
-        place = found.file, found.line
-        told = (cause.reason, cause.failed, cause.time_was_up, cause.error, place, found.what, found.advice)
-        last = RunEnded(self._clock.now(), *told)
-        self._outbox.close(last)
+        self._outbox.close(cause.event(self._clock.now()))
         self._starter.close()
         self._exit_process(0)
 

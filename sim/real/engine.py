@@ -8,7 +8,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import count
 from multiprocessing.connection import Connection
@@ -19,6 +19,7 @@ from typing import NoReturn, Protocol
 import msgspec
 
 from sim.engine import commands
+from sim.engine.failures.cause import Cause
 from sim.engine.failures.failure import breakdown
 from sim.engine.outbox import Outbox
 from sim.engine.setup import RunSetup
@@ -27,7 +28,7 @@ from sim.probes.on_path.cbtui_probe import FOLDER
 from sim.real.companions import RunRobot, ServiceCaller
 from sim.real.keyboard import RealKeyboard
 from sim.real.launched import LaunchedPrograms
-from sim.real.programs import STOPPED, OnExit, RealOutcome, claimed_domain, environment, unbootstrapped
+from sim.real.programs import STOPPED, OnExit, claimed_domain, environment, unbootstrapped
 from sim.real.ros2_lines import Ros2Lines
 from sim.real.translation import HOLD, Translation
 from sim.real.watched import WatchedProcesses
@@ -39,7 +40,6 @@ from sim.trace.events import (
     Notice,
     NoticeKind,
     Printed,
-    RunEnded,
     RunEnding,
     RunStarted,
     Severity,
@@ -55,6 +55,8 @@ _LONGEST_HOLD = 500_000_000
 _HOLD_DECAY = 0.995
 _GRACE = 3.0
 """Seconds that the programs have to exit once they were asked to."""
+_TO_GATHER = 500_000_000
+"""Nanoseconds in which processes that are already there tell what they did, which then comes in order."""
 _TO_BEGIN = 10_000_000_000
 """Nanoseconds to wait for the robot, and for the first node, before the run begins without."""
 
@@ -80,7 +82,7 @@ class Programs(Protocol):
     def any_run(self) -> bool:
         """Whether there is anything left to follow, now or soon."""
 
-    def outcome(self) -> RealOutcome:
+    def outcome(self) -> Cause:
         """How they ended, taken together."""
 
     def interrupt(self) -> None:
@@ -145,8 +147,7 @@ class RealEngine:
             setup.robot, setup.sensor_rate, setup.physics, self._selector, graph, self._translation.take
         )
         self._hold = HOLD
-        self._cause: RealOutcome | None = None
-        self._time_was_up = False
+        self._cause: Cause | None = None
         self._given_up_at: int | None = None
         self._due: list[_Due] = []
 
@@ -158,7 +159,7 @@ class RealEngine:
         try:
             self._run()
         except Exception as error:  # noqa: BLE001 - an error of the engine's own, which nobody else tells of
-            self._outbox.close(RunEnded(self._now(), breakdown(error), True))
+            self._outbox.close(Cause(breakdown(error), failed=True).event(self._now()))
         finally:
             self._programs.kill()
             self._lines.stop()
@@ -222,7 +223,8 @@ class RealEngine:
         now = time.monotonic_ns()
         if now > self._began_to_wait + _TO_BEGIN and self._due:
             self._translation.begin_at(now)
-        self._translation.release(now - self._hold)
+        if self._keyboard is not None or now > self._began_to_wait + _TO_GATHER:
+            self._translation.release(now - self._hold)
         while self._start and self._due and self._due[0].at <= self._now():
             self._due.pop(0).do()
         if self._given_up_at is not None and now > self._given_up_at:
@@ -234,10 +236,10 @@ class RealEngine:
         self._translation.begin_at(now)
         self._translation.release(now)
         outcome = self._programs.outcome()
-        if self._cause is not None and not outcome.failed:
-            outcome = self._cause
-        last = RunEnded(self._now(), outcome.reason, outcome.failed, self._time_was_up, outcome.error)
-        self._outbox.close(last)
+        if self._cause is not None:
+            failed = replace(outcome, time_was_up=self._cause.time_was_up)
+            outcome = failed if outcome.failed else self._cause
+        self._outbox.close(outcome.event(self._now()))
 
     # the run's time
 
@@ -291,22 +293,22 @@ class RealEngine:
 
     # the end
 
-    def _stop(self, reason: str, at: int | None = None) -> None:
+    def _stop(self, cause: Cause, at: int | None = None) -> None:
         """Interrupt the programs, and kill them if they take too long; watched programs go on.
 
         The trace shows this at the monotonic time ``at``, or now.
         """
         if self._cause is None:
-            self._cause = RealOutcome(reason, failed=False)
-            self._translation.take([RunEnding(time.monotonic_ns() if at is None else at, reason)])
+            self._cause = cause
+            self._translation.take([RunEnding(time.monotonic_ns() if at is None else at, cause.reason)])
             self._given_up_at = time.monotonic_ns() + int(_GRACE * 1e9)
             self._programs.interrupt()
 
     def _time_is_up(self) -> None:
         """End the run exactly at its time limit: what began later is not part of it."""
         assert self._setup.until is not None
-        self._time_was_up = self._cause is None
-        self._stop("its time was up", self._start + self._setup.until)
+        cause = Cause("its time was up", failed=False, time_was_up=True)
+        self._stop(cause, self._start + self._setup.until)
 
     def _kill(self) -> None:
         for name in self._programs.kill():
@@ -327,7 +329,7 @@ class RealEngine:
             sys.exit()  # the console is gone
         match command:
             case commands.Stop():
-                self._stop(STOPPED)
+                self._stop(Cause(STOPPED, failed=False))
             case commands.CallService(name=name, data=data):
                 self._call(name, data)
             case commands.ResetWorld():
@@ -359,7 +361,7 @@ class RealEngine:
         if self._keyboard is None:
             return
         if self._keyboard.interrupts(text):
-            self._stop("it was interrupted from the keyboard")
+            self._stop(Cause("it was interrupted from the keyboard", failed=False))
         else:
             self._keyboard.type(text, ends=ends)
 

@@ -11,15 +11,17 @@ import os
 import shutil
 import time
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from itertools import count
 from pathlib import Path
 from selectors import BaseSelector
 from typing import TYPE_CHECKING, Protocol
 
+from sim.engine.failures.cause import Cause
 from sim.engine.setup import ProgramSetup, RealRos
 from sim.real.keyboard import RealKeyboard
-from sim.real.programs import ON_PATH, OnExit, Program, RealOutcome, Start
+from sim.real.programs import ON_PATH, OnExit, Program, Start
 from sim.real.watched import WatchedProcesses
 from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
 
@@ -74,7 +76,7 @@ class LaunchedPrograms:
         self._due: list[tuple[float, int, Callable[[], None]]] = []
         self._numbers = count(1)
         self._order = count()
-        self._failure: RealOutcome | None = None
+        self._failure: Cause | None = None
         self._children = WatchedProcesses(
             selector, RealRos(watched=str(folder)), take, record, self._numbers, self._is_own
         )
@@ -210,7 +212,7 @@ class LaunchedPrograms:
         try:
             self.launch(path, arguments, _ignore)
         except LaunchError as error:
-            self._fail(RealOutcome(str(error), failed=True))
+            self._fail(Cause(str(error), failed=True))
 
     def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:
         """Call ``action`` that many seconds from now."""
@@ -230,7 +232,7 @@ class LaunchedPrograms:
         for launching in [each for each in self._launches if each.is_over]:
             self._launches.remove(launching)
             if launching.error:
-                self._fail(RealOutcome(launching.error, failed=True))
+                self._fail(Cause(launching.error, failed=True))
         readers = {each.process: each.name for each in self._running if each.reads}
         waiting = self._keyboard.look(readers)
         for program in self._running:
@@ -245,10 +247,10 @@ class LaunchedPrograms:
             self.record(ProcessEnded(0, program.number, outcome.reason, program.status))
         if outcome.failed:
             named = f"{program.name}: {outcome.reason}" if program.number else outcome.reason
-            self._fail(outcome._replace(reason=named))
+            self._fail(replace(outcome, reason=named))
         on_exit(program.status)
 
-    def _fail(self, outcome: RealOutcome) -> None:
+    def _fail(self, outcome: Cause) -> None:
         self._failure = self._failure or outcome
 
     def _is_own(self, process: int) -> bool:
@@ -259,13 +261,13 @@ class LaunchedPrograms:
         """Whether one of them has not ended."""
         return bool(self._running or self._launches)
 
-    def outcome(self) -> RealOutcome:
+    def outcome(self) -> Cause:
         """How they ended, taken together."""
         if self._failure is not None:
             return self._failure
         if len(self._programs) == 1:
             return self._programs[0].outcome()
-        return RealOutcome("every program returned", failed=False)
+        return Cause("every program returned", failed=False)
 
     def interrupt(self) -> None:
         """Have all end as Ctrl-C would."""

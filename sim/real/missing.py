@@ -21,15 +21,15 @@ _DEBIAN = {"tf2_ros": "tf2-ros-py"}
 
 
 def on_missing(said: str, distribution: str) -> str:
-    """Advice on an exception, given its class and text, as a clause; empty if there is none."""
+    """Advice on an exception, given its class and text; empty if there is none."""
     found = _MISSING.search(said)
     package = found[1] if found else ""
     if package not in {*packages(), *_PYTHON}:
         return ""
     name = f"ros-{distribution or 'jazzy'}-{_DEBIAN.get(package, package.replace('_', '-'))}"
     if package in _WHEELS:
-        return f"; pip install {name}, into the Python that runs it"
+        return f"pip install {name}, into the Python that runs it"
     return (
-        f"; PyPI has no wheel of {package}: run without --on ros2, or with --python /usr/bin/python3 where "
+        f"PyPI has no wheel of {package}: run without --on ros2, or with --python /usr/bin/python3 where "
         f"ROS 2 is installed, after sudo apt install {name}"
     )

@@ -18,6 +18,8 @@ from pathlib import Path
 from selectors import BaseSelector
 from typing import NamedTuple
 
+from sim.engine.failures.cause import Cause
+from sim.engine.failures.failure import Failure
 from sim.engine.setup import RunSetup
 from sim.probes.on_path.cbtui_probe import CHANGES, FOLDER, PORT, TOKEN
 from sim.real.probe_link import LineReader, ProbeLink
@@ -105,14 +107,6 @@ OnExit = Callable[[int], None]
 """Takes an exit status, once."""
 
 
-class RealOutcome(NamedTuple):
-    """How programs ended, as a sentence, whether they failed, and the exception that ended one."""
-
-    reason: str
-    failed: bool
-    error: str = ""
-
-
 class Start(NamedTuple):
     """How a program is started."""
 
@@ -195,18 +189,18 @@ class Program:
         """Its exit code once it has ended; negative for the signal that killed it."""
         return self._process.returncode
 
-    def outcome(self) -> RealOutcome:
+    def outcome(self) -> Cause:
         """How it ended."""
         uncaught, status = self.link.uncaught, self.status
         if uncaught is not None:
-            reason = f"{place_of(uncaught)}: the program raised {uncaught.error}"
-            return RealOutcome(reason + self._advice(uncaught.error), True, uncaught.error)
+            return ended_by(uncaught, "the program", self._advice(uncaught.error))
         if status == -signal.SIGINT or (self._sent is not None and status == -self._sent):
-            return RealOutcome(STOPPED, failed=False)
+            return Cause(STOPPED, failed=False)
         if status < 0:
-            return RealOutcome(f"the program crashed by {signal.Signals(-status).name}", failed=True)
+            return Cause(f"the program crashed by {signal.Signals(-status).name}", failed=True)
         reason = "the program returned" if status == 0 else f"the program ended with exit code {status}"
-        return RealOutcome(reason + self._advice(self._last_error), failed=status != 0)
+        advice = self._advice(self._last_error)
+        return Cause(f"{reason}; {advice}" if advice else reason, failed=status != 0)
 
     def _advice(self, error: str) -> str:
         from sim.real.missing import on_missing
@@ -250,10 +244,10 @@ class Program:
             self._show(line, error, self.number)
 
 
-def place_of(uncaught: Uncaught) -> str:
-    """File and line that raised the exception which ended a program."""
-    name = Path(uncaught.file).name
-    return f"{name}:{uncaught.line}" if uncaught.line else name
+def ended_by(uncaught: Uncaught, name: str, advice: str = "") -> Cause:
+    """The end of the program that people call ``name`` by an exception."""
+    failure = Failure(uncaught.file, uncaught.line, f"{name} raised {uncaught.error}", advice)
+    return Cause(failure.sentence, True, uncaught.error, failure)
 
 
 def _own_terminal() -> None:

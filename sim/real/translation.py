@@ -54,14 +54,17 @@ _CALLS = 10_000
 class Translation:
     """Takes lines from the probes of a run, and returns events in the order in which they happened.
 
-    The run begins with the first node, so that imports before it do not count. ``begin`` gets that moment in
-    monotonic nanoseconds. Messages and calls are numbered in the order of sending.
+    The run begins with the first node that is known at the first release, so imports before it do not count.
+    ``begin`` gets that moment in monotonic nanoseconds. Messages and calls are numbered in the order of
+    sending.
     """
 
     def __init__(self, record: Callable[[AnyEvent], None], begin: Callable[[int], None]) -> None:
         self._record = record
         self._begin = begin
         self._start: int | None = None
+        self._first_node: int | None = None
+        """When the first node appeared."""
         self._held: list[tuple[int, int, ProbeLine]] = []
         self._order = count()
         self._arrivals = Arrivals()
@@ -74,10 +77,10 @@ class Translation:
         self._left_open = LeftOpen()
 
     def begin_at(self, moment: int) -> None:
-        """Have the run begin, if it has not yet."""
+        """Have the run begin, if it has not yet: at ``moment``, or when the first known node appeared."""
         if self._start is None:
-            self._start = moment
-            self._begin(moment)
+            self._start = min(moment, self._first_node or moment)
+            self._begin(self._start)
 
     def take(self, lines: Iterable[ProbeLine], process: int = 0) -> None:
         """Take lines of a program's probe; ``process`` is its number on the trace, 0 for a single one."""
@@ -86,7 +89,7 @@ class Translation:
                 case Hello() | Uncaught() | Left() | ProgramWanted() | Interrupted():
                     continue
                 case NodeAppeared(t=t):
-                    self.begin_at(t)
+                    self._first_node = min(t, self._first_node or t)
                 case ThreadAppeared():
                     line = msgspec.structs.replace(line, process=process)  # noqa: PLW2901
                 case EntityAppeared():
@@ -99,7 +102,9 @@ class Translation:
             heapq.heappush(self._held, (line.t, next(self._order), line))
 
     def release(self, until: int) -> None:
-        """Return the events up to a moment in monotonic nanoseconds; none before the run begins."""
+        """Return the events up to a moment in monotonic nanoseconds; none before there is a node."""
+        if self._first_node is not None:
+            self.begin_at(self._first_node)
         if self._start is None:
             return
         while self._held and self._held[0][0] <= until:

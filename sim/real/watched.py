@@ -5,9 +5,10 @@ from functools import partial
 from pathlib import Path
 from selectors import BaseSelector
 
+from sim.engine.failures.cause import Cause
 from sim.engine.setup import RealRos
 from sim.real.probe_link import Place, ProbeLink, sockets_in
-from sim.real.programs import RealOutcome, place_of
+from sim.real.programs import ended_by
 from sim.real.wire import Hello, ProbeLine
 from sim.trace.events import AnyEvent, Notice, ProcessAppeared, ProcessEnded, Severity
 
@@ -37,7 +38,7 @@ class WatchedProcesses:
         self._links: dict[Place, tuple[int, ProbeLink]] = {}
         self._unnamed: dict[int, str] = {}
         """The labels of processes that have not told anything yet, by their numbers on the trace."""
-        self._outcomes: dict[Place, RealOutcome] = {}
+        self._outcomes: dict[Place, Cause] = {}
         self._left = False
 
     def start(self) -> None:
@@ -79,9 +80,9 @@ class WatchedProcesses:
         """Whether to go on: a process is there, or none has come yet."""
         return not self._left and (len(self._outcomes) < len(self._links) or not self._links)
 
-    def outcome(self) -> RealOutcome:
+    def outcome(self) -> Cause:
         """The outcome once all are gone; a process that did not exit by itself takes precedence."""
-        usual = RealOutcome("every process that was watched is gone", failed=False)
+        usual = Cause("every process that was watched is gone", failed=False)
         return next((each for each in self._outcomes.values() if each.failed), usual)
 
     def interrupt(self) -> None:
@@ -102,14 +103,13 @@ class WatchedProcesses:
         self._take(lines, process=number)
 
 
-def _outcome(link: ProbeLink) -> RealOutcome:
+def _outcome(link: ProbeLink) -> Cause:
     name = "a process" if link.hello is None else label_of(link.hello)
     if link.uncaught is not None:
-        error = link.uncaught.error
-        return RealOutcome(f"{place_of(link.uncaught)}: {name} raised {error}", True, error)
+        return ended_by(link.uncaught, name)
     if link.has_left:
-        return RealOutcome(f"{name} ended", failed=False)
-    return RealOutcome(f"{name} was killed, or its connection is gone", failed=True)
+        return Cause(f"{name} ended", failed=False)
+    return Cause(f"{name} was killed, or its connection is gone", failed=True)
 
 
 def label_of(hello: Hello) -> str:

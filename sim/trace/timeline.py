@@ -52,6 +52,8 @@ class Timeline:
         self._moment: Moment | None = None
         self.threads: dict[ThreadId, ThreadInfo] = run.participants.threads
         """The threads, in order of appearance."""
+        self.processes: dict[ProcessId, str] = run.participants.processes
+        """The names of the programs, in a run of several."""
         self.processes_ended: dict[ProcessId, Nanoseconds] = run.participants.ended
         """When programs ended, in a run of several."""
         self.executors: dict[ExecutorId, ExecutorInfo] = run.participants.executors

@@ -38,7 +38,7 @@ def test_every_package_that_the_model_has_is_known(package: str) -> None:
 
 def test_what_has_wheels_is_installed_with_pip() -> None:
     said = on_missing("ModuleNotFoundError: No module named 'nav_msgs'", "kilted")
-    assert said == "; pip install ros-kilted-nav-msgs, into the Python that runs it"
+    assert said == "pip install ros-kilted-nav-msgs, into the Python that runs it"
 
 
 @pytest.mark.parametrize("other", ["ModuleNotFoundError: No module named 'mine'", "KeyError: 'tf2_ros'", ""])

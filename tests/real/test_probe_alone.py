@@ -21,6 +21,7 @@ from sim.probes.on_path.cbtui_probe import FOLLOW, PORT, TOKEN, callbacks
 from sim.probes.on_path.cbtui_probe.callbacks import Calls
 from sim.probes.on_path.cbtui_probe.consoles import Console as ConsoleLink
 from sim.probes.on_path.cbtui_probe.consoles import lines
+from sim.probes.on_path.cbtui_probe.latest import Latest
 from sim.probes.on_path.cbtui_probe.recorder import Recorder, now
 from sim.probes.on_path.cbtui_probe.sockets import Server
 from sim.probes.on_path.cbtui_probe.turns import Turns
@@ -182,6 +183,37 @@ def test_more_consoles_than_there_is_room_for_are_turned_away(recorder: Recorder
 def test_what_has_appeared_is_told_to_everybody_who_comes(recorder: Recorder, come: Come) -> None:
     thread = recorder.thread()
     assert [getattr(come().follow().next(), "thread", None) for _ in range(2)] == [thread, thread]
+
+
+def test_what_began_long_ago_and_goes_on_is_told_to_who_comes_late() -> None:
+    ongoing: list[tuple[Any, ...]] = [
+        ("callback_start", 10, 1, 7, 0, 0, 0),
+        ("called", 11, 2, "/switch", 1, "", 5, 6),
+        ("blocked", 12, 2, 7, 1, "/switch"),
+        ("at", 13, 1, 7, [["node.py", "tick", 3]], [0, 0, 0, 0], "rclpy.client", "Client.call"),
+        ("ready", 14, 3, 1, 0),
+        ("wait_start", 15, 3, 14, "group held", 1, True),
+        ("callback_start", 16, 4, 8, 0, 0, 0),
+        ("callback_suspend", 17, 4, 8),
+        ("taken", 18, 5, 8, 17, 1),
+        ("callback_suspend", 19, 5, 8),
+        ("callback_resume", 20, 5, 9),
+    ]
+    over: list[tuple[Any, ...]] = [
+        ("callback_start", 21, 6, 8, 0, 0, 0),
+        ("at", 22, 6, 8, [["node.py", "hear", 9]], [0, 0, 0, 0], "time", "sleep"),
+        ("callback_end", 23, 6, 8),
+        ("called", 24, 9, "/other", 0, "", 5, 6),
+        ("service_reply", 25, 9, "/other", ""),
+        ("wait_start", 26, 6, 26, "group held", 1, True),
+        ("wait_end", 27, 6),
+    ]
+    latest, later = Latest(), [("notice", 30, "INFO", str(number)) for number in range(20_000)]
+    latest.add([*ongoing, *over], lines([*ongoing, *over]))
+    latest.add(later, lines(later))
+    told, count = latest.whole()
+    assert decode_lines(told) == decode_lines(lines([*ongoing, *later]))
+    assert count == len(ongoing) + len(later)
 
 
 def test_an_executor_stops_until_the_thread_that_is_late_has_worked(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,13 +7,14 @@ from selectors import DefaultSelector
 
 import pytest
 
-from sim.real.programs import Program, RealOutcome, Start
+from sim.engine.failures.cause import Cause
+from sim.real.programs import Program, Start
 
 _LIMIT = 30.0
 """Real seconds for a shell to print a word, or to end."""
 
 
-def outcome_of(script: str, do: Callable[[Program], object]) -> RealOutcome:
+def outcome_of(script: str, do: Callable[[Program], object]) -> Cause:
     """How a shell script ended to which something was done as soon as it had printed a line."""
     printed: list[str] = []
     with DefaultSelector() as selector:
@@ -38,14 +39,14 @@ def outcome_of(script: str, do: Callable[[Program], object]) -> RealOutcome:
 @pytest.mark.parametrize(
     ("script", "do", "outcome"),
     [
-        ("trap '' INT; echo x; sleep 60", Program.kill, RealOutcome("it was stopped", failed=False)),
-        ("echo x; exec sleep 60", Program.interrupt, RealOutcome("it was stopped", failed=False)),
-        ("echo x; kill -9 $$", id, RealOutcome("the program crashed by SIGKILL", failed=True)),
-        ("echo x; exit 3", id, RealOutcome("the program ended with exit code 3", failed=True)),
-        ("echo x", id, RealOutcome("the program returned", failed=False)),
+        ("trap '' INT; echo x; sleep 60", Program.kill, Cause("it was stopped", failed=False)),
+        ("echo x; exec sleep 60", Program.interrupt, Cause("it was stopped", failed=False)),
+        ("echo x; kill -9 $$", id, Cause("the program crashed by SIGKILL", failed=True)),
+        ("echo x; exit 3", id, Cause("the program ended with exit code 3", failed=True)),
+        ("echo x", id, Cause("the program returned", failed=False)),
     ],
 )
 def test_only_what_a_program_did_by_itself_counts_as_its_failure(
-    script: str, do: Callable[[Program], object], outcome: RealOutcome
+    script: str, do: Callable[[Program], object], outcome: Cause
 ) -> None:
     assert outcome_of(script, do) == outcome

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.diagnosis import diagnose
+from sim.diagnosis import CodeLocation, diagnose
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import (
     CallbackFailed,
@@ -156,6 +156,12 @@ def test_an_exception_ends_the_program_and_is_placed(tmp_path: Path) -> None:
     assert (failed.error, Path(failed.file).name) == ("ValueError: no more", "tried.py")
     assert run.ending.failed
     assert run.ending.reason == f"tried.py:{failed.line}: the program raised ValueError: no more"
+    [found] = diagnose(run.timeline)
+    explained = found.rule.explain(found, run.timeline)
+    assert (explained.what, explained.place) == (
+        "the program raised ValueError: no more",
+        CodeLocation(failed.file, failed.line, failed.line),
+    )
 
 
 def test_a_goal_of_an_action_is_seen_at_work_as_on_the_model(tmp_path: Path) -> None:

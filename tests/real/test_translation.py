@@ -67,12 +67,13 @@ def sent(t: int, wall: int) -> Sent:
     return Sent(t, 1000 + t, "/news", NODE, 0, wall, wall + 5)
 
 
-def test_the_run_begins_with_the_first_node() -> None:
+def test_the_run_begins_with_the_first_node_whoever_tells_of_it() -> None:
     told = Told()
     told.tell(Notice(START - 900, Severity.INFO, "before"))
     told.tell(NodeAppeared(START + 400, 90, "/later"))
-    assert told.began == [START]
-    assert [event.t for event in told.all(NodeAppeared)] == [0, 400]
+    told.tell(NodeAppeared(START - 300, 91, "/of_a_process_that_answers_later"), process=2)
+    assert [event.t for event in told.all(NodeAppeared)] == [0, 300, 700]
+    assert told.began == [START - 300]
     assert [event.t for event in told.all(Notice)] == [0]
 
 

@@ -17,6 +17,7 @@ from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.shown_program import of_processes, of_robot
 from sim.engine.commands import CallService, RunLine, Stop
 from sim.engine.setup import RealRos
+from sim.probes.on_path.cbtui_probe import PROTOCOL
 from sim.real.probe_link import ProbeLink, processes_in
 from sim.real.wire import Hello, Left, ProbeLine
 from sim.trace.events import (
@@ -26,11 +27,13 @@ from sim.trace.events import (
     LineEnded,
     LineSaid,
     ProcessAppeared,
+    ProcessEnded,
     RunEnded,
     ServiceCalled,
     ThreadAppeared,
     VelocityCommanded,
 )
+from sim.trace.timeline import Timeline
 from tests.real import programs
 from tests.real.programs import needs_ros
 
@@ -151,6 +154,15 @@ def test_lines_and_calls_act_on_the_graph_of_what_is_watched(
     # Each side of a connection is told of the other at its own time: what is said before is lost.
     assert 1 <= moved <= 3
     assert called == {"/switch"}
+
+
+def test_the_heading_counts_the_processes_that_are_there() -> None:
+    hello = Hello(0, PROTOCOL, 17, "3.12.3", "jazzy", ["python3", "node.py"], 0)
+    subject, timeline, said = of_processes(RealRos(watched="probes"), [hello]), Timeline(), []
+    for event in (ProcessAppeared(0, 1, "a"), ProcessAppeared(1, 2, "b"), ProcessEnded(2, 1, "it ended", 0)):
+        timeline.extend([event])
+        said.append(subject.heading_of(timeline))
+    assert said == ["watched: 1 process", "watched: 2 processes", "watched: 1 process"]
 
 
 def test_a_process_that_dies_in_the_middle_of_a_line_was_heard_until_then(folder: Path) -> None:

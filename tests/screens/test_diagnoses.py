@@ -284,11 +284,12 @@ APART = Cure(Changes(threads=2), "spin with two threads")
 class Trial:
     """Finds that an edit helps, and nothing else; keeps what was tried."""
 
-    def __init__(self) -> None:
+    def __init__(self, refusal: str = "") -> None:
         self.tried: list[Cure] = []
+        self.refusal = refusal
 
     def cures(self, told: ExplainedFinding) -> Sequence[Cure]:
-        return (APART, EDIT) if told.is_problem else ()
+        return (APART, EDIT) if told.is_problem and not self.refusal else ()
 
     def helps(
         self, _told: ExplainedFinding, cure: Cure, _given_up: Event, note: Callable[[int], object]
@@ -328,6 +329,17 @@ async def test_what_a_cure_edits_is_shown_line_by_line() -> None:
         assert "Your file stays as it is; a copy is run, with these lines:" in shown
         assert "-sleep(9)" in shown
         assert "+sleep(1)" in shown
+
+
+async def test_where_no_cure_can_be_tried_problems_say_why_and_remarks_do_not() -> None:
+    async with console() as (app, pilot):
+        findings = told_of(shared_group_run().until(TURNED))
+        await app.push_screen(DiagnosesScreen(findings, Charset.BRAILLE, Trial("Not on this ground.")))
+        await pilot.pause()
+        assert "· Not on this ground." in text_of(app)
+        assert not findings[-1].is_problem
+        await press(pilot, *["down"] * (len(findings) - 1))
+        assert "Not on this ground." not in text_of(app)
 
 
 def test_lines_that_go_and_come_are_coloured_apart() -> None:

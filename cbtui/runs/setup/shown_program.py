@@ -21,6 +21,7 @@ from sim.trace.model import Nanoseconds
 
 if TYPE_CHECKING:
     from sim.real.wire import Hello
+    from sim.trace.timeline import Timeline
 
 SetUp: TypeAlias = Callable[[int | None, float | None], RunSetup]
 """Makes a run for a number of threads (None: the program's own) and a speed (None: as fast as possible)."""
@@ -72,7 +73,7 @@ class ShownProgram:
 
     ``source`` is the program's text if that differs from the file at ``node_path``, ``sources`` the texts of
     a recording, by path. ``is_own_file`` tells that it is a file which the learner edits, whose guide is
-    written as it runs.
+    written as it runs. ``counts_processes`` has the heading tell how many processes there are.
     """
 
     heading: str
@@ -86,6 +87,14 @@ class ShownProgram:
     source: str | None = None
     sources: Mapping[str, str] = field(default_factory=dict)
     is_own_file: bool = False
+    counts_processes: bool = False
+
+    def heading_of(self, timeline: "Timeline") -> str:
+        """The heading of a run, as things stand at its end."""
+        if not self.counts_processes:
+            return self.heading
+        running = timeline.processes.keys() - timeline.processes_ended.keys()
+        return f"{self.heading}: {counted(len(running), 'process')}"
 
     @property
     def scene(self) -> tuple[Actor, ...]:
@@ -216,16 +225,16 @@ def of_processes(real: RealRos, found: Sequence["Hello"]) -> ShownProgram:
 
     The first one of those has its program shown.
     """
-    title = counted(len(found), "process")
-    setup = watched_setup(title, real)
+    setup = watched_setup("watched", real)
     lines = [f"- `{' '.join(each.command)}` ({each.process}, Python {each.python})" for each in found]
     return ShownProgram(
-        heading=f"watched: {title}",
+        heading="watched",
         guide=_WATCHED_GUIDE.format(processes="\n".join(lines)),
         node_path=Path(found[0].command[1] if len(found[0].command) > 1 else ""),
         service="",
         executor="as the programs say",
         set_up=lambda _threads, _speed: setup,
+        counts_processes=True,
     )
 
 

@@ -210,6 +210,8 @@ class CuresByNumber(ScreenPart):
         }
         if cures:
             self.host.ask(self._choose(trial, cures))
+        elif any(each.is_problem for each in self.host.runs.findings.findings):
+            self.host.tell(trial.refusal or None)
 
     def _choose(self, trial: CureTrial, cures: Mapping[str, "_Tried"]) -> Dialogue:
         number = self.host.runs.number

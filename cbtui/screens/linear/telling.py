@@ -115,7 +115,7 @@ class Telling(ScreenPart):
     def action_select(self) -> None:
         """Tell what runs and waits."""
         runs = self.runs
-        for line in summary(self.subject.heading, runs.timeline, self.navigation.now, runs.concurrency):
+        for line in summary(self.subject, runs.timeline, self.navigation.now, runs.concurrency):
             self.host.tell(line.strip())
 
     def action_diagnoses(self) -> None:

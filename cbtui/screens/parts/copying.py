@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from textual.screen import Screen
 
 from cbtui.runs.live.live_run import ShownRun
+from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
@@ -27,14 +28,14 @@ class DetailsCopy(ScreenPart):
     host: ScreenHost
     runs: RunController[ShownRun]
     navigation: TimeNavigation
-    heading: str
+    subject: ShownProgram
 
     def action_copy_details(self) -> None:
         """Copy to the terminal's clipboard (OSC 52, which works over ssh)."""
         timeline, now = self.runs.timeline, self.navigation.now
         lanes = self.screen.query_one(Lanes)
         if lanes.selection is None:
-            lines = list(summary(self.heading, timeline, now, self.runs.concurrency))
+            lines = list(summary(self.subject, timeline, now, self.runs.concurrency))
             what = f"the moment {timestamp(now)}"
         else:
             details = details_of_selection(timeline, lanes.selection.renewed(timeline), now, lanes.keys)
@@ -44,10 +45,12 @@ class DetailsCopy(ScreenPart):
         self.host.tell(f"copied {what}")
 
 
-def summary(heading: str, timeline: Timeline, now: Nanoseconds, concurrency: Concurrency) -> Iterator[str]:
+def summary(
+    subject: ShownProgram, timeline: Timeline, now: Nanoseconds, concurrency: Concurrency
+) -> Iterator[str]:
     """Yield the lines of a summary: the diagnosis, what runs, and what waits for what."""
     label = executor_label(timeline)
-    yield f"{heading}, t {timestamp(now)}" + (f", {label}" if label else "")
+    yield f"{subject.heading_of(timeline)}, t {timestamp(now)}" + (f", {label}" if label else "")
     yield diagnosis_at(timeline, now, concurrency).text
     note = call_note(timeline, now)
     if note:

@@ -22,6 +22,8 @@ from sim.trace.model import Nanoseconds
 _SHORTEST: Nanoseconds = 5 * SECOND
 _LONGEST: Nanoseconds = 40 * SECOND
 
+_ONLY_ON_MODEL = "Cures are tried only on the model: open the program without --on ros2 to have them tried."
+
 Note = Callable[[int], object]
 """Takes how many per cent of a trial are done."""
 
@@ -56,9 +58,14 @@ class CureTrial:
     until: Nanoseconds
     _before: TriedRun | None = None
 
+    @property
+    def refusal(self) -> str:
+        """Why no cure of this run is tried, as a sentence; "" if cures are."""
+        return _ONLY_ON_MODEL if self.run.setup.real is not None else ""
+
     def cures(self, told: ExplainedFinding) -> tuple[Cure, ...]:
         """What can be tried out of sight of a finding's cure: on the model, and for problems."""
-        if not told.is_problem or self.changes.real is not None:
+        if not told.is_problem or self.refusal:
             return ()
         return tuple(cures_of(told.explanation, self.run.setup, self.changes, self.run.timeline))
 

@@ -36,6 +36,10 @@ _LOOK = 0.5
 class Trial(Protocol):
     """Tries cures out of sight."""
 
+    @property
+    def refusal(self) -> str:
+        """Why no cure of this run is tried, as a sentence; "" if cures are."""
+
     def cures(self, told: ExplainedFinding) -> Sequence[Cure]:
         """What can be tried of a finding's cure."""
 
@@ -226,9 +230,14 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         if chosen.cure is not None:
             told = cure_details(chosen.cure, self._charset)
         else:
-            percent = self._percent.get(chosen.place, 0) if self._untried[chosen.place] else None
-            told = details_of(self._findings[chosen.place], self._charset, percent)
+            told = details_of(self._findings[chosen.place], self._charset, self._about_trial(chosen.place))
         self.query_one(".told", Static).update(told)
+
+    def _about_trial(self, place: int) -> str:
+        """What there is to say about trying the cure of a finding."""
+        if self._untried[place]:
+            return f"A cure is being tried in the background: {self._percent.get(place, 0)} %."
+        return self._trial.refusal if self._trial and self._findings[place].is_problem else ""
 
     @on(OptionList.OptionHighlighted)
     def _tell(self) -> None:
@@ -291,19 +300,16 @@ def way_row(text: str, charset: Charset) -> Content:
     return Content.assemble((" " * (_TIME + 4) + "→ ", "bold"), (visible(text, charset), "$text-success"))
 
 
-def details_of(each: ExplainedFinding, charset: Charset, percent: int | None = None) -> Content:
-    """Return what happened, why, what to do, and where in the code and when.
-
-    ``percent`` is how much of a trial of the cure is done, None while there is none.
-    """
+def details_of(each: ExplainedFinding, charset: Charset, about_trial: str = "") -> Content:
+    """Return what happened, why, what to do, what there is to say about trying that, and where and when."""
     explained = each.explanation
     parts = [
         (f"{visible(explained.what, charset)}.", "bold"),
         (f"\n{visible(sentence(explained.why), charset)}", ""),
         (f"\n→ {visible(explained.cure, charset)}.", "$text-success"),
     ]
-    if percent is not None:
-        parts.append((f"\n· A cure is being tried in the background: {percent} %.", ""))
+    if about_trial:
+        parts.append((f"\n· {about_trial}", ""))
     where = location_text(each.finding, explained)
     if where:
         parts.append((f"\n{visible(where, charset)}", "$text-muted"))

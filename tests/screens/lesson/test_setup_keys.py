@@ -225,6 +225,17 @@ async def test_on_real_ros_the_keys_of_time_tell_why_they_do_nothing(tmp_path: P
         assert "Pause: stop time for every thread (not on real ROS 2)" in text_of(app)
 
 
+async def test_on_real_ros_the_diagnosis_says_where_cures_are_tried(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    engines = FakeEngines(shared_group_run().events, ns(12.9))
+    app = CbtuiApp(start_file=(file, [], "real"), start_changes=Changes(real=RealRos()), open_session=engines)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        await press(pilot, "d")
+        assert "Cures are tried only on the model: open the program without --on ros2" in text_of(app)
+
+
 async def test_on_real_ros_a_moment_to_come_is_not_paused_at(tmp_path: Path) -> None:
     file = tmp_path / "my_node.py"
     file.write_text("")

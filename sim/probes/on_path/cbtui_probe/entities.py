@@ -173,7 +173,7 @@ class Entities:
         if state_of(node) is None:
             number = self._recorder.new_id()
             setattr(node, STATE, number)
-            self._recorder.put_appeared("node", number, node.get_fully_qualified_name())
+            self._recorder.put("node", now(), number, node.get_fully_qualified_name())
             self.nodes.add(node)
         return int(state_of(node))
 
@@ -232,8 +232,9 @@ class Entities:
         depth = getattr(getattr(made, "qos_profile", None), "depth", 0)
         if entity.kind == "timer":
             entity.period = made.timer_period_ns
-        recorder.put_appeared(
+        recorder.put(
             "entity",
+            now(),
             number,
             state_of(node),
             group,
@@ -278,7 +279,7 @@ class Entities:
                 kind = "exclusive"
             elif type(group) is ReentrantCallbackGroup:
                 kind = "reentrant"
-            self._recorder.put_appeared("group", number, node, kind, type(group).__name__)
+            self._recorder.put("group", now(), number, node, kind, type(group).__name__)
         return int(state_of(group))
 
     def _watch_destroying(self, node_class: Any, kind: str) -> None:
@@ -288,7 +289,8 @@ class Entities:
         @wraps(destroy)
         def destroy_known(node: Any, thing: Any) -> Any:
             entity = state_of(thing)
-            if entity is not None and recorder.appeared.pop(entity.number, None) is not None:
+            if entity is not None and entity.made() is not None:
+                entity.made = _nothing
                 entity.waits_no_more(recorder)
                 recorder.put("entity_gone", now(), entity.number)
             with UNSEEN:

@@ -165,7 +165,7 @@ class Executors:
     def _know(self, executor: Any, threads: int) -> Spinner:
         kind = type(executor).__name__
         spinner = Spinner(self._recorder.new_id(), threads, asks_groups=kind != "EventsExecutor")
-        self._recorder.put_appeared("executor", spinner.number, kind, threads)
+        self._recorder.put("executor", now(), spinner.number, kind, threads)
         self._spinners[executor] = spinner
         with suppress(AttributeError):  # one made of C++ takes no attributes
             setattr(executor, STATE, spinner)

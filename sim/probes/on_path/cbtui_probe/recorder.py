@@ -14,9 +14,6 @@ _BOUND = 200_000
 _ROOM = 30
 """Bits for the ids of one process, so that those of several processes differ."""
 
-APPEARING = frozenset({"node", "group", "entity", "executor", "thread"})
-"""The tags of the events that introduce an id."""
-
 now = time.monotonic_ns
 
 
@@ -45,17 +42,13 @@ class _Local(threading.local):
 
 
 class Recorder:
-    """Gives out ids and takes events, as arrays of a kind's tag and its fields. Thread-safe.
-
-    What has appeared and is still there is told to every console that comes, whenever it comes.
-    """
+    """Gives out ids and takes events, as arrays of a kind's tag and its fields. Thread-safe."""
 
     def __init__(self) -> None:
         self.local = _Local()
         self.lost = 0
         self.idents: dict[int, int] = {}
         """Python's identifiers of the threads that have appeared, by their ids."""
-        self.appeared: dict[int, tuple[Any, ...]] = {}
         self._events: deque[tuple[Any, ...]] = deque(maxlen=_BOUND)
         self._ids = count((os.getpid() << _ROOM) + 1)
 
@@ -74,12 +67,6 @@ class Recorder:
             self.lost += 1
         self._events.append(event)
 
-    def put_appeared(self, tag: str, number: int, *fields: Any) -> None:
-        """Take an event that introduces an id."""
-        event = (tag, now(), number, *fields)
-        self.put(*event)
-        self.appeared[number] = event
-
     def take(self) -> list[tuple[Any, ...]]:
         """Take all events out, in order."""
         events = []
@@ -93,5 +80,5 @@ class Recorder:
         if here.thread == 0:
             here.thread = self.new_id()
             self.idents[here.thread] = threading.get_ident()
-            self.put_appeared("thread", here.thread, threading.current_thread().name, 0, here.executor)
+            self.put("thread", now(), here.thread, threading.current_thread().name, 0, here.executor)
         return here.thread

@@ -12,14 +12,13 @@ import struct
 import sys
 import threading
 import time
-from collections import deque
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import FOLLOW, PORT, PORTS, PROTOCOL, TOKEN
 from .consoles import Console, lines
-from .recorder import APPEARING
+from .latest import Latest
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,8 +34,6 @@ _WAITING_SHARE = 0.1
 rclpy that lets go of the lock is slowed."""
 _LOOKING_SHARE = 0.02
 """The share of one core that looking takes, at most, as far as the longest period allows."""
-_LATEST = 20_000
-"""Events that are kept for consoles that are yet to come."""
 _CONSOLES = 4
 """How many follow at most, and how many may be about to."""
 _LONGEST_WORD = 200
@@ -75,29 +72,6 @@ class _Visitor:
         return word + end if end else None
 
 
-class _Latest:
-    """The latest events, for consoles that are yet to come; as lines, since many objects are slow to keep."""
-
-    def __init__(self) -> None:
-        self._count = 0
-        self._batches: deque[tuple[list[tuple[Any, ...]], int, bytes]] = deque()
-
-    def add(self, events: list[tuple[Any, ...]], told: bytes) -> None:
-        """Keep events, which are ``told`` as lines, and give up the oldest."""
-        appeared = [event for event in events if event[0] in APPEARING]
-        self._batches.append((appeared, len(events), told))
-        self._count += len(events)
-        while self._count > _LATEST and len(self._batches) > 1:
-            self._count -= self._batches.popleft()[1]
-
-    def after(self, appeared: list[tuple[Any, ...]]) -> tuple[bytes, int]:
-        """The lines that tell who ``appeared``, if these do not, and then these; and of how many events."""
-        told = {event for batch, _, _ in self._batches for event in batch}
-        earlier = [event for event in appeared if event not in told]
-        whole = lines(earlier) + b"".join(batch for _, _, batch in self._batches)
-        return whole, len(earlier) + self._count
-
-
 class Server:
     """Sends the events of ``recorder`` to consoles, and has ``look`` called in between.
 
@@ -112,7 +86,7 @@ class Server:
         self._listeners: list[socket.socket] = []
         self._visitors: list[_Visitor] = []
         self._consoles: list[Console] = []
-        self._latest = _Latest()
+        self._latest = Latest()
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="cbtui-probe", daemon=True)
 
@@ -210,9 +184,7 @@ class Server:
     def _follow(self, connection: socket.socket) -> None:
         """Tell a console what is there, what happened lately, and from now on all that happens."""
         console = Console(connection)
-        appeared = list(self._recorder.appeared.values())
-        self._send()  # what has appeared until now is among the latest, or earlier
-        console.tell(*self._latest.after(appeared))
+        console.tell(*self._latest.whole())
         self._consoles.append(console)
 
     def _hello(self) -> tuple[Any, ...]:
