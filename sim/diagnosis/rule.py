@@ -130,11 +130,12 @@ class Rule(ABC):
 
 
 _MODEL_FOLDER = str(Path(sim.__file__).parent)
+_RCLPYS_TIMER = "/rclpy/timer.py"
 
 
 def is_models(entity: EntityInfo) -> bool:
-    """Whether an entity is the model's own, such as the timer of a rate."""
-    return entity.file.startswith(_MODEL_FOLDER)
+    """Whether an entity is the model's or rclpy's own, such as the timer of a rate."""
+    return entity.file.startswith(_MODEL_FOLDER) or entity.file.endswith(_RCLPYS_TIMER)
 
 
 def place_of(entity: EntityId, timeline: Timeline) -> CodeLocation | None:

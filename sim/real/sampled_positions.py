@@ -6,7 +6,7 @@ from functools import lru_cache
 
 from sim.engine.callback_positions import LOCK, loop_around
 from sim.real.wire import At
-from sim.trace.events import CallbackAt, Doing
+from sim.trace.events import CallbackAt, Doing, ProgramAt
 
 _WAITING = ("threading", "queue", "concurrent.futures", "multiprocessing")
 """Modules in which threads wait for each other."""
@@ -20,13 +20,12 @@ _FUNCTIONS = {
 """What those made of C do, by their names."""
 
 
-def position_of(seen: At, t: int) -> CallbackAt:
+def position_of(seen: At, t: int) -> CallbackAt | ProgramAt:
     """The event of the trace; who holds a lock is not known."""
     doing, call = _called(seen.module, seen.function) if seen.module else _built_in(seen)
     loops = (loop_around(file, line) for file, _, line in reversed(seen.frames))
-    return CallbackAt(
-        t, seen.entity, seen.thread, doing, call, seen.frames, next(filter(None, loops), ("", 0))
-    )
+    position = doing, call, seen.frames, next(filter(None, loops), ("", 0))
+    return CallbackAt(t, seen.entity, seen.thread, *position) if seen.entity else ProgramAt(t, *position)
 
 
 def _called(module: str, function: str) -> tuple[Doing, str]:
@@ -39,6 +38,8 @@ def _called(module: str, function: str) -> tuple[Doing, str]:
 
 def _built_in(seen: At) -> tuple[Doing, str]:
     """What a callback does at an instruction of its own that has called no Python function."""
+    if not seen.frames:
+        return _COMPUTES
     file, _, line = seen.frames[-1]
     text = _source(file, seen.instruction)
     try:

@@ -88,6 +88,8 @@ class Translation:
             match line:
                 case Hello() | Uncaught() | Left() | ProgramWanted() | Interrupted():
                     continue
+                case At(entity=0) if process:
+                    continue  # the trace has room for one program's position
                 case NodeAppeared(t=t):
                     self._first_node = min(t, self._first_node or t)
                 case ThreadAppeared():

@@ -85,10 +85,11 @@ class MessageTaken(msgspec.Struct, frozen=True, array_like=True, tag="taken"):
 
 
 class At(msgspec.Struct, frozen=True, array_like=True, tag="at"):
-    """Where a running callback is in the program's own code."""
+    """Where a running callback is in the program's own code, or the main thread while nobody spins."""
 
     t: int
     entity: int
+    """0 for the main thread."""
     thread: int
     frames: tuple[tuple[str, str, int], ...]
     """File, function and line, from the callback inwards."""

@@ -127,3 +127,43 @@ def test_what_computes_is_seen_in_its_loop(tmp_path: Path) -> None:
     assert len(loops) == 1
     first = loops.pop()[1]
     assert {each.frames[-1].line for each in found} <= {first, first + 1}
+
+
+NEVER_MADE = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.create_timer(0.2, self.tick)
+        rclpy.spin(self)
+        self.create_timer(0.2, self.tick)
+
+    def tick(self):
+        time.sleep(0.05)
+"""
+NEVER_SPUN = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.create_timer(0.2, self.tick)
+        while True:
+            time.sleep(0.1)
+
+    def tick(self):
+        pass
+"""
+
+
+@programs.needs_ros
+@pytest.mark.slow
+@pytest.mark.parametrize("body", [NEVER_MADE, NEVER_SPUN])
+def test_a_program_that_never_gets_beyond_init_is_told_of_as_on_the_model(tmp_path: Path, body: str) -> None:
+    def told(ground: str) -> set[tuple[str, str, int]]:
+        timeline = programs.run(tmp_path, body, ground=ground).timeline
+        explained = [(each.rule, each.rule.explain(each, timeline)) for each in diagnose(timeline)]
+        return {
+            (rule.id, each.what, each.place.first_line) for rule, each in explained if each.place is not None
+        }
+
+    on_model = told("model")
+    assert on_model
+    assert told("ros2") == on_model

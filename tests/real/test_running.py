@@ -194,3 +194,23 @@ def test_what_waits_behind_a_callback_of_an_events_executor_is_seen(tmp_path: Pa
     [first, *_] = timeline.waits_of(entity_named("hear", timeline), whole(timeline))
     assert first.reason is Reason.EVENT_QUEUE
     assert first.holder == entity_named("tell", timeline)
+
+
+SLEEPS_BY_A_RATE = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.rate = self.create_rate(2)
+        self.create_timer(0.1, self.tick)
+
+    def tick(self):
+        self.rate.sleep()
+"""
+
+
+@pytest.mark.slow
+def test_what_sleeps_by_a_rate_whose_timer_needs_its_thread_is_told_as_on_the_model(tmp_path: Path) -> None:
+    timelines = [programs.run(tmp_path, SLEEPS_BY_A_RATE, ground=each).timeline for each in ("model", "ros2")]
+    on_model, on_ros = ([each.rule.explain(each, of).what for each in diagnose(of)] for of in timelines)
+    assert "needs the only thread" in on_model[0]
+    assert on_ros == on_model

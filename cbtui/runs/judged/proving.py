@@ -10,18 +10,17 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby, pairwise
-from pathlib import Path
 from statistics import median
 
-import sim
 from sim.diagnosis import Weight, diagnose
+from sim.diagnosis.rule import is_models
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.quantities.plural import counted
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityKind
 from sim.trace.figures.comparison import CallbackInRun, CallbackPair, compare
-from sim.trace.model import EntityInfo, Nanoseconds, Span, Wait, Window
+from sim.trace.model import Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 GROUNDS = ("the model", "real rclpy")
@@ -34,7 +33,6 @@ _TO_FIND: Nanoseconds = 3 * SECOND
 _PACE = 50
 """One call in so many may be missing: a machine publishes a little more slowly than the rate says."""
 _NUMBER = re.compile(r"\d+(\.\d+)?")
-_OWN = Path(sim.__file__).parent
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -126,14 +124,9 @@ def differences(model: Timeline, real: Timeline, window: Window) -> list[Differe
     settled = [_settled(timeline, window) for timeline in (model, real)]
     for pair in compare(model, real, window).callbacks:
         known = pair.first or pair.second
-        if known is not None and not _is_own(known.figures.entity):
+        if known is not None and not is_models(known.figures.entity):
             found += list(_of_callback(pair, known, (model, real), settled, window))[:1]
     return sorted(found)
-
-
-def _is_own(entity: EntityInfo) -> bool:
-    """Whether a callback is the model's own, as the timer of a Rate is."""
-    return Path(entity.file).is_relative_to(_OWN)
 
 
 def _settled(timeline: Timeline, window: Window) -> Nanoseconds:
@@ -295,7 +288,7 @@ def _problems(timeline: Timeline) -> Iterator[tuple[tuple[str, str], tuple[Nanos
     """
     for each in diagnose(timeline):
         entity = timeline.entities.get(each.subject)
-        if each.rule.weigh(each, timeline) is Weight.PROBLEM and not (entity and _is_own(entity)):
+        if each.rule.weigh(each, timeline) is Weight.PROBLEM and not (entity and is_models(entity)):
             told = each.rule.explain(each, timeline)
             culprit = timeline.entities.get(each.culprit) if each.rule.by_culprit else None
             named = culprit or entity

@@ -118,6 +118,7 @@ class Entities:
         for kind in ("timer", "subscription", "service", "client", "guard_condition"):
             self._watch_making(node_class, kind)
             self._watch_destroying(node_class, kind)
+        self._watch_rates(node_class)
         self._watch_publishers(node_class)
         self._watch_waitables(node_class)
         self._watch_parameters(node_class)
@@ -297,6 +298,21 @@ class Entities:
                 return destroy(node, thing)
 
         setattr(node_class, f"destroy_{kind}", destroy_known)
+
+    def _watch_rates(self, node_class: Any) -> None:
+        """Know the timers of rates, which rclpy makes and calls: what sleeps by a rate waits for them."""
+        make = node_class.create_rate
+
+        @wraps(make)
+        def create_rate(node: Any, *args: Any, **kwargs: Any) -> Any:
+            with UNSEEN:
+                rate = make(node, *args, **kwargs)
+            timer, entity = rate._timer, WatchedEntity("timer")
+            timer.callback = self._traced(entity, timer.callback)
+            self._know(node, timer, entity, rate.sleep, place=_place(sys._getframe(1)))
+            return rate
+
+        node_class.create_rate = create_rate
 
     def _watch_publishers(self, node_class: Any) -> None:
         make = node_class.create_publisher

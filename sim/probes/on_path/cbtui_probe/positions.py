@@ -1,9 +1,10 @@
-"""At which line of the program's own code each running callback is."""
+"""At which line of the program's own code each running callback is, and the main thread if it runs none."""
 
 from __future__ import annotations
 
 import sys
 import sysconfig
+import threading
 from typing import TYPE_CHECKING, Any
 
 from .callbacks import is_own
@@ -20,28 +21,53 @@ _LIBRARIES = (
     *("/usr/lib/python3/", "/opt/ros/"),
 )
 """Folders of packages that are nobody's own; a workspace's packages lie elsewhere."""
+_CALLBACKS = "cbtui_probe.callbacks"
 _DEEPEST = 20
 """Lines of one stack that are told: the innermost."""
 _UNKNOWN = (0, 0, 0, 0)
+_EVERY = 250_000_000
+"""Nanoseconds between two looks at the program's main thread."""
 
 
 class PositionSampler:
-    """Samples the threads that run callbacks, and tells where each is when that has changed.
+    """Samples the threads that run callbacks, and the main thread; reports where each is if that has changed.
 
-    For one thread.
+    The main thread is reported while nobody spins, and while it spins inside ``__init__``. For one thread.
     """
 
     def __init__(self, recorder: Recorder, executors: Executors) -> None:
         self._recorder = recorder
         self._executors = executors
         self._latest: dict[int, tuple[Any, ...]] = {}
+        self._main = threading.main_thread().ident
+        self._main_due = 0
+        self._main_lines: list[Any] = []
 
     def look(self) -> None:
         """Look once."""
+        self._look_at_callbacks()
+        if now() >= self._main_due:
+            self._main_due = now() + _EVERY
+            self._look_at_program()
+
+    def _look_at_program(self) -> None:
+        stack = _stack(sys._current_frames().get(self._main or 0), until="")
+        position = _position(stack)
+        if position is None or _CALLBACKS in map(_module, stack):
+            return
+        lines, *rest = position
+        spins = any(each.is_spun() for each in self._executors.all())
+        if spins and all(function != "__init__" for _, function, _ in lines):
+            lines = []
+        if lines != self._main_lines:
+            self._main_lines = lines
+            self._recorder.put("at", now(), 0, 0, lines, *rest)
+
+    def _look_at_callbacks(self) -> None:
         running = [each for spinner in self._executors.all() for each in spinner.busy.copy().items()]
         tops = sys._current_frames() if running else {}
         for thread, entity in running:
-            stack = _stack(tops.get(self._recorder.idents[thread]))
+            stack = _stack(tops.get(self._recorder.idents[thread]), until=_CALLBACKS)
             instructions = entity, [(frame.f_code, frame.f_lasti) for frame in stack]
             if self._latest.get(thread) != instructions:
                 self._latest[thread] = instructions
@@ -50,13 +76,13 @@ class PositionSampler:
                     self._recorder.put("at", now(), entity, thread, *position)
 
 
-def _stack(top: FrameType | None) -> list[FrameType]:
-    """The frames of a callback, the innermost first."""
+def _stack(top: FrameType | None, until: str) -> list[FrameType]:
+    """The frames that a module has called, the innermost first; none if it is not on the stack. "": all."""
     stack = []
-    while top is not None and _module(top) != "cbtui_probe.callbacks":
+    while top is not None and _module(top) != until:
         stack.append(top)
         top = top.f_back
-    return stack if top is not None else []
+    return stack if top is not None or not until else []
 
 
 def _position(stack: list[FrameType]) -> tuple[Any, ...] | None:
