@@ -272,6 +272,7 @@ class RealEngine:
     def _take(self, lines: list[ProbeLine], process: int = 0) -> None:
         self._hold_for(lines)
         self._caller.hear(lines)
+        self._lines.hear(lines)
         self._translation.take(lines, process)
         self._robot.hear(lines)
 

@@ -26,7 +26,7 @@ from sim.engine import commands
 from sim.interfaces import Kind, UnknownInterfaceError
 from sim.packages import Packages, find_packages, use_packages
 from sim.real import stand_in, telling
-from sim.real.wire import Interrupted, ProgramEnded, ProgramWanted, decode_request
+from sim.real.wire import Interrupted, NodesKnown, ProgramEnded, ProgramWanted, decode_request
 from sim.trace.events import LineCompleted, LineEnded, LineSaid
 
 stand_in.install()
@@ -35,6 +35,9 @@ from sim.shell import CommandFailed, OnExit, ShellLine, complete, word_start  # 
 
 _TO_DISCOVER = 1.0
 """Seconds after its start for which lines wait, so that discovery finds the graph."""
+_TO_FIND = 5.0
+"""Seconds for which a line waits at most until discovery has found the nodes that the run knows."""
+_LOOK = 0.02
 _TO_TELL = 0.5
 """Seconds that a node has to list its parameters while a line is completed."""
 
@@ -116,12 +119,19 @@ class RealGround:
         self._known_at = time.monotonic() + _TO_DISCOVER
         options = {"start_parameter_services": False, "enable_rosout": False}
         self._node = rclpy.create_node("_cbtui_lines", **options)
+        self.unfound: set[str] = set()
+        """The nodes that the run knows and discovery has not found yet."""
         self.now = now
         self.signal = _Signal
 
     def discover(self) -> None:
-        """Wait until discovery has had its time."""
+        """Wait until discovery has had its time, and has found the nodes that the run knows."""
         time.sleep(max(0.0, self._known_at - time.monotonic()))
+        given_up_at = time.monotonic() + _TO_FIND
+        wanted = self.unfound.copy()
+        while wanted.difference(self.nodes()) and time.monotonic() < given_up_at:
+            time.sleep(_LOOK)
+        self.unfound -= wanted
 
     def enter(self, _take: object) -> _Process:
         """Have a line join."""
@@ -249,6 +259,8 @@ class _Lines:
             case commands.CompleteLine(line=number, text=text, cursor=cursor):
                 words = complete(self._ground, self.packages, text, cursor)
                 telling.tell(LineCompleted(now(), number, word_start(text, cursor), tuple(words)))
+            case NodesKnown(names=names):
+                self._ground.unfound.update(names)
             case ProgramEnded(line=number, status=status) if number in self.programs:
                 self.programs.pop(number).on_exit(status)
             case _:

@@ -6,7 +6,7 @@ cbtui's Python does it, which needs rclpy there.
 
 import shlex
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import count
 from pathlib import Path
 from selectors import BaseSelector
@@ -17,8 +17,8 @@ from sim.probes.on_path.cbtui_probe import FOLDER
 from sim.real.companions import Companion
 from sim.real.launched import ros2_command
 from sim.real.programs import OnExit, Program, Start
-from sim.real.wire import Interrupted, ProbeLine, ProgramEnded, ProgramWanted
-from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineSaid
+from sim.real.wire import Interrupted, NodesKnown, ProbeLine, ProgramEnded, ProgramWanted
+from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineSaid, NodeAppeared
 
 _STARTING = ("run", "launch")
 """Commands whose programs are watched."""
@@ -79,11 +79,17 @@ class Ros2Lines:
         self._processes: dict[int, Program] = {}
         self._started: dict[int, Startable] = {}
         self._launched = count(_FIRST_LAUNCHED)
+        self._nodes: list[str] = []
+        """The nodes that the companion has not been told of."""
 
     def prepare(self) -> None:
         """Have what carries lines out know the graph before the first."""
         if self._ros2 is None:
             self._companion.start()
+
+    def hear(self, lines: Iterable[ProbeLine]) -> None:
+        """Note which nodes the programs have."""
+        self._nodes += [line.name for line in lines if isinstance(line, NodeAppeared)]
 
     def begin(self, number: int, text: str) -> None:
         """Carry out a line."""
@@ -108,7 +114,9 @@ class Ros2Lines:
     def _begin(self, number: int, text: str, line: _Line) -> None:
         self._lines[number] = line
         if self._ros2 is None:
+            self._companion.say(NodesKnown(tuple(self._nodes)))
             self._companion.say(commands.RunLine(number, text))
+            self._nodes.clear()
             return
         from sim.shell.splitting import LineError, split
 

@@ -185,7 +185,15 @@ class ProgramEnded(msgspec.Struct, frozen=True, tag="program_ended"):
     status: int
 
 
-LineRequest: TypeAlias = commands.RunLine | commands.InterruptLine | commands.CompleteLine | ProgramEnded
+class NodesKnown(msgspec.Struct, frozen=True, tag="nodes_known"):
+    """Nodes of the run's programs, which discovery has yet to find."""
+
+    names: tuple[str, ...]
+
+
+LineRequest: TypeAlias = (
+    commands.RunLine | commands.InterruptLine | commands.CompleteLine | ProgramEnded | NodesKnown
+)
 """A request to the process that carries out ``ros2`` lines."""
 
 decode_request: Callable[[bytes], LineRequest] = msgspec.json.Decoder(LineRequest).decode

@@ -8,6 +8,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
+from sim.engine.failures.cause import Cause
 from sim.engine.setup import Keyboard, ProgramSetup, RealRos
 from sim.trace.events import CallbackEnded, KeyboardAsked, ProcessAppeared, ProcessEnded, Reading, Typed
 from tests.real import programs
@@ -157,7 +158,7 @@ def test_a_launch_file_starts_processes_and_its_handlers_follow_them(launched: L
     assert labels == ["a.py-1", "ros2-2", "a.py-1"]
     ended = sorted(event.status for event in launched.of(ProcessEnded))  # type: ignore[attr-defined]
     assert ended == [0, 3, 3]
-    assert started.outcome() == ("a.py-1: the program ended with exit code 3", True, "")
+    assert started.outcome() == Cause("a.py-1: the program ended with exit code 3", failed=True)
 
 
 def test_ctrl_c_ends_a_launch_as_it_would_in_a_terminal(launched: Launched) -> None:

@@ -1,6 +1,8 @@
 """``ros2`` lines on real ROS 2: by the command of a ROS that is sourced, or by cbtui's own Python."""
 
 import json
+import os
+import subprocess
 import sys
 import time
 from collections.abc import Callable
@@ -12,6 +14,7 @@ import pytest
 
 from sim.engine.setup import RealRos, TimedLine
 from sim.quantities.nanoseconds import SECOND
+from sim.real.programs import claimed_domain
 from sim.real.ros2_lines import Ros2Lines
 from sim.real.wire import ProgramEnded, decode_request
 from sim.trace.events import (
@@ -20,6 +23,7 @@ from sim.trace.events import (
     LineEnded,
     LineGiven,
     LineSaid,
+    NodeAppeared,
     ProcessAppeared,
     Published,
 )
@@ -57,6 +61,11 @@ class Lines:
 
     def status(self, line: int) -> int | None:
         return next((e.status for e in self.events if isinstance(e, LineEnded) and e.line == line), None)
+
+    def stop(self) -> None:
+        """End the lines, and what carries them out."""
+        self.lines.stop()
+        self.until(lambda: not self._selector.get_map())
 
     def result(self, line: int) -> tuple[list[tuple[str, bool]], int | None]:
         self.until(lambda: self.status(line) is not None)
@@ -194,3 +203,30 @@ def test_a_launch_file_starts_real_nodes(tmp_path: Path) -> None:
     assert "/chatter" in {event.topic for event in run.events if isinstance(event, Published)}
     assert run.ending.time_was_up
     assert not run.ending.failed
+
+
+@needs_ros
+@pytest.mark.slow
+def test_a_line_waits_until_discovery_has_found_the_nodes_that_the_run_knows(tmp_path: Path) -> None:
+    domain, claim = claimed_domain()
+    environment = {
+        **os.environ,
+        "ROS_DOMAIN_ID": str(domain),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+    }
+    file = tmp_path / "tried.py"
+    file.write_text(
+        programs.HEAD + programs.MISSES_TICKS + programs.TAIL.format(executor="SingleThreadedExecutor()")
+    )
+    lines = Lines(environment)
+    lines.lines.prepare()
+    lines.lines.hear([NodeAppeared(0, 1, "/tried")])
+    lines.lines.begin(1, "ros2 param set /tried use_sim_time false")
+    until = time.monotonic() + 2.5  # what discovery takes now and then
+    lines.until(lambda: time.monotonic() > until)
+    with claim, subprocess.Popen([sys.executable, file], env=environment) as node:
+        try:
+            assert lines.result(1) == ([("Set parameter successful", False)], 0)
+        finally:
+            node.kill()
+            lines.stop()
