@@ -311,7 +311,8 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         for pane in map(self.panes.pane, self.PANES_HERE):
             if pane.display and (content is FrameContent.ALL or not isinstance(pane, _TEXTS)):
                 self.draw_pane(pane)
-        self._keys.show()
+        if content is FrameContent.ALL:
+            self._keys.show()
         self.drawn()
 
     def draw_lanes(self) -> None:

@@ -72,6 +72,20 @@ class PatchCompositor(Compositor):
     Written for Textual 8; a test compares both pictures.
     """
 
+    def __init__(self) -> None:
+        super().__init__()
+        self._layout: object = None
+        """The layout for which the widgets in front are cached."""
+        self._visible: list[_VisibleWidget] = []
+        self._fronts: dict[tuple[int, int], _VisibleWidget] = {}
+
+    def clear(self) -> None:
+        """Remove all references to widgets."""
+        super().clear()
+        self._layout = None
+        self._visible.clear()
+        self._fronts.clear()
+
     def render_partial_update(self) -> PatchUpdate | None:  # type: ignore[override]  # an update of another kind
         """Return the changed part of the screen; None if nothing changed."""
         changed = self._dirty_regions.copy()
@@ -80,23 +94,32 @@ class PatchCompositor(Compositor):
             return None
         screen = self.size.region
         spans = self._regions_to_spans(region.intersection(screen) for region in changed)
-        every = [
-            _VisibleWidget(widget, region, region.intersection(clip))
-            for widget, (region, clip) in self.visible_widgets.items()
-        ]
-        return PatchUpdate(_drawn([stretch for span in spans for stretch in self._stretches(span, every)]))
+        return PatchUpdate(_drawn([stretch for span in spans for stretch in self._stretches(span)]))
 
-    def _stretches(self, span: tuple[int, int, int], every: Sequence[_VisibleWidget]) -> list[_LineSegment]:
-        """Divide part of a line among the widgets in front; ``every`` begins with the foremost."""
+    def _stretches(self, span: tuple[int, int, int]) -> list[_LineSegment]:
+        """Divide part of a line among the widgets in front."""
         y, start, end = span
         stretches: list[_LineSegment] = []
         for left, right in pairwise([start, *(cut for cut in self.cuts[y] if start < cut < end), end]):
-            shown = next(shown for shown in every if shown.sight.contains(left, y))
+            shown = self._front(left, y)
             if stretches and stretches[-1].shown is shown:
                 stretches[-1] = stretches[-1]._replace(end=right)
             else:
                 stretches.append(_LineSegment(shown, y, left, right))
         return stretches
+
+    def _front(self, x: int, y: int) -> _VisibleWidget:
+        """Return the foremost widget at a cell."""
+        layout = self.visible_widgets  # another object for each layout, the foremost first
+        if layout is not self._layout:
+            self._layout, self._fronts = layout, {}
+            self._visible = [
+                _VisibleWidget(widget, region, region.intersection(clip))
+                for widget, (region, clip) in layout.items()
+            ]
+        if (x, y) not in self._fronts:
+            self._fronts[x, y] = next(shown for shown in self._visible if shown.sight.contains(x, y))
+        return self._fronts[x, y]
 
 
 def _drawn(stretches: Iterable[_LineSegment]) -> list[ScreenPatch]:

@@ -1,6 +1,7 @@
 """Pictures made of dots smaller than a cell: braille, quarter blocks, or one sign a cell in ASCII."""
 
 from collections.abc import Sequence
+from copy import copy
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +29,12 @@ class DotGrid:
         self._charset = charset
         self.across, self.down = DOTS_PER_CELL[charset]
         self._layers = np.zeros((height * self.down, width * self.across), dtype=np.uint8)
+
+    def copy(self) -> "DotGrid":
+        """Return a grid with the same dots."""
+        other = copy(self)
+        other._layers = self._layers.copy()
+        return other
 
     def plot(self, x: Floats, y: Floats, layer: int) -> None:
         """Set dots."""

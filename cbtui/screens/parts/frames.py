@@ -11,15 +11,16 @@ from cbtui.runs.live.live_run import ShownRun
 from cbtui.screens.parts.runs import RunController
 from cbtui.terminal.processor import cpu_wait, time_off_cpu
 
-FRAMES_A_SECOND = 20
+FRAMES_A_SECOND = 15
+"""About one for each step of a bar: a dot, half a column, is 60 ms in a window of ten seconds."""
 
 _SOONEST = 0.01
 """Seconds from one frame with all panes to the next, if keys ask for it."""
 
-_LANES_A_PANE = 4
+_LANES_A_PANE = 3
 """Lane frames per frame of the other panes: their words and figures are read slower than lanes move."""
 
-_LANES_A_TEXT = 8
+_LANES_A_TEXT = 6
 """Lane frames per frame of log and code, whose scrolling lines are read slower still."""
 
 _REST_FACTOR = 2.0

@@ -1,6 +1,7 @@
 """The robot's world at a moment, drawn in dots on a map."""
 
 import math
+from functools import lru_cache
 from itertools import pairwise
 
 import numpy as np
@@ -55,22 +56,17 @@ class RobotScene:
 
     def picture(self, view: MapView, charset: Charset) -> list[CellRow]:
         """Draw everything in one view."""
-        dots = DotGrid(view.columns, view.lines, charset)
-        across, along = view.grid()
-        dots.plot(*view.dots(np.repeat(across, len(along)), np.tile(along, len(across))), _GRID)
-        for x0, y0, x1, y1 in self.plan.walls:
-            dots.line(view.dot(x0, y0), view.dot(x1, y1), _WALL)
+        dots = _arena_dots(self.plan, view, charset).copy()
         self._draw_trail(dots, view)
         if self._seen is not None:
             dots.plot_sparsely(*view.dots(*self._points(self._seen)), _SEEN)
         if self._true is not None:
             dots.plot(*view.dots(*self._points(self._true)), _TRUE)
-        x, y, radius = self.plan.sphere
-        dots.plot(*view.dots(*_disc(x, y, radius, view.metres_per_dot / 2)), _SPHERE)
         layer = _HURT if self.robot.touching else _ROBOT
         self._draw_robot(dots, view, layer)
         self._draw_flash(dots, view)
         rows = dots.rows(_INKS, _SIGNS)
+        across, along = view.grid()
         for x in across:
             _write_metres(rows[-1], view.cell(x, 0)[0], x)
         for row, y in ((view.cell(0, y)[1], y) for y in along):
@@ -113,6 +109,19 @@ class RobotScene:
         angles = robot.yaw - math.pi + np.arange(len(ranges)) * (2 * math.pi / max(1, len(ranges)))
         hit = ranges > 0
         return robot.x + ranges[hit] * np.cos(angles[hit]), robot.y + ranges[hit] * np.sin(angles[hit])
+
+
+@lru_cache(maxsize=8)
+def _arena_dots(plan: ArenaShown, view: MapView, charset: Charset) -> DotGrid:
+    """Return what stays the same in a view: its grid, the walls and the sphere. Not to be changed."""
+    dots = DotGrid(view.columns, view.lines, charset)
+    across, along = view.grid()
+    dots.plot(*view.dots(np.repeat(across, len(along)), np.tile(along, len(across))), _GRID)
+    for x0, y0, x1, y1 in plan.walls:
+        dots.line(view.dot(x0, y0), view.dot(x1, y1), _WALL)
+    x, y, radius = plan.sphere
+    dots.plot(*view.dots(*_disc(x, y, radius, view.metres_per_dot / 2)), _SPHERE)
+    return dots
 
 
 def _write_metres(row: CellRow, column: int, metres: float) -> None:

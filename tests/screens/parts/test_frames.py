@@ -27,14 +27,14 @@ def test_the_first_frame_draws_everything_and_then_nothing_is_drawn_while_nothin
 
 
 def test_a_run_that_grows_is_drawn_on_the_lanes_in_each_frame_and_elsewhere_less_often() -> None:
-    extents = drawing(FrameSchedule(), 17, grows=True)[1:]
+    extents = drawing(FrameSchedule(), 19, grows=True)[1:]
     assert FrameContent.NOTHING not in extents
     assert [
         extents.count(extent) for extent in (FrameContent.LANES, FrameContent.ALL_BUT_TEXTS, FrameContent.ALL)
     ] == [
         12,
-        2,
-        2,
+        3,
+        3,
     ]
 
 
