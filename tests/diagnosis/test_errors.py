@@ -1,6 +1,9 @@
 """Exceptions of callbacks that nobody hears of."""
 
+import asyncio
 from contextlib import suppress
+
+import pytest
 
 import sim.ros.rclpy as rclpy
 from sim.ros.node.node import Node
@@ -89,3 +92,26 @@ def test_an_exception_that_ended_the_run_is_well_and_one_beside_it_is_lost() -> 
 def test_a_timeline_without_errors_is_asked_nothing() -> None:
     assert Diagnosed(Trace([])).findings == ()
     assert Timeline().end == 0
+
+
+@pytest.mark.parametrize("threads", [None, 2])
+def test_what_asyncio_misses_in_a_callback_is_told_with_what_to_await_instead(threads: int | None) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        async def tick() -> None:
+            await asyncio.sleep(0.1)
+
+        once(node, 1.0, tick, ReentrantCallbackGroup())
+        executor = executor_of(threads)
+        executor.add_node(node)
+        with pytest.raises(RuntimeError) as raised:
+            executor.spin()
+        said.append(f"RuntimeError: {raised.value}")
+
+    said: list[str] = []
+    events = [each for each in diagnosed(program).trace.events if not isinstance(each, RunEnded)]
+    ended = RunEnded(max(each.t for each in events), said[0], failed=True, error=said[0], problem=said[0])
+    told = Diagnosed(Trace([*events, ended])).explained("program-raised")
+    assert told.why == "an executor of rclpy resumes coroutines itself, and runs no event loop of asyncio"
+    assert told.cure.startswith("await only futures of rclpy")

@@ -44,6 +44,8 @@ class ProgramRaised(Rule):
         cure = "mend the line, or catch the exception there"
         if (ended.error or "").partition(":")[0] in _UNREADABLE:
             why, cure = "Python could not read the file, so nothing of it ran", "mend the line"
+        elif ended.error == _NO_LOOP:
+            why, cure = _NOT_ASYNCIO
         return Explanation(
             ended.problem,
             why,
@@ -55,6 +57,14 @@ class ProgramRaised(Rule):
 
 _UNREADABLE = ("SyntaxError", "IndentationError", "TabError")
 """The exceptions that come before a file runs."""
+
+_NO_LOOP = "RuntimeError: no running event loop"
+_NOT_ASYNCIO = (
+    "an executor of rclpy resumes coroutines itself, and runs no event loop of asyncio",
+    "await only futures of rclpy, such as that of call_async(); in place of asyncio.sleep(), await a "
+    "rclpy.task.Future that a timer completes",
+)
+"""The reason for ``_NO_LOOP``, which asyncio raises in a coroutine of a callback, and the cure."""
 
 
 class ExceptionSwallowed(Rule):
