@@ -97,6 +97,7 @@ class CompareScreen(SizedScreen[None]):
         self._comparing = False
         self._rest_until = 0.0
         self._verdict = ""
+        self._is_tie = False
         self._first_difference: Nanoseconds | None = None
         self._has_moved = bounds is not None
 
@@ -196,7 +197,7 @@ class CompareScreen(SizedScreen[None]):
         at = self._first_difference
         where = "No call differs" if at is None else f"They differ from {timestamp(at)} on"
         told = f"{where}; {self._verdict[0].lower()}{self._verdict[1:]}"
-        if is_tie(self._verdict) and any(side.alive() for side in self._sides):
+        if self._is_tie and any(side.alive() for side in self._sides):
             told = f"{where} so far; neither run is better yet: {_shorter(*self._sides)}"
         self.query_one("#verdict", Static).update(told)
         if at is not None and not self._has_moved:
@@ -223,7 +224,7 @@ class CompareScreen(SizedScreen[None]):
         compared = yield from compare_incrementally(first.timeline, second.timeline, asked)
         if self._whole:
             self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
-            self._verdict = verdict(compared)
+            self._verdict, self._is_tie = verdict(compared), is_tie(compared)
             return f"{what}, {extent(compared)}", sections(compared)
         cut = asked.end < min(self._asked.end, self._end)
         after = f"; {_shorter(first, second)}" if cut else ""

@@ -1,4 +1,4 @@
-"""Cures that can be tried: a callback group of its own, more threads, an edit of the source, or several."""
+"""Remedies that can be tried: callback groups, more threads, edits of the source, or several of these."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -17,14 +17,14 @@ _LOOKED_AT = 100
 
 @dataclass(frozen=True, slots=True)
 class Remedy:
-    """Changes of a program: an edit, callbacks that get a group of their own, threads (0: as many)."""
+    """Changes of a program: an edit, callbacks that get a group of their own, threads (0: unchanged)."""
 
     own_groups: tuple[EntityId, ...] = ()
     threads: int = 0
     edit: CodeEdit | None = None
 
     def words(self, timeline: Timeline) -> str:
-        """The changes as a clause; empty for none."""
+        """Return the changes as a clause; empty for none."""
         advice = [] if self.edit is None else [self.edit.words]
         advice += [f"give {who(each, timeline)} a callback group of its own" for each in self.own_groups]
         if self.threads:
@@ -35,10 +35,10 @@ class Remedy:
 def remedy_for_waits(
     waited: Sequence[EntityId], mover: EntityId, window: Window, timeline: Timeline
 ) -> Remedy:
-    """What helps callbacks that waited in a window; nothing where neither a group nor threads would.
+    """Return the remedy for callbacks that waited in a window; empty if groups and threads do not help.
 
-    A group of its own for ``mover`` helps where another callback held the group; more threads help where no
-    worker was free meanwhile, which with one thread is always so.
+    A group of its own for ``mover`` helps if another callback held the group; more threads help if no worker
+    was free, which is always so with one thread.
     """
     waits = [wait for each in waited for wait in _waits(each, window, timeline)]
     crowded = [wait for wait in waits if wait.workers_busy]
@@ -50,19 +50,19 @@ def remedy_for_waits(
 
 
 def _waits(entity: EntityId, window: Window, timeline: Timeline) -> Iterator[Wait]:
-    """The waits of an entity that another entity caused."""
+    """Yield the waits of an entity that another entity caused."""
     for wait in timeline.waits_of(entity, window):
         if wait.holder != entity and wait.reason is not Reason.NOBODY_SPINS:
             yield wait
 
 
 def _length(waits: Sequence[Wait], window: Window) -> Nanoseconds:
-    """The total length of waits within a window."""
+    """Return the total length of waits within a window."""
     return sum(min(wait.end_at(window.end), window.end) - max(wait.start, window.start) for wait in waits)
 
 
 def _threads_needed(crowded: Sequence[Wait], window: Window, timeline: Timeline) -> int:
-    """One more than the executor has, or than there are groups with long calls, whichever is more."""
+    """Return one more than the executor's threads, or than the groups with long calls, if these are more."""
     waited = {wait.entity for wait in crowded}
     available = threads_for([*(wait.holder for wait in crowded), *waited], window.end, timeline)
     occupied = {

@@ -1,4 +1,4 @@
-"""The findings of all rules in a run, updated incrementally as the run goes on."""
+"""The findings of all rules in a run, updated incrementally during the run."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -24,8 +24,8 @@ _Key: TypeAlias = tuple[str, EntityId, str]
 class Diagnoses:
     """The findings of a run, one for each rule, subject and topic or service, problems first.
 
-    ``update`` checks what is new, what is still going on, and the last one or two seconds again: findings
-    there are dropped if they no longer hold. Not thread-safe, like the timeline.
+    ``update`` checks new and unfinished events, and the last one or two seconds again: findings there are
+    dropped if they no longer hold. Not thread-safe, like the timeline.
     """
 
     def __init__(self, rules: Iterable[Rule] = RULES) -> None:
@@ -60,9 +60,9 @@ class Diagnoses:
         self._settled = {}
 
     def _ordered(self, found: Iterable[Finding], timeline: Timeline) -> tuple[Finding, ...]:
-        """The findings that matter: problems before remarks, then by rule, the earliest first.
+        """Return the relevant findings: problems before remarks, then by rule, the earliest first.
 
-        What is part of another finding follows that.
+        A finding that is part of another one follows it.
         """
         found = tuple(found)
         lasting = [each for each in found if each.until >= timeline.end and each.stuck]
@@ -84,9 +84,9 @@ class Diagnoses:
 
 
 def _is_due_to(lasting: Iterable[Finding], found: Finding) -> bool:
-    """Whether a finding is what callbacks that can never go on bring about, as others tell.
+    """Return whether a finding is an effect of callbacks that can never continue, as other findings say.
 
-    A finding of the whole run may be.
+    A finding on the whole run may be such an effect.
     """
     stuck = frozenset[EntityId]().union(*(each.stuck for each in lasting if each is not found))
     return bool(stuck) and (not found.at or found.culprit in stuck or found.subject in stuck)

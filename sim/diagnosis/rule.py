@@ -12,7 +12,7 @@ import sim
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.diagnosis.timeline_view import TimelineView
-from sim.trace.events import EntityId, ThreadId
+from sim.trace.events import AnyEvent, EntityId, ThreadId
 from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -37,7 +37,7 @@ class CodeLocation:
 
 
 class WaitedFor(StrEnum):
-    """What a callback can wait for without end."""
+    """What a callback may wait for without end."""
 
     REPLY = "a reply"
     RATE = "the rate's timer"
@@ -50,8 +50,8 @@ class Finding:
 
     ``subject`` is the affected callback, ``culprit`` the one to blame (0: none or unknown); ``about`` is the
     topic, service or node in question. Occurrences with the same ``key`` are one finding.
-    ``size`` ranks them, the worst highest, in a unit of the rule; ``detail`` and ``thread`` are what the rule
-    needs to explain it.
+    ``size`` ranks them, the worst highest, in a unit of the rule; ``detail``, ``thread`` and ``event``, the
+    event that shows it, are what the rule needs to explain it.
     """
 
     rule: "Rule"
@@ -66,12 +66,13 @@ class Finding:
     count: int = 1
     detail: str = ""
     thread: ThreadId = 0
+    event: AnyEvent | None = None
     stuck: frozenset[EntityId] = frozenset()
-    """The callbacks that can never go on."""
+    """The callbacks that can never continue."""
     waited_for: frozenset[WaitedFor] = frozenset()
-    """What those of them wait for who wait for each other."""
+    """What those callbacks wait for that wait for each other."""
     ring: tuple[str, ...] = ()
-    """Who waits for what, which waits for whom, back to the first: ``tick``, ``/add``, ``tick``."""
+    """The cycle of waits, from a callback by the awaited things back to it: ``tick``, ``/add``, ``tick``."""
 
     @property
     def key(self) -> tuple[str, EntityId, str]:
@@ -88,8 +89,8 @@ class Finding:
 class Explanation:
     """A finding in words: ``what`` happened (a line without a full stop), ``why``, and what to do.
 
-    ``place`` is the learner's code in question; None if it is unknown. ``for_ever``: callbacks wait that can
-    never go on. ``remedies`` are what of the cure can be tried, each by itself.
+    ``place`` is the learner's code in question; None if it is unknown. ``for_ever``: whether callbacks can
+    never continue. ``remedies`` are the parts of the cure that can be tried, each by itself.
     """
 
     what: str
@@ -108,16 +109,16 @@ class Rule(ABC):
     """What the rule looks for, in a few words."""
     weight: ClassVar[Weight] = Weight.PROBLEM
     by_culprit: ClassVar[bool] = False
-    """Whether all that one culprit does to others is one finding."""
+    """Whether all effects of one culprit on others are one finding."""
     is_effect: ClassVar[bool] = False
-    """Whether it finds what a callback that can never go on does to others and to itself."""
+    """Whether the rule finds effects of a callback that can never continue."""
 
     @abstractmethod
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield every occurrence that reaches into the view's window, uncut."""
 
     def kind(self, found: Finding) -> str:
-        """The kind of problem, by which a lesson says that it shows it."""
+        """Return the kind of problem, as lessons declare it."""
         return self.id
 
     @abstractmethod
@@ -125,7 +126,7 @@ class Rule(ABC):
         """Put a finding into words."""
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """How much all occurrences together matter; None if they do not."""
+        """Return the weight of all occurrences together; None if they are irrelevant."""
         return self.weight
 
 
@@ -134,26 +135,30 @@ _RCLPYS_TIMER = "/rclpy/timer.py"
 
 
 def is_models(entity: EntityInfo) -> bool:
-    """Whether an entity is the model's or rclpy's own, such as the timer of a rate."""
+    """Return whether an entity belongs to the model or to rclpy, such as the timer of a rate."""
     return entity.file.startswith(_MODEL_FOLDER) or entity.file.endswith(_RCLPYS_TIMER)
 
 
 def place_of(entity: EntityId, timeline: Timeline) -> CodeLocation | None:
-    """The code of an entity's callback; None if it is the model's own, such as a rate's timer."""
+    """Return the code of an entity's callback; None if the entity belongs to the model."""
     known = timeline.entities.get(entity)
     if known is None or not known.file or is_models(known):
         return None
     return CodeLocation(known.file, known.first_line, known.last_line)
 
 
+def line_location(file: str, line: int) -> CodeLocation | None:
+    """Return one line of the learner's code; None for line 0, an unknown line."""
+    return CodeLocation(file, line, line) if line else None
+
+
 def made_at(entity: EntityInfo) -> CodeLocation | None:
-    """The program's own line that made an entity; None if it is unknown."""
-    file, line = entity.made_at
-    return CodeLocation(file, line, line) if file else None
+    """Return the program's own line that made an entity; None if it is unknown."""
+    return line_location(*entity.made_at)
 
 
 def line_of(entity: EntityId, window: Window, timeline: Timeline) -> CodeLocation | None:
-    """The line at which a callback was longest in a window; all of its lines if that is unknown."""
+    """Return the line at which a callback was longest in a window; all of its lines if that is unknown."""
     lasted: Counter[tuple[str, int]] = Counter()
     for each in timeline.positions_of(entity, window):
         end = each.end_at(timeline.end)
@@ -171,7 +176,7 @@ def by_edit(
     *more: object,
     own_groups: tuple[EntityId, ...] = (),
 ) -> tuple[Remedy, ...]:
-    """The remedy that edits a place, by a function that gets its line and ``more``; none without a place."""
+    """Return the remedy that edits a place by a function of its line and ``more``; none without a place."""
     if place is None:
         return ()
     edit = CodeEdit(place.file, words, change, (place.first_line, *more))
@@ -179,5 +184,5 @@ def by_edit(
 
 
 def entity_of(found: Finding, timeline: Timeline) -> EntityInfo:
-    """The entity that a finding is about."""
+    """Return the affected entity of a finding."""
     return timeline.entities[found.subject]

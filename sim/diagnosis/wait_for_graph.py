@@ -4,7 +4,7 @@ A callback that is blocked in ``Client.call``, or suspended in ``await``, needs 
 waits for the reply in a loop or for an event. The reply needs the service's callback, then the client, then a
 worker for the future's done-callback. ``Rate.sleep`` needs the rate's timer, and a lock its holder. Each of
 these can wait for other callbacks: those that hold its group, those that occupy the threads, or the service's
-callback, which may be blocked itself. A callback is stuck if all that it waits for are stuck.
+callback, which may be blocked itself. A callback is stuck if all callbacks that it waits for are stuck.
 
 Source: the usual test of a wait-for graph in which a request for one of several equal resources waits for
 all their owners to be stuck (Holt, "Some Deadlock Properties of Computer Systems", 1972).
@@ -47,10 +47,10 @@ Waiter: TypeAlias = OnThread | Suspended
 
 @dataclass(frozen=True, slots=True)
 class Obstacle:
-    """What a callback waits for, as a clause: one of ``by`` would have to go on.
+    """What a callback waits for, with a clause; it ends if one of ``by`` continues.
 
-    ``wanted`` is the service, or a ``WaitedFor``; ``needs_worker``: a thread is missing; ``group`` is the one
-    that has to let it in, "" for none.
+    ``wanted`` is the service, or a ``WaitedFor``; ``needs_worker``: whether a thread is missing; ``group`` is
+    the group that has to admit it, "" for none.
     """
 
     wanted: str
@@ -61,18 +61,18 @@ class Obstacle:
 
     @property
     def kind(self) -> WaitedFor:
-        """What kind of thing is wanted."""
+        """The kind of ``wanted``."""
         return self.wanted if isinstance(self.wanted, WaitedFor) else WaitedFor.REPLY
 
     @property
     def steps(self) -> tuple[str, ...]:
-        """What lies between the callback and the one that keeps it waiting: ``/add``, ``group A``."""
+        """The steps from the callback to the one that blocks it: ``/add``, ``group A``."""
         return tuple(filter(None, (self.wanted, "a thread" if self.needs_worker else self.group)))
 
 
 @dataclass(frozen=True, slots=True)
 class StuckCallback:
-    """A callback that can never go on: since when it waits, and for what."""
+    """A callback that can never continue: since when it waits, and for what."""
 
     waiter: Waiter
     entity: EntityId
@@ -81,7 +81,7 @@ class StuckCallback:
 
 
 def stands(position: Position, timeline: Timeline, at: Nanoseconds) -> bool:
-    """Whether a callback has been at its line, or in the loop around it, for long enough at ``at``."""
+    """Return whether a callback has been at its line, or in the loop around it, for ``SETTLES`` at ``at``."""
     if at - position.start >= SETTLES:
         return True
     before = timeline.positions_on(position.thread, Window(max(0, at - SETTLES), at + 1))
@@ -90,7 +90,7 @@ def stands(position: Position, timeline: Timeline, at: Nanoseconds) -> bool:
 
 
 class WaitForGraph:
-    """The callbacks that can never go on at ``at``, as far as the trace shows."""
+    """The callbacks that can never continue at ``at``, as far as the trace shows."""
 
     def __init__(self, timeline: Timeline, at: Nanoseconds) -> None:
         self._timeline = timeline
@@ -143,12 +143,12 @@ class WaitForGraph:
                 return stuck
             stuck = left
 
-    # who waits for a reply
+    # the waiting callbacks
 
     def _waiting(self) -> Iterator[tuple[Waiter, StuckCallback]]:
         for thread, blocked in self._moment.blocked.items():
             call = self._call(blocked.call)
-            obstacle = None if call is None else self._obstacle(call, blocked.entity)
+            obstacle = None if call is None else self._obstacle(call)
             if obstacle is not None:
                 yield (
                     OnThread(thread),
@@ -165,7 +165,7 @@ class WaitForGraph:
                 yield OnThread(thread), StuckCallback(OnThread(thread), span.entity, since, obstacle)
         for entity in self._suspended():
             calls = [call for call in self._outstanding() if call.caller == entity]
-            obstacles = [self._obstacle(call, entity) for call in calls]
+            obstacles = [self._obstacle(call) for call in calls]
             kept = [each for each in obstacles if each is not None]
             if kept and len(kept) == len(obstacles) >= self._suspended_in(entity):
                 yield Suspended(entity), StuckCallback(Suspended(entity), entity, calls[-1].sent, kept[-1])
@@ -208,19 +208,19 @@ class WaitForGraph:
             pending = (call for call in self._outstanding() if call.caller == span.entity)
             for call in pending:
                 if call.sent >= span.start:
-                    return self._obstacle(call, span.entity)
+                    return self._obstacle(call)
         return None
 
-    # what a reply waits for
+    # the obstacles
 
-    def _obstacle(self, call: Call, caller: EntityId) -> Obstacle | None:
+    def _obstacle(self, call: Call) -> Obstacle | None:
         """What the reply of a call waits for; None: nothing known, or nothing permanent."""
         owner = self._queued_at.get(call.id, self._waiting_action(call))
         if owner is not None:
             return self._queue_obstacle(owner, call)
         if not self._is_answered(call):
             return self._service_obstacle(call)
-        return self._future_obstacle(call, caller)
+        return self._future_obstacle(call)
 
     def _waiting_action(self, call: Call) -> EntityId | None:
         """The action server or client that a request or reply waits for; their queues are not traced."""
@@ -272,7 +272,7 @@ class WaitForGraph:
         known = self._timeline.entities[entity]
         return known.kind is EntityKind.SERVICE and known.name == call.service
 
-    def _future_obstacle(self, call: Call, caller: EntityId) -> Obstacle | None:
+    def _future_obstacle(self, call: Call) -> Obstacle | None:
         """The reply was taken, and the future's done-callback needs a worker."""
         since = Window(call.replied or 0, self._at + 1)
         for entity in self._timeline.entities.values():

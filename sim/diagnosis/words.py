@@ -9,7 +9,7 @@ from sim.trace.timeline import Timeline
 
 
 def who(entity: EntityId, timeline: Timeline) -> str:
-    """The name of a callback; of a client, the reply that it waits for."""
+    """Return the name of a callback; for a client, the reply that it waits for."""
     known = timeline.entities.get(entity)
     if known is not None and known.kind is EntityKind.CLIENT:
         return f"the reply of {known.name}"
@@ -30,7 +30,7 @@ def listed(names: Iterable[str]) -> str:
 
 
 def often(count: int, what: str = "times in all") -> str:
-    """A number of occurrences in brackets; empty for one."""
+    """Return a number of occurrences in brackets; empty for one."""
     return f" ({count} {what})" if count > 1 else ""
 
 

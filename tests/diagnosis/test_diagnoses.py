@@ -7,7 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from sim.diagnosis import RULES, Diagnoses, Finding, Rule, TimelineView, Weight, diagnose, findings_text
+from sim.diagnosis import RULES, Diagnoses, Finding, Weight, diagnose, findings_text
+from sim.diagnosis.rule import Rule
+from sim.diagnosis.timeline_view import TimelineView
 from sim.trace.events import (
     AnyEvent,
     CallbackStarted,

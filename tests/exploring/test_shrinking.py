@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from cbtui.runs.judged.bounded_search import BoundedSearch
 from cbtui.runs.judged.shrinking import Shrinking
-from sim.clock.moves import moves_of, moves_text
+from sim.clock.moves import RandomMovesSchedule, moves_of, moves_text
+from sim.clock.strategies import schedule_of
 from sim.trace.events import ThreadChosen
 from tests.exploring.test_bounded_search import played, searched, threads
 
@@ -20,7 +21,7 @@ def shrunk(needed: Mapping[int, int], limit: int = 400) -> tuple[str, dict[str, 
     """The simplest seed found of a program that fails if it makes the ``needed`` moves, and what was run."""
     search, run = Shrinking(["fails", "never"], limit), {}
     for seed in search:
-        moves = moves_of(seed.removeprefix("moves:")) if seed.startswith("moves:") else walked(seed)
+        moves = walked(seed) if isinstance(schedule_of(seed), RandomMovesSchedule) else moves_of(seed)
         fails = needed.items() <= moves.items()
         run[seed] = fails
         search.take(
@@ -42,7 +43,7 @@ def walked(seed: str) -> dict[int, int]:
 @given(st.dictionaries(st.integers(0, CHOICES - 1), st.integers(1, 2), max_size=3))
 def test_nothing_is_left_that_the_failure_does_not_need(needed: dict[int, int]) -> None:
     best, run = shrunk(needed)
-    assert moves_of(best.removeprefix("moves:")) == needed
+    assert moves_of(best) == needed
     assert run[best]
 
 

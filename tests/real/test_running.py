@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from sim.diagnosis import CodeLocation, diagnose
+from sim.diagnosis import diagnose
+from sim.diagnosis.rule import CodeLocation
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import (
     CallbackFailed,

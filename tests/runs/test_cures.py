@@ -19,9 +19,9 @@ from cbtui.runs.judged.cures import (
     with_inputs,
 )
 from cbtui.runs.setup.changes import Changes
-from sim.diagnosis import CodeLocation, diagnose
+from sim.diagnosis import diagnose
 from sim.diagnosis.edits.profiles import match_quality
-from sim.diagnosis.rule import by_edit
+from sim.diagnosis.rule import CodeLocation, by_edit
 from sim.engine.commands import CallService, input_text
 from sim.engine.setup import RunSetup, TimedInput
 from sim.trace.timeline import Timeline

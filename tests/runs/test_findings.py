@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from cbtui.runs.live.findings import FindingsMonitor, problem_count_text
-from sim.diagnosis import Diagnoses, Explanation, Finding, Rule, Weight
+from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
+from sim.diagnosis.rule import Rule
 from sim.diagnosis.timeline_view import TimelineView
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup

@@ -14,7 +14,7 @@ NODE = str(PUZZLE.node_path)
 def question(number: int, others: tuple[str, ...] = ()) -> ChoiceAsked:
     """One about a worker that runs and one that looks for work."""
     threads = ("ThreadPoolExecutor-0_0", "ThreadPoolExecutor-0_1")
-    return ChoiceAsked(ns(0.1), number, threads, ("order", ""), ((NODE, 20), ("", 0)), True, others)
+    return ChoiceAsked(ns(0.1), number, threads, ("order", ""), ((NODE, 20), ("", 0)), True, others, (0, 1))
 
 
 class Asking:

@@ -9,7 +9,7 @@ from sim.trace.events import ThreadChosen
 
 
 class Shrinking:
-    """An iterator of seeds; ``take`` brings the failures and choices of each run.
+    """An iterator of seeds; ``take`` gets the failures and choices of each run.
 
     Moves at random come first, until one of them brings about one of ``failures``. Then moves are left out,
     many at a time at first, as long as it comes about (delta debugging). It may have a next seed again after
@@ -24,6 +24,7 @@ class Shrinking:
         self._size = 0
         self._fewer: Iterator[str] = iter(())
         self._tried: set[str] = set()
+        """The seeds given out that play moves."""
         self.best = ""
         """The simplest that has failed: the fewest preemptions, then the fewest moves; "" for none."""
 
@@ -38,9 +39,9 @@ class Shrinking:
         return seed
 
     def take(self, seed: str, failures: Collection[Hashable], choices: Sequence[ThreadChosen]) -> None:
-        """Go on from a run that has failed if it is simpler than the simplest so far."""
+        """Continue from a run if it has failed and is simpler than the simplest so far."""
         chosen = [choice for choice in choices if choice.chosen]
-        is_played = seed.startswith("moves:")
+        is_played = seed in self._tried
         rank = sum(choice.preempts for choice in chosen), len(chosen), len(seed) if is_played else inf
         common = self._failures.intersection(failures)
         if not common or (self._rank is not None and rank >= self._rank):
@@ -55,7 +56,7 @@ class Shrinking:
         self._fewer = self._leave_out(moves)
 
     def _leave_out(self, moves: Moves) -> Iterator[str]:
-        """The moves, and then without some of them, the latest first; half as many when all were tried."""
+        """Yield the moves, then those without some, the latest first; half as many when all were tried."""
         yield from self._untried(moves)
         while self._size:
             numbers = sorted(moves, reverse=True)

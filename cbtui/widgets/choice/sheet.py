@@ -40,7 +40,7 @@ def options_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[ChoiceOpti
     }
     whole = zip(question.threads, question.functions, question.places, strict=True)
     for number, (thread, function, (file, line)) in enumerate(whole):
-        begins = "looks for work" if thread.startswith("ThreadPoolExecutor") else "begins"
+        begins = "looks for work" if number in question.pooled else "begins"
         callback = callbacks.get(thread, function)
         inside = function if callback == function else f"{callback} in {function}"
         where = f"{inside}, line {line}" if line else begins

@@ -1,1 +1,1 @@
-"""Edits of a learner's source that cure what a rule has found, made at the places of its syntax tree."""
+"""Edits of a learner's source that cure a finding, at the positions of its syntax tree."""

@@ -10,10 +10,10 @@ from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
 
 @dataclass(frozen=True, slots=True)
 class CodeEdit:
-    """An edit of one file: in words, as a clause, and how it is made.
+    """An edit of one file: its description, a clause, and its function.
 
-    ``change`` edits the source, or raises ``NotSimpleError`` where that has not the shape it is for; it also
-    gets the ``arguments``.
+    ``change`` gets the source and the ``arguments``; it edits the source, or raises ``NotSimpleError`` if the
+    source does not have the shape that the edit needs.
     """
 
     file: str
@@ -22,7 +22,7 @@ class CodeEdit:
     arguments: tuple[object, ...]
 
     def applied(self, text: str) -> str | None:
-        """The edited text; None if the source has not the simple shape that the edit is for."""
+        """Return the edited text; None if the source does not have the shape that the edit needs."""
         try:
             source = SourceEditor(text)
             self.change(source, *self.arguments)
@@ -33,7 +33,7 @@ class CodeEdit:
 
 
 def diff(file: str, before: str, after: str) -> str:
-    """The difference of two texts of a file, as ``diff -U1`` writes it."""
+    """Return the difference of two texts of a file, as ``diff -U1`` writes it."""
     name = Path(file).name
     lines = unified_diff(before.splitlines(), after.splitlines(), name, f"{name}, the copy", n=1, lineterm="")
     return "\n".join(lines)

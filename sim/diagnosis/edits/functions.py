@@ -1,4 +1,4 @@
-"""Edits of a callback's parameters and of what it returns."""
+"""Edits of a callback's parameters and return value."""
 
 import ast
 from collections.abc import Sequence
@@ -13,9 +13,9 @@ _PARAMETERS = {
 
 
 def fit_parameters(source: SourceEditor, line: int) -> None:
-    """Give the callback that is defined at a line as many parameters as it is called with.
+    """Give the callback that is defined at a line the number of parameters that it is called with.
 
-    Those that it has keep their names; one is taken away only if nothing uses it.
+    Its parameters keep their names; one is removed only if it is not used.
     """
     callback = _defined_at(source, line)
     wanted = _parameters(source, callback)
@@ -32,7 +32,7 @@ def fit_parameters(source: SourceEditor, line: int) -> None:
 
 
 def _parameters(source: SourceEditor, callback: ast.FunctionDef) -> Sequence[str]:
-    """What a callback is called with, by what the program makes with it."""
+    """Return the parameters of a callback, by the call in which the program uses it."""
     found = {
         call.func.attr
         for call in source.nodes(ast.Call)

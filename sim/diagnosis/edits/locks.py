@@ -7,7 +7,7 @@ from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
 
 
 def take_together(source: SourceEditor, line: int, other: int) -> None:
-    """Have the callback at a line take both locks at once, in the order of the one at line ``other``.
+    """Let the callback at a line take both locks at once, in the order of the callback at line ``other``.
 
     Only for a ``with`` inside a ``with``, in both callbacks.
     """
@@ -16,7 +16,7 @@ def take_together(source: SourceEditor, line: int, other: int) -> None:
     if (_lock(source, outer), _lock(source, inner)) != (second, first):
         raise NotSimpleError
     has_text = any(isinstance(each, ast.Constant) and "\n" in str(each.value) for each in ast.walk(inner))
-    if has_text or inner.body[0].lineno == inner.lineno:  # the lines of a text are not to move
+    if has_text or inner.body[0].lineno == inner.lineno:  # the lines of a string must not move
         raise NotSimpleError
     deeper = inner.body[0].col_offset - inner.col_offset
     body = source.lines_behind(inner.items[0].context_expr.end_lineno or 0, inner.body[-1])
@@ -25,7 +25,7 @@ def take_together(source: SourceEditor, line: int, other: int) -> None:
 
 
 def _nested(source: SourceEditor, line: int) -> tuple[ast.With, ast.With]:
-    """The ``with`` at a line, and the one around it."""
+    """Return the ``with`` around the one at a line, and that one."""
     blocks = [
         each
         for each in source.nodes(ast.With, source.function_at(line))
@@ -44,7 +44,7 @@ def _lock(source: SourceEditor, with_: ast.With) -> str:
 
 
 def make_reentrant(source: SourceEditor, line: int) -> None:
-    """Make the lock that is taken at a line one that its holder may take again."""
+    """Replace the lock that is taken at a line by an ``RLock``, which its holder may take again."""
     blocks = [each for each in source.nodes(ast.With) if each.lineno <= line <= each.body[0].lineno]
     if not blocks:
         raise NotSimpleError

@@ -6,7 +6,7 @@ from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
 
 
 def rename(source: SourceEditor, line: int, name: str, new: str) -> None:
-    """Use another topic or service where the program makes an end of one at a line, named by a string."""
+    """Change the topic or service of the endpoint that is created at a line, if a string names it."""
     texts = [
         argument
         for call in source.nodes(ast.Call)

@@ -1,4 +1,4 @@
-"""Edits of callbacks that wait or go round in a loop: they return, and go on when they are called again."""
+"""Edits of callbacks that wait or loop: they return, and continue at their next call."""
 
 import ast
 from textwrap import dedent, indent
@@ -10,16 +10,16 @@ _WAIT = "wait_for_service"
 
 
 def look_again(source: SourceEditor, line: int) -> None:
-    """Have a callback return where it would wait at a line, if what it waits for is not there yet.
+    """Let a callback return instead of waiting at a line, if its condition does not hold yet.
 
-    Only for a statement of the callback's body that does nothing but wait, or log meanwhile.
+    Only for a statement of the callback's body that only waits, or logs while it waits.
     """
     callback = source.callback_at(line)
     wait = _statement_at(callback, line)
     missing, meanwhile = _condition(source, wait)
     before = callback.body[: callback.body.index(wait)]
     if any(_stores(part) & _attributes(wait) for part in before):
-        raise NotSimpleError  # it would begin anew at each call
+        raise NotSimpleError  # it would start again at each call
     local = {each.id for each in source.nodes(ast.Name, callback) if isinstance(each.ctx, ast.Store)}
     used = {each.id for each in source.nodes(ast.Name, wait)}
     if used & local or any(each.lineno == wait.lineno for each in meanwhile):
@@ -31,9 +31,9 @@ def look_again(source: SourceEditor, line: int) -> None:
 
 
 def go_on_where_set(source: SourceEditor, line: int) -> None:
-    """Move what follows the wait at a line to the method that sets what the callback waits for.
+    """Move the statements after the wait at a line to the method that sets the awaited attribute.
 
-    Only for a loop that does nothing but wait for an attribute that one other method sets.
+    Only for a loop that only waits for an attribute that one other method sets.
     """
     callback = source.callback_at(line)
     wait = _statement_at(callback, line)
@@ -62,7 +62,7 @@ def _statement_at(callback: ast.FunctionDef, line: int) -> ast.stmt:
 
 
 def _attributes(part: ast.AST) -> set[str]:
-    """The attributes of ``self`` that a loop's condition asks for, or a part of it."""
+    """Return the attributes in a loop's condition, or in another part of the source."""
     inside = ast.walk(part.test if isinstance(part, ast.While) else part)
     return {ast.unparse(each) for each in inside if isinstance(each, ast.Attribute)}
 
@@ -73,7 +73,7 @@ def _stores(part: ast.AST) -> set[str]:
 
 
 def _condition(source: SourceEditor, wait: ast.stmt) -> tuple[str, list[ast.stmt]]:
-    """What is true as long as a statement waits, as code; and what it logs meanwhile."""
+    """Return the condition, as code, under which a statement waits, and its logging statements."""
     match wait:
         case ast.Expr(value=ast.Call(func=ast.Attribute(value=client, attr=name), args=[], keywords=[])):
             if name == _WAIT:
@@ -107,7 +107,7 @@ def _negated(source: SourceEditor, condition: ast.expr) -> str:
 
 
 def leave_out(source: SourceEditor, line: int) -> None:
-    """Take away the statement at a line of a method that does nothing but call a function."""
+    """Remove the statement at a line of a method that only calls a function."""
     statement = source.statement_at(line)
     around = [each for each in ast.walk(source.function_at(line)) if statement in getattr(each, "body", ())]
     if not around or not isinstance(statement, ast.Expr) or not isinstance(statement.value, ast.Call):
@@ -117,9 +117,9 @@ def leave_out(source: SourceEditor, line: int) -> None:
 
 
 def step_by_step(source: SourceEditor, line: int) -> None:
-    """Have a callback do one step of the endless loop at a line, which ends its body, and return.
+    """Replace the endless loop at a line, which ends a callback's body, by one step of it.
 
-    Only where no step needs a variable from before the loop, and nothing leaves the loop.
+    Only if no step needs a variable from before the loop, and nothing leaves the loop.
     """
     callback = source.callback_at(line)
     loop = callback.body[-1]
@@ -133,7 +133,7 @@ def step_by_step(source: SourceEditor, line: int) -> None:
     if local & {each.id for each in inside if isinstance(each, ast.Name)} or loop.body[0].lineno == line:
         raise NotSimpleError
     if any(isinstance(each, ast.Constant) and "\n" in str(each.value) for each in inside):
-        raise NotSimpleError  # the lines of a text are not to move
+        raise NotSimpleError  # the lines of a string must not move
     steps = [each for each in loop.body if not is_idle(each)]
     text = "".join(source.lines_behind(each.lineno - 1, each) for each in steps)
     source.replace_lines(loop, loop, indent(dedent(text), indentation(loop)) or f"{indentation(loop)}pass\n")

@@ -12,7 +12,7 @@ _PLACES = {"create_subscription": 3, "create_publisher": 2}
 
 
 def match_quality(source: SourceEditor, line: int, policy: str) -> None:
-    """Have the end of a topic at a line request no more than is offered, or offer what is requested.
+    """Let the endpoint at a line request no more than is offered, or offer what is requested.
 
     Only for a profile that is a number, or a ``QoSProfile(…)`` that nothing else uses.
     """
@@ -50,7 +50,7 @@ def match_quality(source: SourceEditor, line: int, policy: str) -> None:
 
 
 def _endpoint(source: SourceEditor, line: int) -> tuple[ast.Call, str]:
-    """The call that makes the publisher or the subscription at a line, and its function's name."""
+    """Return the call that creates the publisher or subscription at a line, and its function's name."""
     found = [
         (each, each.func.attr)
         for each in source.nodes(ast.Call)
@@ -72,7 +72,7 @@ def _profile_of(call: ast.Call, end: str) -> ast.expr:
 
 
 def _assigned(source: SourceEditor, name: ast.expr) -> ast.Call:
-    """The call whose result a name stands for, if it is assigned once and used once."""
+    """Return the call that is assigned to a name, if the name is assigned once and used once."""
     code = source.code_of(name)
     same = [each for each in source.nodes(ast.expr) if ast.unparse(each) == code]
     values = [

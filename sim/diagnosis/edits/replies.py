@@ -1,4 +1,4 @@
-"""Edits of callbacks that wait for a reply: they go on in a done-callback, or await it."""
+"""Edits of callbacks that wait for a reply: they continue in a done-callback, or await it."""
 
 import ast
 
@@ -9,10 +9,10 @@ _IDLE = ("sleep", "sleep_for", "spin_once")
 
 
 def go_on_in_done_callback(source: SourceEditor, line: int) -> None:
-    """Move what follows the wait at a line into a method that the future calls when it is done.
+    """Move the statements after the wait at a line into a done-callback of the future.
 
-    Only where the wait is a statement of its own in the callback's body, and nothing behind it needs a
-    variable from before it.
+    Only if the wait is a statement of the callback's body, and no later statement needs a variable from
+    before it.
     """
     callback = source.callback_at(line)
     place = next((place for place, each in enumerate(callback.body) if _is_at(each, line)), None)
@@ -43,7 +43,7 @@ def go_on_in_done_callback(source: SourceEditor, line: int) -> None:
 
 
 def await_reply(source: SourceEditor, line: int) -> None:
-    """Have the callback at a line await the reply, as a coroutine."""
+    """Let the callback at a line await the reply, as a coroutine."""
     callback = source.callback_at(line)
     statement = _innermost(callback, line)
     call = _plain_call(statement)
@@ -61,7 +61,7 @@ def _is_at(statement: ast.stmt, line: int) -> bool:
 
 
 def _innermost(callback: ast.FunctionDef, line: int) -> ast.stmt:
-    """The innermost statement at a line that waits; a loop, if it is one that waits for a future."""
+    """Return the innermost statement at a line; the loop around it if that waits for a future."""
     around = [each for each in ast.walk(callback) if isinstance(each, ast.stmt) and _is_at(each, line)]
     loops = [each for each in around if isinstance(each, ast.While) and _loop_future(each)]
     found = (loops or around)[-1]
@@ -71,7 +71,7 @@ def _innermost(callback: ast.FunctionDef, line: int) -> ast.stmt:
 
 
 def _handed_over(source: SourceEditor, wait: ast.stmt, callback: ast.FunctionDef) -> tuple[str, str, str]:
-    """The future of a wait, the statement that makes it, and the one that takes its result; "" for none."""
+    """Return a wait's future, the statement that creates it, and the one with its result; "" for none."""
     call = _plain_call(wait)
     if call is None:
         return _future_of(wait), "", ""
@@ -86,7 +86,7 @@ def _handed_over(source: SourceEditor, wait: ast.stmt, callback: ast.FunctionDef
 
 
 def _plain_call(statement: ast.stmt) -> ast.Call | None:
-    """The one ``client.call(request)`` in a simple statement; None if there is none."""
+    """Return the only ``client.call(request)`` in a simple statement; else None."""
     if isinstance(statement, ast.While | ast.If | ast.For | ast.With | ast.Try):
         return None
     calls = [each for each in ast.walk(statement) if isinstance(each, ast.Call)]
@@ -102,7 +102,7 @@ def _asynchronous(source: SourceEditor, call: ast.Call) -> str:
 
 
 def _future_of(wait: ast.stmt) -> str:
-    """The future that a statement waits for, by spinning or in a loop."""
+    """Return the future that a statement waits for, by spinning or in a loop."""
     if isinstance(wait, ast.Expr) and isinstance(wait.value, ast.Call):
         function = wait.value.func
         if isinstance(function, ast.Attribute) and function.attr == _SPIN:
@@ -116,7 +116,7 @@ def _future_of(wait: ast.stmt) -> str:
 
 
 def _loop_future(loop: ast.stmt) -> str:
-    """The future of ``while not future.done():``, with nothing in it but pauses; "" for any other."""
+    """Return the future of a ``while not future.done():`` that only pauses; "" for any other loop."""
     if not isinstance(loop, ast.While) or loop.orelse or not all(map(is_idle, loop.body)):
         return ""
     match loop.test:
@@ -128,7 +128,7 @@ def _loop_future(loop: ast.stmt) -> str:
 
 
 def is_idle(statement: ast.stmt) -> bool:
-    """Whether a statement only lets time pass."""
+    """Return whether a statement only lets time pass."""
     match statement:
         case ast.Pass():
             return True
@@ -138,7 +138,7 @@ def is_idle(statement: ast.stmt) -> bool:
 
 
 def check_rest(callback: ast.FunctionDef, before: list[ast.stmt], rest: list[ast.stmt], future: str) -> None:
-    """Raise if what follows the wait cannot stand in a method of its own."""
+    """Raise NotSimpleError if the statements after the wait cannot be moved into a method."""
     me = callback.args.args[0].arg
     names = [each for part in before for each in ast.walk(part) if isinstance(each, ast.Name)]
     local = {each.arg for each in callback.args.args}

@@ -11,15 +11,15 @@ Node = TypeVar("Node", bound=ast.AST)
 
 
 class NotSimpleError(Exception):
-    """The source has not the simple shape that an edit is for."""
+    """The source does not have the simple shape that an edit needs."""
 
 
 @dataclass
 class SourceEditor:
-    """A source and the edits of it, all at positions of the unedited text.
+    """A source and its edits, all at positions of the unedited text.
 
     Raises:
-        NotSimpleError: it is no Python source, or its lines do not end in plain newlines.
+        NotSimpleError: the text is not Python, or its lines do not end in plain newlines.
     """
 
     text: str
@@ -37,11 +37,11 @@ class SourceEditor:
     # finding
 
     def nodes(self, kind: type[Node], within: ast.AST | None = None) -> list[Node]:
-        """The nodes of a kind, of the whole source or of a part."""
+        """Return the nodes of a kind, in the whole source or a part."""
         return [each for each in ast.walk(within or self.tree) if isinstance(each, kind)]
 
     def function_at(self, line: int) -> Function:
-        """The innermost function around a line, decorators not included."""
+        """Return the innermost function around a line, without its decorators."""
         functions: list[Function] = [*self.nodes(ast.FunctionDef), *self.nodes(ast.AsyncFunctionDef)]
         around = [each for each in functions if each.lineno <= line <= (each.end_lineno or each.lineno)]
         if not around:
@@ -49,11 +49,11 @@ class SourceEditor:
         return max(around, key=lambda each: each.lineno)
 
     def statement_at(self, line: int) -> ast.stmt:
-        """The innermost statement at a line."""
+        """Return the innermost statement at a line."""
         return [each for each in self.nodes(ast.stmt) if each.lineno <= line <= (each.end_lineno or 0)][-1]
 
     def callback_at(self, line: int) -> ast.FunctionDef:
-        """The method around a line, which executors call and the program itself does not."""
+        """Return the method around a line, if the program itself does not call it."""
         function = self.function_at(line)
         calls = (each.func for each in self.nodes(ast.Call))
         called = {each.attr for each in calls if isinstance(each, ast.Attribute)}
@@ -65,16 +65,16 @@ class SourceEditor:
         return function
 
     def code_of(self, node: Positioned) -> str:
-        """The text of a node."""
+        """Return the text of a node."""
         start, end = self._span(node)
         return b"".join(self._lines)[start:end].decode()
 
     def lines_behind(self, line: int, last: ast.stmt) -> str:
-        """The lines behind one up to the end of a statement, with their comments."""
+        """Return the lines after a line, up to the end of a statement, with their comments."""
         return b"".join(self._lines[line : last.end_lineno]).decode()
 
     def comment_behind(self, statement: ast.stmt) -> str:
-        """The comment at the end of a statement's last line, with two blanks before it; "" for none."""
+        """Return the comment at the end of a statement's last line, after two blanks; "" for none."""
         assert statement.end_lineno is not None
         text = self._lines[statement.end_lineno - 1][statement.end_col_offset :].decode().strip()
         return f"  {text}" if text else ""
@@ -82,28 +82,28 @@ class SourceEditor:
     # editing
 
     def replace(self, node: Positioned, new: str) -> None:
-        """Put another text in the place of a node."""
+        """Replace a node by a text."""
         self._edits.append((*self._span(node), new.encode()))
 
     def insert_behind(self, node: Positioned, new: str) -> None:
-        """Insert a text right behind a node."""
+        """Insert a text after a node."""
         end = self._span(node)[1]
         self._edits.append((end, end, new.encode()))
 
     def insert_before(self, node: Positioned, new: str) -> None:
-        """Insert a text right before a node."""
+        """Insert a text before a node."""
         start = self._span(node)[0]
         self._edits.append((start, start, new.encode()))
 
     def cut_behind(self, node: Positioned, last: Positioned) -> None:
-        """Take away what is behind a node, up to the end of another."""
+        """Remove the text after a node, up to the end of another."""
         self._edits.append((self._span(node)[1], self._span(last)[1], b""))
 
     def replace_lines(self, first: ast.stmt, last: ast.stmt, new: str) -> None:
-        """Put other lines in the place of those from one statement to another.
+        """Replace the lines from one statement to another.
 
         Raises:
-            NotSimpleError: they share a line with something else.
+            NotSimpleError: something else is on these lines.
         """
         assert last.end_lineno is not None
         before = self._lines[first.lineno - 1][: first.col_offset]
@@ -115,9 +115,9 @@ class SourceEditor:
         )
 
     def import_names(self, module: str, names: Iterable[str], instead_of: str = "") -> None:
-        """Import names from a module, as far as the source does not do so.
+        """Import names from a module that the source does not import yet.
 
-        They take the place of another name that was used once only.
+        They replace the name ``instead_of`` if that is used once only.
         """
         imports = [each for each in self.tree.body if isinstance(each, ast.ImportFrom)]
         ours = [each for each in imports if each.module == module]
@@ -144,10 +144,10 @@ class SourceEditor:
         self.insert_behind((related or before)[-1], f"\nfrom {module} import {', '.join(names)}")
 
     def result(self) -> str:
-        """The edited text.
+        """Return the edited text.
 
         Raises:
-            NotSimpleError: two edits overlap, or the result is no Python source.
+            NotSimpleError: two edits overlap, or the result is not Python.
         """
         data = b"".join(self._lines)
         upto = len(data)
@@ -175,5 +175,5 @@ class SourceEditor:
 
 
 def indentation(statement: ast.stmt) -> str:
-    """The blanks before a statement."""
+    """Return the blanks before a statement."""
     return " " * statement.col_offset

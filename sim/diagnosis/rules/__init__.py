@@ -1,4 +1,4 @@
-"""All rules, in the order in which their findings are listed: what stops a program comes first."""
+"""All rules, in the order in which their findings are listed: those that stop a program come first."""
 
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock

@@ -33,11 +33,10 @@ class SelfMadeDeadlock(Rule):
         )
 
     def kind(self, found: Finding) -> str:
-        """Tell deadlocks over locks and rates from those over calls."""
+        """Distinguish deadlocks over locks and rates from those over calls."""
         return next((kind for wanted, kind in _KINDS.items() if wanted in found.waited_for), self.id)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the callbacks of the cycle."""
         subject = who(found.subject, timeline)
         about = _OWN_LOCK if found.about == WaitedFor.LOCK and found.size == 1 else found.about
         if found.waited_for >= {WaitedFor.LOCK, WaitedFor.REPLY}:
@@ -96,7 +95,6 @@ class NeedsOneMoreWorker(Rule):
         )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the number of threads that would do."""
         why = f"{found.size} callbacks in call() at once need at least {found.size + 1} threads"
         cure = f"spin with {with_threads(found.size + 1)}, or use call_async()"
         place = _line_of(found.subject, found, timeline)
@@ -148,7 +146,7 @@ def _explanation(
 def _deadlocks(
     view: TimelineView,
 ) -> Iterator[tuple[Sequence[StuckCallback], Nanoseconds, frozenset[EntityId]]]:
-    """The sets of callbacks that wait for each other, the end of their waiting, and all that are stuck."""
+    """Yield the sets of callbacks that wait for each other, the ends of their waits, and all stuck ones."""
     seen: set[tuple[Nanoseconds, ...]] = set()
     for moment, until in _moments(view):
         graph = WaitForGraph(view.timeline, moment)
@@ -161,9 +159,9 @@ def _deadlocks(
 
 
 def _moments(view: TimelineView) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
-    """The moments to check: now, and just before a blocked call ended; each with the end of the wait.
+    """Yield the moments to check, with the ends of the waits: now, and just before a blocked call ended.
 
-    The latest comes first, since it tells how long a cycle lasted.
+    The latest comes first, since it shows how long a cycle lasted.
     """
     blocked = any(each.end is None and _is_long(each, view.end) for each in view.blocked)
     still = any(stands(each, view.timeline, view.end) for each in view.positions)

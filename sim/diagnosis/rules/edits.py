@@ -10,7 +10,7 @@ from sim.trace.timeline import Timeline
 
 
 def edits_for_reply(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
-    """Edits of a callback that waits for a reply at a place."""
+    """Return edits of a callback that waits for a reply at a place."""
     subject = who(entity, timeline)
     return (
         *by_edit(place, "go on in a done-callback of the future", go_on_in_done_callback),
@@ -19,24 +19,23 @@ def edits_for_reply(place: CodeLocation | None, entity: EntityId, timeline: Time
 
 
 def edits_for_waiting(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
-    """Edits of a callback that waits at a place for something to come true, or is in a loop there."""
+    """Return edits of a callback that waits at a place for a condition, or is in a loop there."""
     if timeline.entities[entity].kind not in (EntityKind.TIMER, EntityKind.SUBSCRIPTION):
         return ()
-    subject = who(entity, timeline)
-    return (
-        *by_edit(place, f"return from {subject}, and go on where what it waits for is set", go_on_where_set),
-        *by_edit(place, f"return from {subject}, and look again at its next call", look_again),
-        *by_edit(place, f"do one step of the loop at each call of {subject}", step_by_step),
-    )
+    step = by_edit(place, f"do one step of the loop at each call of {who(entity, timeline)}", step_by_step)
+    return *_returning(place, entity, timeline), *step
 
 
 def edits_for_spinning(
     place: CodeLocation | None, entity: EntityId, function: str, timeline: Timeline
 ) -> tuple[Remedy, ...]:
-    """Edits of a callback that spins at a place, by a function that waits for no future."""
+    """Return edits of a callback that spins at a place by a function without a future."""
+    return *_returning(place, entity, timeline), *by_edit(place, f"leave {function}() out", leave_out)
+
+
+def _returning(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
     subject = who(entity, timeline)
     return (
         *by_edit(place, f"return from {subject}, and go on where what it waits for is set", go_on_where_set),
         *by_edit(place, f"return from {subject}, and look again at its next call", look_again),
-        *by_edit(place, f"leave {function}() out", leave_out),
     )

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from sim.diagnosis.cures import remedy_for_waits
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_of
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, line_location, line_of
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_waiting
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, who
@@ -37,11 +37,10 @@ class EndlessWait(Rule):
                 continue
             if notice.kind is not NoticeKind.NO_PROGRESS or not _computes(notice, view):
                 stuck, until = frozenset([notice.entity]), _until(notice, view)
-                yield Finding(self, notice.t, until, notice.entity, detail=notice.text, stuck=stuck)
+                yield Finding(self, notice.t, until, notice.entity, event=notice, stuck=stuck)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Repeat the engine's notice, and tell who waits for the callback meanwhile."""
-        notice = _notice_of(found, timeline)
+        notice = _notice_of(found)
         at = timeline.positions_of(found.subject, _moment(found))
         how = "is in a deadlock" if _is_deadlock(notice) else "stands still"
         what = f" {how}: {notice.problem}" if notice.problem else f": {notice.text}"
@@ -63,15 +62,15 @@ class EndlessWait(Rule):
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Irrelevant if the wait ended after all."""
-        over = found.until < timeline.end and not _is_deadlock(_notice_of(found, timeline))
+        over = found.until < timeline.end and not _is_deadlock(_notice_of(found))
         return None if over else Weight.PROBLEM
 
 
 class WaitsForLock(Rule):
     """On the real clock callbacks have waited long for locks, and wait still.
 
-    Who has a lock is not known on real rclpy, nor whether it is ever released; where it is known, other rules
-    tell. What waits for these callbacks is part of the finding.
+    On real rclpy the holder of a lock is unknown, and whether it ever releases it; where it is known, other
+    rules apply. Callbacks that wait for these are part of the finding.
     """
 
     id = "waits-for-lock"
@@ -87,7 +86,6 @@ class WaitsForLock(Rule):
             yield Finding(self, first.start, view.end, first.entity, size=view.end - first.start, stuck=stuck)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name everybody who waits, and where."""
         first, *others = (
             f"{who(each.entity, timeline)} ({Path(each.file).name}:{each.line})"
             for each in _at_locks(timeline)
@@ -103,9 +101,9 @@ class WaitsForLock(Rule):
 
 
 def _at_locks(timeline: Timeline) -> list[Position]:
-    """Where threads wait for locks at the end of a timeline, the longest wait first; one for each thread.
+    """Return where threads wait for locks at the end of a timeline, the longest wait first, one per thread.
 
-    Those that the engine told of are left out.
+    Callbacks with a notice of the engine are left out.
     """
     told = {notice.entity for notice in timeline.notices}
     at_end = Window(timeline.end, timeline.end + 1)
@@ -116,10 +114,10 @@ def _at_locks(timeline: Timeline) -> list[Position]:
 
 
 class StillComputing(Rule):
-    """A callback has computed for long, and has neither returned nor come to a wait.
+    """A callback has computed for long without a wait, and has not returned.
 
-    The engine reports it after a while, also on virtual time, which does not pass meanwhile. Whether it would
-    return some day, nobody can know.
+    The engine reports it after a while, also on virtual time, which stands still then. Whether it would ever
+    return is unknown.
     """
 
     id = "still-computing"
@@ -131,18 +129,15 @@ class StillComputing(Rule):
             if notice.entity and notice.kind is NoticeKind.NO_PROGRESS and _computes(notice, view):
                 stuck = frozenset([notice.entity])
                 until = _until(notice, view)
-                yield Finding(
-                    self, notice.t, until, notice.entity, notice.entity, detail=notice.text, stuck=stuck
-                )
+                yield Finding(self, notice.t, until, notice.entity, notice.entity, event=notice, stuck=stuck)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the loop, if it is in one."""
         subject = who(found.subject, timeline)
-        how_long = _notice_of(found, timeline).problem or "has not come back for long"
-        at = timeline.positions_of(found.subject, Window(found.at, found.at + 1))
-        file, line = at[-1].loop if at else ("", 0)
-        place = CodeLocation(file, line, line) if file else line_of(found.subject, _moment(found), timeline)
-        where = f" in the loop of line {line}" if file else ""
+        how_long = _notice_of(found).problem or "has not come back for long"
+        at = timeline.positions_of(found.subject, _moment(found))
+        loop = line_location(*at[-1].loop) if at else None
+        place = loop or line_of(found.subject, _moment(found), timeline)
+        where = f" in the loop of line {loop.first_line}" if loop else ""
         return Explanation(
             f"{subject} computes{where} and {how_long}",
             f"while {subject} runs, no other callback of its group or thread does: if it waits for what one "
@@ -163,7 +158,7 @@ class StillComputing(Rule):
 
 
 def _kept_waiting(found: Finding, timeline: Timeline) -> list[EntityId]:
-    """The callbacks that wait for a callback's group or thread at the end of its wait."""
+    """Return the callbacks that wait for a callback's group or thread at the end of its wait."""
     waiting = timeline.moment(found.until).waiting
     return [each for each, wait in waiting.items() if wait.holder == found.subject != each]
 
@@ -177,8 +172,9 @@ def _moment(found: Finding) -> Window:
     return Window(found.at, found.at + 1)
 
 
-def _notice_of(found: Finding, timeline: Timeline) -> Notice:
-    return next(each for each in timeline.notices if each.t == found.at and each.text == found.detail)
+def _notice_of(found: Finding) -> Notice:
+    assert isinstance(found.event, Notice)
+    return found.event
 
 
 def _is_deadlock(notice: Notice) -> bool:

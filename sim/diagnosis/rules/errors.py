@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sim.diagnosis.edits.functions import fit_parameters
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, by_edit, place_of
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, line_location, place_of
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of
 from sim.diagnosis.words import often, who
 from sim.trace.events import EntityKind
@@ -18,7 +18,7 @@ class ProgramRaised(Rule):
     summary = "an exception ends the program"
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield the exception; one that another rule explains has been found there."""
+        """Yield the exception, unless another rule finds it."""
         ended = view.timeline.ended
         clashes = {(clash.file, clash.line) for clash in view.timeline.spin_clashes}
         if ended is None or not ended.problem or tuple(ended.place) in clashes:
@@ -31,18 +31,16 @@ class ProgramRaised(Rule):
         yield Finding(self, ended.t, ended.t, next(raised, 0))
 
     def kind(self, found: Finding) -> str:
-        """Tell exceptions of callbacks from those of the rest of the program."""
+        """Distinguish exceptions of callbacks from those of the rest of the program."""
         return self.id if found.subject else "program-failed"
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Repeat what the engine says of it."""
         ended = timeline.ended
         assert ended is not None
-        file, line = ended.place
-        place = CodeLocation(file, line, line) if line else None
+        place = line_location(*ended.place)
         why = "an exception that no except clause takes ends the program, and spin() with it"
         cure = "mend the line, or catch the exception there"
-        if (ended.error or "").partition(":")[0] in _UNREADABLE:
+        if ended.exception in _UNREADABLE:
             why, cure = "Python could not read the file, so nothing of it ran", "mend the line"
         elif ended.error == _NO_LOOP:
             why, cure = _NOT_ASYNCIO
@@ -96,7 +94,6 @@ class ExceptionSwallowed(Rule):
                     )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the exception; once the program has ended, nobody is left to raise it."""
         subject, ended = who(found.subject, timeline), timeline.ended
         why = "a MultiThreadedExecutor raises only the oldest exception, when it starts the next callback"
         cure = f"catch exceptions in {subject} and log them"

@@ -20,7 +20,6 @@ class GapsInTrace(Rule):
             yield Finding(self, 0, view.end, size=view.timeline.lost)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Say what it means for the other findings."""
         missing = "1 event is" if found.size == 1 else f"{found.size:,} events are"
         return Explanation(
             f"{missing} missing from the trace: what is found about calls, waits and queues may be wrong",

@@ -7,13 +7,22 @@ from operator import attrgetter
 
 from sim.diagnosis.cures import remedy_for_waits
 from sim.diagnosis.edits.profiles import match_quality
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, by_edit, entity_of, place_of
+from sim.diagnosis.rule import (
+    Explanation,
+    Finding,
+    Rule,
+    Weight,
+    by_edit,
+    entity_of,
+    line_location,
+    place_of,
+)
 from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import why_waiting
-from sim.trace.events import EntityId, EntityKind
+from sim.trace.events import EntityId, EntityKind, QosMismatched
 from sim.trace.model import Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
 
@@ -45,7 +54,6 @@ class DroppedMessages(Rule):
                 )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Say what the callback waited for while its queue overflowed."""
         entity = entity_of(found, timeline)
         subject = who(found.subject, timeline)
         waits = timeline.waits_of(entity.id, Window(found.at, found.at + 1))
@@ -112,7 +120,6 @@ class StaleData(Rule):
                 yield span
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the least age of the data."""
         subject, sensor = who(found.subject, timeline), who(found.culprit, timeline)
         window = Window(found.at - found.size, found.at)
         room = remedy_for_waits([found.culprit], found.culprit, window, timeline)
@@ -144,15 +151,12 @@ class QosMismatch(Rule):
         for each in reversed(view.timeline.mismatches):
             if each.t <= view.window.start:
                 return
-            yield Finding(self, each.t, each.t, each.entity, about=each.topic, detail=each.policy)
+            yield Finding(self, each.t, each.t, each.entity, about=each.topic, detail=each.policy, event=each)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the policy and the source lines of both endpoints."""
-        publisher, subscription = next(
-            (_location(each.publisher), _location(each.subscription))
-            for each in timeline.mismatches
-            if (each.t, each.entity, each.topic) == (found.at, found.subject, found.about)
-        )
+        assert isinstance(found.event, QosMismatched)
+        publisher = line_location(*found.event.publisher)
+        subscription = line_location(*found.event.subscription)
         end = "a subscription of the program" if subscription else "a subscription outside the program"
         subject = who(found.subject, timeline) if found.subject else end
         outside = "" if publisher else " outside the program"
@@ -177,11 +181,6 @@ class QosMismatch(Rule):
 
 _PROFILE_WORDS = ("request no more than is offered", "offer what is requested")
 _ENDPOINTS = ("publisher", "subscription")
-
-
-def _location(end: tuple[str, int]) -> CodeLocation | None:
-    file, line = end
-    return CodeLocation(file, line, line) if file else None
 
 
 _TYPE = "TYPE"

@@ -1,4 +1,4 @@
-"""The rule on topics whose two ends have different names, and how names of topics and services are alike."""
+"""The rule on misspelt topics, and the likeness of names of topics and services."""
 
 from collections.abc import Collection, Iterable, Iterator
 from difflib import SequenceMatcher
@@ -13,17 +13,17 @@ from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
 _ALIKE = 0.8
-"""How alike the last parts of two names are, 0 to 1, if one may be the other misspelt."""
+"""The least likeness, 0 to 1, of a name's last part and its misspelling."""
 _SHORTEST = 4
-"""Letters of a last part that tell enough if another one begins or ends with them."""
+"""The least length of a last part that counts as alike if the other begins or ends with it."""
 _MOST = 50
-"""Names that are compared; a program with more unheard topics than these is not a beginner's."""
+"""Limit for the names that are compared; a beginner's program has fewer unheard topics."""
 
 
 class MisspeltTopic(Rule):
-    """Nobody publishes on a subscription's topic, and nobody hears a topic of nearly the same name.
+    """A subscription's topic has no publisher, and a topic of nearly the same name no subscription.
 
-    Once both have been so for a while, the two ends are probably meant to be one topic.
+    If that lasts for a while, both ends are probably meant to be one topic.
     """
 
     id = "misspelt-topic"
@@ -45,7 +45,6 @@ class MisspeltTopic(Rule):
                 yield Finding(self, since, view.end, each.id, about=near)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name both ends."""
         end = entity_of(found, timeline)
         first = timeline.sent_on(found.about)[0].sender
         by = "" if first is None else f" by {who(first.entity, timeline)}"
@@ -60,14 +59,14 @@ class MisspeltTopic(Rule):
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """The one of some names that another may be misspelt for; "" for none."""
+    """Return which of the known names ``name`` may be a misspelling of; "" for none."""
     likeness = {each: _likeness(name, each) for each in known}
     best = max(likeness, key=likeness.__getitem__, default="")
     return best if best and likeness[best] >= _ALIKE else ""
 
 
 def _likeness(name: str, other: str) -> float:
-    """How alike two names are, 0 to 1: the last part counts most, its case and its namespace little."""
+    """Return the likeness of two names, 0 to 1: of their last parts, whatever their case."""
     one, two = (each.rpartition("/")[2].lower() for each in (name, other))
     short, long = sorted((one, two), key=len)
     if len(short) >= _SHORTEST and (long.startswith(short) or long.endswith(short)):
@@ -76,12 +75,12 @@ def _likeness(name: str, other: str) -> float:
 
 
 def renaming(end: EntityInfo, name: str, verb: str) -> tuple[Remedy, ...]:
-    """The remedy that has a subscription or a client use another name."""
+    """Return the remedy that gives a subscription or client another name."""
     return by_edit(made_at(end), f"{verb} {name}", rename, end.name, name)
 
 
 def offer(end: EntityInfo, timeline: Timeline) -> tuple[str, str, tuple[Remedy, ...]]:
-    """Which offered service a client may be meant for: what differs, what to do, and what can be tried."""
+    """Return how a client's probable service differs, what to do, and the remedies; empty for none."""
     offered = {each.name: each for each in timeline.entities.values() if each.kind is EntityKind.SERVICE}
     same = offered.get(end.name)
     if same is not None and end.interface_type and same.interface_type not in ("", end.interface_type):

@@ -4,14 +4,14 @@ from collections.abc import Iterator
 
 from sim.diagnosis.rule import Explanation, Finding, Rule
 from sim.diagnosis.timeline_view import TimelineView
-from sim.trace.events import NoticeKind
+from sim.trace.events import Notice, NoticeKind
 from sim.trace.timeline import Timeline
 
 
 class ParameterOverruled(Rule):
-    """An on-set callback sets the parameter that it is asked about; that is stored as it was asked for.
+    """An on-set callback sets the parameter that it validates; the requested value is stored after that.
 
-    Source: rclpy's ``Node._set_parameters_atomically_common``, which stores after it has asked.
+    Source: rclpy's ``Node._set_parameters_atomically_common``, which stores after the callbacks.
     """
 
     id = "parameter-overruled"
@@ -21,11 +21,11 @@ class ParameterOverruled(Rule):
         """Yield each parameter once, as the engine reports it."""
         for notice in view.timeline.notices:
             if notice.kind is NoticeKind.OVERRULED and notice.t <= view.end:
-                yield Finding(self, notice.t, notice.t, notice.entity, about=notice.problem)
+                yield Finding(self, notice.t, notice.t, notice.entity, about=notice.problem, event=notice)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Repeat the engine's notice."""
-        notice = next(each for each in timeline.notices if each.problem == found.about)
+        notice = found.event
+        assert isinstance(notice, Notice)
         return Explanation(
             notice.problem,
             "an on-set callback is asked before the parameter is stored: what it sets is stored first, and "

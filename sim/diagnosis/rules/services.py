@@ -51,7 +51,6 @@ class UnreturnedResponse(Rule):
         return bool(span.error) or span.entity not in view.now.holders.get(group, ())
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Say whether it raised or returned nothing."""
         subject, service = who(found.subject, timeline), entity_of(found, timeline).name
         place = place_of(found.subject, timeline)
         remedies: tuple[Remedy, ...] = ()
@@ -84,7 +83,6 @@ class NobodyOffers(Rule):
                 yield Finding(self, call.sent, call.sent, call.caller, about=call.service)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Say whether there is such a service at other times, of another type or by another name."""
         caller = f"{who(found.subject, timeline)} called" if found.subject else "somebody called"
         client = _client_of(found, timeline)
         differs, cure, remedies = ("", "", ()) if client is None else offer(client, timeline)
@@ -111,14 +109,14 @@ class NobodyOffers(Rule):
 
 
 def _client_of(found: Finding, timeline: Timeline) -> EntityInfo | None:
-    """The client of a service that a callback's node has; that of another node if the caller is unknown."""
+    """Return the client of a service in a callback's node; in any node if the caller is unknown."""
     node = timeline.entities[found.subject].node if found.subject else 0
     clients = (each for each in timeline.entities.values() if each.kind is EntityKind.CLIENT)
     return next((each for each in clients if each.name == found.about and node in (0, each.node)), None)
 
 
 def _unserved(timeline: Timeline) -> list[EntityInfo]:
-    """The clients of services that nobody offers by that name and type."""
+    """Return the clients of services that no node offers by that name and type."""
     known = timeline.entities.values()
     offered = {(each.name, each.interface_type) for each in known if each.kind is EntityKind.SERVICE}
     clients = (each for each in known if each.kind is EntityKind.CLIENT)
@@ -126,7 +124,7 @@ def _unserved(timeline: Timeline) -> list[EntityInfo]:
 
 
 class ServiceNeverComes(Rule):
-    """A callback waits for a service that nobody of the run offers, and keeps its thread and its group."""
+    """A callback waits for a service that no node offers, and keeps its thread and its group."""
 
     id = "service-never-comes"
     summary = "a callback waits for a service that nobody offers"
@@ -146,7 +144,7 @@ class ServiceNeverComes(Rule):
         yield from self._of_program(view)
 
     def _of_program(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield it if the program itself waits, and so comes to no ``spin()``."""
+        """Yield a wait of the program itself, which therefore does not reach ``spin()``."""
         at = view.timeline.program_at(view.end)
         if at is None or at.call != "Client.wait_for_service" or view.end - at.t < self.threshold:
             return
@@ -171,7 +169,6 @@ class ServiceNeverComes(Rule):
         )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Say what waits with it."""
         if not found.subject:
             return self._explained_of_program(found, timeline)
         subject = who(found.subject, timeline)
@@ -187,5 +184,5 @@ class ServiceNeverComes(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Irrelevant if the service came after all."""
+        """Irrelevant if the wait ended."""
         return self.weight if found.until >= timeline.end else None

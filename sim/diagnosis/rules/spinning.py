@@ -1,10 +1,10 @@
-"""Rules on spinning in the wrong place: inside a callback, and while a node is being made."""
+"""Rules on spinning in the wrong place: inside a callback, and inside a node's constructor."""
 
 from collections.abc import Iterator
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.polling import leave_out
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, line_location
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES
@@ -44,15 +44,14 @@ class NestedSpin(Rule):
                 clash.entity,
                 clash.entity,
                 about=clash.function,
+                event=clash,
                 stuck=stuck,
                 ring=ring,
             )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Say what it led to, and how to do without it."""
-        clash = next(
-            each for each in timeline.spin_clashes if (each.t, each.entity) == (found.at, found.subject)
-        )
+        clash = found.event
+        assert isinstance(clash, SpinClashed)
         subject = who(clash.entity, timeline) if clash.entity else "the program"
         runner = (
             f"the executor that runs {subject}" if clash.entity else "an executor that another thread spins"
@@ -74,7 +73,7 @@ class NestedSpin(Rule):
             held = f"all callbacks of its node are in {found.ring[2]}, which {subject} holds"
             what = f"deadlock: {subject} waits in {found.ring[1]} for ever; {held}"
             why = "it comes back when a callback of the node has run, and their group lets none of them in"
-        place = CodeLocation(clash.file, clash.line, clash.line) if clash.file else None
+        place = line_location(clash.file, clash.line)
         cure, remedies = _cure(clash, subject, timeline), _remedies(clash, place, timeline)
         return Explanation(
             f"{what}{often(found.count)}", why, cure, place, for_ever=for_ever, remedies=remedies
@@ -82,7 +81,7 @@ class NestedSpin(Rule):
 
 
 class SpinInConstructor(Rule):
-    """``__init__`` spins and does not come back, so that nothing that follows it is ever done."""
+    """``__init__`` spins and does not return, so that no later line is ever run."""
 
     id = "spin-in-constructor"
     summary = "__init__ spins, and what follows is never done"
@@ -97,7 +96,6 @@ class SpinInConstructor(Rule):
             yield Finding(self, at.t, view.end, detail=at.call)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the line."""
         at = timeline.program_at(found.at)
         assert at is not None
         file, _, line = at.frames[-1]
@@ -112,7 +110,7 @@ class SpinInConstructor(Rule):
 
 
 _SPIN = "spin"
-"""What the names of all functions that spin have in them."""
+"""A part of the names of all functions that spin."""
 
 
 def _lasts(position: Position, view: TimelineView) -> bool:
@@ -120,7 +118,7 @@ def _lasts(position: Position, view: TimelineView) -> bool:
 
 
 def _ring(clash: SpinClashed, timeline: Timeline) -> tuple[str, ...]:
-    """What a callback that spins its own node without a timeout waits for, if it keeps all of that itself."""
+    """Return the cycle of a callback that spins its node without end, if it holds the node's only group."""
     known = timeline.entities.get(clash.entity)
     group = None if known is None else timeline.groups.get(known.group)
     if known is None or group is None or not clash.endless or clash.node != known.node:

@@ -31,7 +31,6 @@ class ThreadsNeverUsed(Rule):
             yield Finding(self, 0, view.end, size=needed, detail=str(threads))
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name both numbers."""
         were = "was" if found.size == 1 else "were"
         return Explanation(
             f"{found.size} of {found.detail} threads {were} ever needed at once",
@@ -62,7 +61,6 @@ class GroupsChangeNothing(Rule):
             yield Finding(self, 0, view.end, node.id, detail=_GROUPS)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Say which of the two lacks the other."""
         subject = timeline.entities[found.subject]
         if found.detail == _THREADS:
             letter = timeline.groups[subject.group].letter
@@ -90,7 +88,7 @@ _GROUPS = "groups"
 
 
 def _abbreviated(letters: list[str]) -> list[str]:
-    """The first letters; a number stands for the others."""
+    """Return the first letters, and the number of the others."""
     if len(letters) <= _MOST_LETTERS:
         return letters
     shown = letters[: _MOST_LETTERS - 1]

@@ -39,7 +39,6 @@ class OverlappingCallback(Rule):
                 latest = max(latest, end)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the race condition."""
         subject = who(found.subject, timeline)
         cure = (
             f"give {subject} a MutuallyExclusiveCallbackGroup, or see that a lock guards what its calls share"
@@ -84,7 +83,6 @@ class OverrunTimer(Rule):
                     yield Finding(self, span.start, end, entity.id, entity.id, size=length)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Count the ticks that the longest call missed."""
         entity = entity_of(found, timeline)
         alone = threads_for([found.subject], found.until, timeline) == 1
         threads = f", with {with_threads(2)}" if alone else ""

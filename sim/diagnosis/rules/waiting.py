@@ -40,7 +40,7 @@ class _KeptWaiting(Rule):
                     yield Finding(self, wait.since, wait.until, entity.id, culprit, size=waited)
 
     def _waiting(self, found: Finding, timeline: Timeline) -> list[EntityId]:
-        """Who waited for the culprit at the worst time, the one that waited longest first."""
+        """Return the callbacks that waited for the culprit at the worst time, the longest wait first."""
         at = Window(found.at, found.until)
         others = (each for each in timeline.entities if each not in (found.subject, found.culprit))
         return [
@@ -84,7 +84,6 @@ class GroupStarvation(_KeptWaiting):
     reason = Reason.GROUP_HELD
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the holder of the group."""
         culprit = who(found.culprit, timeline)
         waited = self._waiting(found, timeline)
         mover = found.subject if len(waited) == 1 else found.culprit
@@ -107,7 +106,6 @@ class NoFreeWorker(_KeptWaiting):
     reason = Reason.NO_FREE_WORKER
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the callback that occupied a thread."""
         culprit = who(found.culprit, timeline)
         beside_itself = len(timeline.spans_of(found.culprit, Window(found.at, found.at + 1)))
         room = remedy_for_waits([found.subject], found.subject, Window(found.at, found.until), timeline)
@@ -130,7 +128,7 @@ class NoFreeWorker(_KeptWaiting):
 class BehindOthers(_KeptWaiting):
     """A callback was ready, but its EventsExecutor was running what came before it.
 
-    Source: rclpy's ``events_executor.cpp``, which keeps one queue and asks no callback group.
+    Source: rclpy's ``events_executor.cpp``, which has one queue and ignores callback groups.
     """
 
     id = "behind-others"
@@ -138,7 +136,6 @@ class BehindOthers(_KeptWaiting):
     reason = Reason.EVENT_QUEUE
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the callback that ran meanwhile."""
         culprit = who(found.culprit, timeline)
         return self._explained(
             found,
@@ -177,7 +174,6 @@ class NodeNeverSpins(Rule):
             yield Finding(self, since, view.end, wait.entity, about=name, size=view.end - since)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Say whether the node was ever spun, and whether there is an executor for it."""
         subject = who(found.subject, timeline)
         node = timeline.entities[found.subject].node
         ever = any(

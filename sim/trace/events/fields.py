@@ -1,8 +1,8 @@
-"""The types of events' fields: what a value stands for, its unit, and how a line of JSON tells it.
+"""The types of events' fields: their meaning, their units, and their form in lines of JSON.
 
 On the wire times are integer nanoseconds. Ids are small integers, unique within a run and kind; an
 ``…Appeared`` event introduces an id before any other event uses it. In JSON times are seconds, and names
-stand for ids. The text below a type is what ``EVENTS.md`` says of it.
+stand for ids. The text below a type is its text in ``EVENTS.md``.
 """
 
 from collections.abc import Callable
@@ -41,7 +41,7 @@ class IdNames(Protocol):
 
 
 class JsonForm(NamedTuple):
-    """How a line of JSON tells a field of an event.
+    """The form of an event's field in a line of JSON.
 
     ``names`` are the fields of the line, separated by spaces; empty: one with the field's own name. A name
     with ``?`` is left out of some lines. ``look_up`` or ``convert`` returns the value, None to leave it out;
@@ -65,7 +65,7 @@ Maybe: TypeAlias = Annotated[T, Shown.IF_ANY]
 """A field of which 0 or an empty text means none: the line of JSON leaves it out."""
 
 WireOnly: TypeAlias = Annotated[T, Shown.NEVER]
-"""A field that lines of JSON do not have: other fields tell it, or it matters to cbtui alone."""
+"""A field that lines of JSON leave out: other fields have it, or only cbtui uses it."""
 
 
 def _seconds(nanoseconds: int) -> float:
@@ -148,7 +148,7 @@ CallId: TypeAlias = Annotated[int, JsonForm("call")]
 LineId: TypeAlias = Annotated[int, JsonForm("line")]
 """Number of the ``ros2`` line."""
 
-# IdNames and texts.
+# Names and texts.
 
 TopicName: TypeAlias = Annotated[str, JsonForm("entity")]
 """Name of the topic or service."""

@@ -34,7 +34,7 @@ class CommandKind(StrEnum):
 
 
 class RunEnded(TraceEvent, frozen=True, tag="run_end"):
-    """The run is over: its time was up, its program returned or failed, or somebody stopped it."""
+    """The run is over: its time was up, its program returned or failed, or it was stopped."""
 
     reason: str
     """Why the run ended, as a sentence."""
@@ -45,11 +45,13 @@ class RunEnded(TraceEvent, frozen=True, tag="run_end"):
     error: WireOnly[str | None] = None
     """The exception that ended it, as ``CallbackFailed.error`` has it; "" for none, None if not known."""
     place: WireOnly[SourcePlace] = ("", 0)
-    """Where in the program's own code that came up, or is to be mended."""
+    """The line of the program's code that raised the exception, or has to be changed."""
     problem: WireOnly[str] = ""
     """The part of ``reason`` that says what went wrong."""
     advice: WireOnly[str] = ""
     """The part of ``reason`` that says what to do about it."""
+    exception: WireOnly[str] = ""
+    """The class of the exception that ended it; "" if not known."""
 
 
 class RunEnding(TraceEvent, frozen=True, tag="run_ending"):
@@ -88,7 +90,7 @@ class TimeHalted(TraceEvent, frozen=True, tag="halt"):
 
 
 class TimePassed(TraceEvent, frozen=True, tag="time"):
-    """The time of a run on the real clock, sent when there is nothing else, so that the display goes on.
+    """The time of a run on the real clock, sent when there is no other event, so that the display is updated.
 
     Lines of JSON leave it out.
     """
