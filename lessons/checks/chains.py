@@ -14,7 +14,7 @@ def chain_never_takes_longer_than(names: Sequence[str], limit: float) -> Check:
 
     Topics or services between these may be named, too. Messages that lead to none do not count.
     """
-    return _within(names, limit, "takes", lambda found: found.whole)
+    return _within(names, limit, "takes", lambda found: found.whole_chain)
 
 
 def chain_never_uses_older_than(names: Sequence[str], limit: float) -> Check:

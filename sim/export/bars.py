@@ -98,7 +98,7 @@ def ticks(window: Window, most: int) -> Sequence[Nanoseconds]:
 
 
 def _free_level(running: list[Nanoseconds | None], start: Nanoseconds) -> int:
-    """The first level whose interval is over at ``start``."""
+    """Return the first level whose interval has ended at ``start``."""
     for level, until in enumerate(running):
         if until is None or until <= start:
             return level

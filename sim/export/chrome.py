@@ -47,12 +47,10 @@ class ChromeFile:
     def begin(
         self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Arrows = NO_LINKS
     ) -> None:
-        """Begin a slice."""
         self._put(track, t, {"ph": "B", "name": name, "cat": category, "args": args})
         self._link(track, t, links)
 
     def end(self, track: TrackId, t: Nanoseconds, args: Args = NO_ARGS) -> None:
-        """End the innermost slice."""
         self._put(track, t, {"ph": "E", "args": args} if args else {"ph": "E"})
 
     def instant(
@@ -67,12 +65,10 @@ class ChromeFile:
             self._put(track, t, {"ph": "i", "s": "t", **about})
 
     def count(self, track: TrackId, t: Nanoseconds, value: float) -> None:
-        """Add a value of a counter."""
         if math.isfinite(value):
             self._put(track, t, {"ph": "C", "name": self._names[track], "args": {"value": value}})
 
     def close(self) -> None:
-        """Write the rest of the file."""
         self._write()
         other = {"epoch_ns": str(self._epoch)}
         self._file.write(b'\n],"displayTimeUnit":"ms","otherData":' + self._encode(other) + b"}\n")

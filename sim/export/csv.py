@@ -2,6 +2,7 @@
 
 import csv
 from collections.abc import Callable, Sequence
+from functools import cache
 from typing import Any, TextIO
 
 from sim.export.open_calls import CallSegment, OpenCalls
@@ -44,7 +45,7 @@ class CallTable:
         self._open_calls = OpenCalls()
         self._waiting: dict[EntityId, Nanoseconds] = {}
         self._waited: dict[EntityId, Nanoseconds] = {}
-        self._cells: dict[EntityId, tuple[str, str, str, str]] = {}
+        self._entity_cells = cache(self._make_cells)
         self._handlers: dict[type, Callable[[Any], object]] = {
             ev.ProcessAppeared: self._participants.add_process,
             ev.ThreadAppeared: self._participants.add_thread,
@@ -121,12 +122,6 @@ class CallTable:
                 cell(segment.error),
             )
         )
-
-    def _entity_cells(self, entity: EntityId) -> tuple[str, str, str, str]:
-        cells = self._cells.get(entity)
-        if cells is None:
-            cells = self._cells[entity] = self._make_cells(entity)
-        return cells
 
     def _make_cells(self, entity: EntityId) -> tuple[str, str, str, str]:
         known = self._participants.entities.get(entity)

@@ -70,8 +70,8 @@ def _rank(field: JsonField) -> int:
     return _LAST.index(field.name) + 1 if field.name in _LAST else 0
 
 
-class RunNames:
-    """The names behind a run's ids; see ``IdNames``."""
+class _RunNames:
+    """Implements ``IdNames`` for a run's events."""
 
     def __init__(self) -> None:
         self._participants = Participants()
@@ -87,7 +87,6 @@ class RunNames:
         }
 
     def take(self, event: AnyEvent) -> None:
-        """Learn the names in an event."""
         add = self._take.get(event.__class__)
         if add is not None:
             add(event)
@@ -106,33 +105,26 @@ class RunNames:
         self._topics[event.topic] = event.name
 
     def process(self, process: ProcessId) -> str | None:
-        """The label of one of several programs."""
         return self._participants.processes.get(process)
 
     def node(self, node: NodeId) -> str:
-        """The name of a node."""
         return self._participants.nodes.get(node, ROBOT if node == 0 else f"node {node}")
 
     def thread(self, thread: ThreadId) -> str:
-        """The name of a thread."""
         known = self._participants.threads.get(thread)
         return f"thread {thread}" if known is None else known.name
 
     def topic(self, topic: TopicId) -> str:
-        """The name of a topic whose contents are recorded."""
         return self._topics.get(topic, f"topic {topic}")
 
     def callback(self, entity: EntityId) -> str | None:
-        """The spoken name of an entity."""
         known = self._participants.entities.get(entity)
         return None if known is None else known.spoken_name
 
     def entity(self, entity: EntityId) -> JsonObject:
-        """The fields of an entity."""
         return self._entities.get(entity, {})
 
     def group(self, group: GroupId) -> JsonObject:
-        """The fields of a callback group."""
         known = self._participants.groups.get(group)
         return {} if known is None else {"group": known.letter, "group_type": known.kind}
 
@@ -145,7 +137,7 @@ class JsonLines:
     """
 
     def __init__(self) -> None:
-        self._names = RunNames()
+        self._names = _RunNames()
         self._encode = msgspec.json.Encoder().encode
 
     def lines(self, events: Iterable[AnyEvent]) -> Iterator[bytes]:

@@ -9,7 +9,7 @@ from sim.export.texts import seconds
 from sim.quantities.durations import duration
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind
-from sim.trace.figures.chains_text import told_chain
+from sim.trace.figures.chains_text import chain_report
 from sim.trace.figures.statistics import CallbackStatistics, Distribution, Statistics, ages_used, statistics
 from sim.trace.figures.summary import CallbackFigures, Summary, summarise
 from sim.trace.figures.summary_text import robot_line, service_line
@@ -63,7 +63,7 @@ def report(timeline: Timeline, picture: str | None = None, chains: Sequence[Sequ
 
 def _chains(timeline: Timeline, chains: Sequence[Sequence[str]]) -> Iterator[str]:
     for names in chains:
-        yield from ("## Chain", "", "```text", told_chain(timeline, names).rstrip(), "```", "")
+        yield from ("## Chain", "", "```text", chain_report(timeline, names).rstrip(), "```", "")
 
 
 def _setup(timeline: Timeline, summary: Summary) -> Iterator[str]:
@@ -76,8 +76,7 @@ def _setup(timeline: Timeline, summary: Summary) -> Iterator[str]:
     if summary.lost:
         yield f"**The trace lost {summary.lost} events, so some figures below are too small.**"
         yield ""
-    yield "## Set-up"
-    yield ""
+    yield from _heading("Set-up")
     for executor in timeline.executors.values():
         threads = "1 thread" if executor.threads == 1 else f"{executor.threads} threads"
         yield f"- {plain(executor.kind)}, {threads}"
@@ -97,8 +96,7 @@ def _groups(timeline: Timeline) -> Iterator[Sequence[str]]:
 
 
 def _diagnosis(timeline: Timeline) -> Iterator[str]:
-    yield "## Diagnosis"
-    yield ""
+    yield from _heading("Diagnosis")
     findings = diagnose(timeline)
     if not findings:
         yield "No problems found."
@@ -113,8 +111,7 @@ def _diagnosis(timeline: Timeline) -> Iterator[str]:
 
 def _callbacks(summary: Summary, figures: Statistics) -> Iterator[str]:
     about = {each.entity.id: each for each in summary.callbacks}
-    yield "## Callbacks"
-    yield ""
+    yield from _heading("Callbacks")
     yield from _table(_HEADS, (_row(each, about.get(each.entity.id)) for each in figures.callbacks))
 
 
@@ -161,8 +158,7 @@ def _name(entity: EntityId, names: dict[EntityId, str], timeline: Timeline) -> s
 
 
 def _waits(summary: Summary, timeline: Timeline) -> Iterator[str]:
-    yield "## Waits"
-    yield ""
+    yield from _heading("Waits")
     rows = [row for each in summary.callbacks for row in _reasons(each, timeline)]
     if rows:
         yield from _table(("callback", "waited in all", "longest", "because"), rows)
@@ -185,8 +181,7 @@ def _reasons(each: CallbackFigures, timeline: Timeline) -> Iterator[Sequence[str
 
 
 def _threads(timeline: Timeline, summary: Summary, figures: Statistics) -> Iterator[str]:
-    yield "## Threads"
-    yield ""
+    yield from _heading("Threads")
     busy = ((plain(timeline.threads[thread].name), f"{share:.1%}") for thread, share in figures.busy.items())
     yield from _table(("thread", "busy"), busy)
     yield f"{summary.threads_used} ran callbacks, at most {figures.threads_at_once} at once."
@@ -198,16 +193,14 @@ def _calls_and_robot(summary: Summary) -> Iterator[str]:
     if summary.robot:
         lines.append(f"robot: {robot_line(summary.robot)}")
     if lines:
-        yield "## Services and robot"
-        yield ""
+        yield from _heading("Services and robot")
         yield from (f"- {plain(line)}" for line in lines)
         yield ""
 
 
 def _words(timeline: Timeline) -> Iterator[str]:
     if timeline.notices:
-        yield "## Notices"
-        yield ""
+        yield from _heading("Notices")
         for notice in timeline.notices:
             yield f"- {seconds(notice.t)} s, {notice.severity.value}: {plain(notice.text)}"
         yield ""
@@ -217,8 +210,7 @@ def _words(timeline: Timeline) -> Iterator[str]:
         if mark.kind in (AxisMarkKind.COMMAND, AxisMarkKind.ERROR)
     ]
     if marks:
-        yield "## Commands and errors"
-        yield ""
+        yield from _heading("Commands and errors")
         yield from map(_mark, marks[:_MARKS])
         if len(marks) > _MARKS:
             yield f"- and {len(marks) - _MARKS} more"
@@ -231,8 +223,7 @@ def _mark(mark: AxisMark) -> str:
 
 def _picture(picture: str | None) -> Iterator[str]:
     if picture is not None:
-        yield "## Picture"
-        yield ""
+        yield from _heading("Picture")
         yield f"![Threads, callback groups and waits over time](<{_link(picture)}>)"
         yield ""
 
@@ -240,6 +231,10 @@ def _picture(picture: str | None) -> Iterator[str]:
 def _link(path: str) -> str:
     """A path as Markdown takes it between angle brackets."""
     return path.replace("%", "%25").replace("<", "%3C").replace(">", "%3E").replace("\n", "%0A")
+
+
+def _heading(title: str) -> tuple[str, str]:
+    return f"## {title}", ""
 
 
 def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:

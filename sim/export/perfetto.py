@@ -37,7 +37,6 @@ class PerfettoFile:
         snapshot.clocks.add(clock_id=pb.BUILTIN_CLOCK_REALTIME, timestamp=max(0, epoch))
 
     def add(self, track: Track) -> None:
-        """Describe a track."""
         about = self._packet(0).track_descriptor
         about.uuid = track.id
         if track.parent:
@@ -62,26 +61,21 @@ class PerfettoFile:
     def begin(
         self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Arrows = NO_LINKS
     ) -> None:
-        """Begin a slice."""
         _fill(self._event(track, t, _BEGIN, name, category), args, links)
 
     def end(self, track: TrackId, t: Nanoseconds, args: Args = NO_ARGS) -> None:
-        """End the innermost slice."""
         _fill(self._event(track, t, _END), args, NO_LINKS)
 
     def instant(
         self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Arrows = NO_LINKS
     ) -> None:
-        """Add an instant."""
         _fill(self._event(track, t, _INSTANT, name, category), args, links)
 
     def count(self, track: TrackId, t: Nanoseconds, value: float) -> None:
-        """Add a value of a counter."""
         if math.isfinite(value):
             self._event(track, t, _COUNTER).double_counter_value = value
 
     def close(self) -> None:
-        """Write the rest of the file."""
         self._file.write(self._trace.SerializeToString())
         # A cleared message keeps its memory; a new one does not.
         self._trace = pb.Trace()

@@ -46,7 +46,7 @@ class ReorderBuffer:
     callback became ready. So events stay in the buffer until the stream is a ``horizon`` further. A later one
     is moved to the latest released time: times never decrease.
 
-    The buffered events also tell who is about to receive a message. Memory: two horizons of events.
+    The buffered events also show who is about to receive a message. Memory: two horizons of events.
     """
 
     def __init__(self, horizon: Nanoseconds = HORIZON) -> None:

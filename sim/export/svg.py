@@ -20,20 +20,15 @@ LABELS = 210.0
 MARGIN = 14.0
 NARROWEST = 480
 WIDEST = 20_000
+_ROW_HEIGHT = 22.0
 _GAP = 3.0
 _TICK_EVERY = 80.0
 _LOSS_EVERY = 6.0
 _LEVELS = 4
 
 
-def svg(
-    timeline: Timeline,
-    window: Window,
-    width: int = 1100,
-    row_height: int = 22,
-    path: Sequence[ChainStep] = (),
-) -> str:
-    """The picture as the text of an SVG file, ``width`` pixels wide and as high as its rows need.
+def svg(timeline: Timeline, window: Window, width: int = 1100, path: Sequence[ChainStep] = ()) -> str:
+    """Return the picture as the text of an SVG file, ``width`` pixels wide and as high as its rows need.
 
     The steps of ``path`` are framed.
 
@@ -42,20 +37,17 @@ def svg(
     """
     if window.length <= 0:
         raise ValueError("the picture's end must come after its start")
-    if not NARROWEST <= width <= WIDEST or not 12 <= row_height <= 200:
-        raise ValueError(f"a picture is {NARROWEST} to {WIDEST} pixels wide, its rows 12 to 200 high")
-    return "\n".join(_Picture(timeline, window, width, row_height, path).lines()) + "\n"
+    if not NARROWEST <= width <= WIDEST:
+        raise ValueError(f"a picture is {NARROWEST} to {WIDEST} pixels wide")
+    return "\n".join(_Picture(timeline, window, width, path).lines()) + "\n"
 
 
 class _Picture:
-    def __init__(
-        self, timeline: Timeline, window: Window, width: int, row_height: int, path: Sequence[ChainStep]
-    ) -> None:
+    def __init__(self, timeline: Timeline, window: Window, width: int, path: Sequence[ChainStep]) -> None:
         self._path = path
         self._timeline = timeline
         self._window = window
         self._width = width
-        self._height = float(row_height)
         self._scale = PixelScale(window, LABELS + MARGIN, width - MARGIN)
         self._numbers = {group: number for number, group in enumerate(timeline.groups)}
 
@@ -69,7 +61,7 @@ class _Picture:
         for row in rows(self._timeline, self._window):
             y += _GAP if isinstance(row, EntityInfo) else 2.5 * _GAP
             body += self._row(row, y)
-            y += self._height
+            y += _ROW_HEIGHT
         body += self._marks(top, y)
         axis, y = self._axis(top, y)
         legend, y = self._legend(y + 18)
@@ -100,11 +92,11 @@ class _Picture:
     # rows
 
     def _row(self, row: ThreadInfo | GroupInfo | EntityInfo, y: float) -> Iterator[str]:
-        yield draw.ground(Box(self._scale.left, y, self._scale.right - self._scale.left, self._height))
+        yield draw.ground(Box(self._scale.left, y, self._scale.right - self._scale.left, _ROW_HEIGHT))
         indent = 14.0 if isinstance(row, EntityInfo) else 0.0
         label = draw.shortened(self._label(row), LABELS - indent - 6)
         weight = "" if isinstance(row, EntityInfo) else "bold"
-        yield draw.words(MARGIN + indent, y + self._height / 2 + 4, label, weight=weight)
+        yield draw.words(MARGIN + indent, y + _ROW_HEIGHT / 2 + 4, label, weight=weight)
         if isinstance(row, ThreadInfo):
             yield from self._thread(row, y)
         elif isinstance(row, GroupInfo):
@@ -122,8 +114,8 @@ class _Picture:
     def _thread(self, thread: ThreadInfo, y: float) -> Iterator[str]:
         spans = self._timeline.spans_on(thread.id, self._window)
         for bar in self._bars(spans):
-            inset = min(bar.level, _LEVELS) * self._height / 8
-            box = Box(bar.left, y + inset, bar.right - bar.left, self._height - 2 * inset)
+            inset = min(bar.level, _LEVELS) * _ROW_HEIGHT / 8
+            box = Box(bar.left, y + inset, bar.right - bar.left, _ROW_HEIGHT - 2 * inset)
             yield from self._call(bar, box, self._names(bar))
 
     def _group(self, group: GroupInfo, y: float) -> Iterator[str]:
@@ -132,13 +124,13 @@ class _Picture:
         verb = "held by" if group.kind is GroupKind.EXCLUSIVE else "runs"
         for bar in found:
             level = min(bar.level, levels - 1)
-            part = self._height / levels
+            part = _ROW_HEIGHT / levels
             box = Box(bar.left, y + level * part + part / 4, bar.right - bar.left, part / 2)
             name = name_of(bar.interval.entity, self._timeline)
             yield from self._call(bar, box, (f"{verb} {name}", name) if levels == 1 else ())
 
     def _entity(self, entity: EntityInfo, y: float) -> Iterator[str]:
-        height = self._height
+        height = _ROW_HEIGHT
         waits = self._timeline.waits_of(entity.id, self._window)
         for wait in bars(waits, self._scale, self._timeline.end):
             yield from self._wait(wait.interval, Box(wait.left, y + 1, wait.right - wait.left, height - 2))
@@ -258,6 +250,6 @@ def _short(t: Nanoseconds) -> str:
 
 
 def _places(steps: Sequence[Nanoseconds]) -> int:
-    """How many decimals of a second tell ticks apart."""
+    """Return the decimals of a second that distinguish ticks."""
     step = min(steps, default=SECOND)
     return next((places for places in range(9) if step % 10 ** (9 - places) == 0), 9)

@@ -30,7 +30,7 @@ class EntityTracks:
 
 @dataclass(slots=True)
 class GroupTracks:
-    """The tracks of one group, one for each simultaneous call; ``busy`` tells which of them have a call."""
+    """The tracks of one group, one for each simultaneous call; ``busy``: whether each has a call."""
 
     tracks: list[TrackId]
     busy: list[bool]

@@ -1,4 +1,4 @@
-"""Drops what a program does after it was told to end, so that checks and figures do not count it."""
+"""Drops events after the request to end a program, so that checks and figures do not count them."""
 
 from collections.abc import Iterable, Iterator
 
@@ -11,7 +11,7 @@ _KEPT = (Logged, Notice, Printed, RunEnded)
 
 
 class UntilEnding:
-    """Cuts a run's events at the time at which its program was told to end.
+    """Cuts a run's events at the request to end its program.
 
     Later log lines, printed lines, notices and the end of the run are kept, with that time.
     """
@@ -20,7 +20,7 @@ class UntilEnding:
         self._ending_at: Nanoseconds | None = None
 
     def cut(self, events: Iterable[AnyEvent]) -> Iterator[AnyEvent]:
-        """Yield the next events without those that are cut."""
+        """Yield the next events that are not cut."""
         for event in events:
             if self._ending_at is None:
                 yield event

@@ -23,7 +23,7 @@ from sim.trace.storage.table import IntegerTable
 ALWAYS = Window(-OPEN, OPEN)
 
 LATEST_SEARCHED = 64
-"""The latest calls that are searched for the one that took a message whose event comes late."""
+"""The number of latest calls that are searched for the one that took a message with a late event."""
 
 _NONE = ("", "", False)
 """The exception of a call that raised none."""
@@ -90,7 +90,7 @@ class ThreadSpans(Lane):
         self._busy_before = IntegerTable(intervals.spill, 1)
 
     def add(self, row: RowId) -> Layer:
-        """Take in a span that begins inside those of the stack, or after all; tells where."""
+        """Add a span that begins inside those of the stack, or after all; return its layer."""
         layer = super().add(row)
         self.stack.append(row)
         if layer is self.layers[0]:

@@ -1,4 +1,4 @@
-"""A mapping and a sequence whose values are made on access."""
+"""A mapping and a sequence whose values are created on access."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import TypeVar, overload
@@ -53,7 +53,7 @@ class ListLike(Sequence[Value]):
 class LazySequence(ListLike[Value]):
     """The values of row numbers, each made by ``make`` on access.
 
-    A picture of an hour asks for a hundred thousand calls and reads a few hundred.
+    A picture of an hour of a run queries a hundred thousand calls and reads a few hundred.
     """
 
     __slots__ = ("_make", "_rows")

@@ -85,9 +85,8 @@ class ServiceCalls(Intervals):
         return tuple(map(self._call, self._lane.covering(at)))
 
     def _call(self, row: RowId) -> Call:
-        return self._newest[row] if row in self._newest else self._made(row)
-
-    def _made(self, row: RowId) -> Call:
+        if row in self._newest:
+            return self._newest[row]
         sent, end, call, caller, service, lost, response = self.table.row(row)
         return Call(
             call,

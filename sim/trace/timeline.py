@@ -44,7 +44,7 @@ class Timeline:
     """
 
     def __init__(self, *, until_ending: bool = False) -> None:
-        """``until_ending`` drops what a program does after it was told to end."""
+        """``until_ending`` drops events after the request to end the program."""
         run = self._run = RunStores()
         self._cut: Callable[[Iterable[AnyEvent]], Iterable[AnyEvent]] = (
             UntilEnding().cut if until_ending else iter

@@ -145,7 +145,7 @@ class _Run:
         finally:
             self._session.stop()
         self._counts.finish()
-        came.troubles += self._counts.troubles
+        came.troubles += self._counts.faults
         if self._lost:
             came.troubles.append(f"{self._lost} events were lost")
         came.troubles += _grown(came.footprints)

@@ -45,7 +45,7 @@ def _counts(without: type | None = None) -> list[str]:
     ]
     counts.take(event for event in way if without is None or not isinstance(event, without))
     counts.finish()
-    return counts.troubles
+    return counts.faults
 
 
 def test_a_message_that_goes_its_way_adds_up() -> None:

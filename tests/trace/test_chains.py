@@ -115,7 +115,7 @@ def test_a_callback_that_publishes_hands_the_chain_on(line: Line) -> None:
     line.ends(170, "steer")
     found = line.chain("/scan", "/cmd_vel")
     assert found.path == ("/scan", "/points", "/cmd_vel")
-    assert [run.latency for run in found.whole] == [65 * MS]
+    assert [run.latency for run in found.whole_chain] == [65 * MS]
     assert steps(found) == [("look waits", 10), ("look runs", 20), ("steer waits", 5), ("steer runs", 30)]
 
 
@@ -129,7 +129,7 @@ def test_a_message_that_a_timer_uses_twice_is_whole_once_and_older_the_second_ti
         line.send(at, "/cmd_vel", message, by="tick")
         line.ends(at, "tick")
     found = line.chain("/points", "/cmd_vel")
-    assert [run.latency for run in found.whole] == [50 * MS]
+    assert [run.latency for run in found.whole_chain] == [50 * MS]
     assert [run.latency for run in found.runs] == [50 * MS, 150 * MS]
     assert steps(found, 1) == [("steer waits", 5), ("steer runs", 5), ("kept until tick uses it", 140)]
 
@@ -143,8 +143,8 @@ def test_a_message_replaced_by_a_newer_one_leads_to_no_output(line: Line) -> Non
     line.send(160, "/cmd_vel", 3, by="tick")
     line.ends(160, "tick")
     found = line.chain("/points", "/cmd_vel")
-    assert (found.inputs, len(found.whole)) == (2, 1)
-    assert [run.latency for run in found.whole] == [40 * MS]
+    assert (found.inputs, len(found.whole_chain)) == (2, 1)
+    assert [run.latency for run in found.whole_chain] == [40 * MS]
     assert steps(found) == [("kept until tick uses it", 30), ("tick runs", 10)]
 
 
@@ -219,7 +219,7 @@ def test_two_inputs_at_the_same_moment_keep_their_own_outputs(line: Line) -> Non
         line.starts(200, "look", message)
         line.send(200, "/points", message + 10, by="look")
         line.ends(200, "look")
-    assert [run.latency for run in line.chain("/scan", "/points").whole] == [100 * MS, 80 * MS]
+    assert [run.latency for run in line.chain("/scan", "/points").whole_chain] == [100 * MS, 80 * MS]
 
 
 def test_the_dearest_step_is_marked_and_the_costs_add_up(line: Line) -> None:

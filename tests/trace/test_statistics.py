@@ -24,8 +24,9 @@ from sim.trace.figures.statistics import (
     distribution,
     percentile,
     statistics,
-    statistics_of,
+    statistics_incrementally,
 )
+from sim.trace.incremental import run_to_end
 from sim.trace.model import Span, Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, ns
@@ -41,7 +42,7 @@ def timeline_of(events: Iterable[AnyEvent]) -> Timeline:
 
 def of(run: Run, entity: EntityId, window: Window | None = None) -> CallbackStatistics:
     timeline = timeline_of(run.events)
-    return statistics_of(timeline, entity, window or Window(0, timeline.end + 1))
+    return run_to_end(statistics_incrementally(timeline, entity, window or Window(0, timeline.end + 1)))
 
 
 class Cast:
@@ -185,7 +186,7 @@ def test_the_figures_of_a_random_run_are_those_of_a_naive_search(
     timeline, naive = timeline_of(events), Naive(events)
     window = Window(start, start + length)
     for entity in GROUP_OF:
-        figures = statistics_of(timeline, entity, window)
+        figures = run_to_end(statistics_incrementally(timeline, entity, window))
         assert_as_naive(figures, naive, entity, window)
         if KINDS[entity] is EntityKind.TIMER:
             calls = [s for s in naive.spans if s.entity == entity and window.start <= s.start < window.end]

@@ -3,8 +3,9 @@
 import pytest
 
 from sim.trace.events import Reason
-from sim.trace.figures.summary import Summary, robot_in, summarise
+from sim.trace.figures.summary import Summary, robot_incrementally, summarise
 from sim.trace.figures.summary_text import plain_text
+from sim.trace.incremental import run_to_end
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_one_thread_run, ns, shared_group_run, split_groups_run
@@ -185,7 +186,7 @@ def test_two_turns_right_after_each_other_are_two_also_in_a_window_that_begins_i
         run.robot(float(second), turned=0.2 * min(3, max(0, second - 1)))
     timeline = Timeline()
     timeline.extend(run.until(5.0))
-    robot = robot_in(timeline, Window(ns(2.0), ns(5.0)))
+    robot = run_to_end(robot_incrementally(timeline, Window(ns(2.0), ns(5.0))))
     assert robot is not None
     assert (robot.turns, round(robot.turned, 9)) == (2, 0.4)
 

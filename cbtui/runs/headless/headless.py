@@ -127,10 +127,10 @@ class _Headless:
 
     def _tell_chains(self) -> None:
         if self._chains:
-            from sim.trace.figures.chains_text import told_chain
+            from sim.trace.figures.chains_text import chain_report
 
             for names in self._chains:
-                say(f"\n{told_chain(self._timeline, names)}")
+                say(f"\n{chain_report(self._timeline, names)}")
 
     def _end_early(self, signal: Signals) -> None:
         """Stop the engine; its last events are still received."""

@@ -12,7 +12,7 @@ from sim.export.summary_json import summary_json
 from sim.quantities.durations import timestamp
 from sim.recording import Recording, RecordingError, Topic, read
 from sim.trace.events import AnyEvent, ContentsLost, EventsLost, RunEnded, RunEnding, RunStarted
-from sim.trace.figures.chains_text import told_chain
+from sim.trace.figures.chains_text import chain_report
 from sim.trace.timeline import Timeline
 
 _LABEL = "{:<11}{}\n"
@@ -40,7 +40,7 @@ def tell(path: Path, chains: Sequence[Sequence[str]] = (), *, as_json: bool = Fa
     if timeline is not None and as_json:
         say_data(summary_json(timeline).decode())
     elif timeline is not None:
-        say("".join(f"\n{told_chain(timeline, names)}" for names in chains))
+        say("".join(f"\n{chain_report(timeline, names)}" for names in chains))
     if recording.damage is not None:
         complain(f"{path}: {recording.damage}")
         return 1

@@ -68,7 +68,7 @@ class ChainPrompt(ScreenPart):
         except ChainError as error:
             self.host.tell(f"{error}")
             return
-        done = [each for each in found.whole if each.input.at <= self.navigation.now]
+        done = [each for each in found.whole_chain if each.input.at <= self.navigation.now]
         if not done:
             self.host.tell(f"Nothing has gone all the way from {names[0]} to {names[-1]} yet.")
             return

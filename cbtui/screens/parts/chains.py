@@ -49,7 +49,7 @@ class ChainPath(ScreenPart):
     def here(self) -> ChainRun | None:
         """The latest run of the chain that began before the moment on screen, and came to its end."""
         now = self.navigation.now
-        begun = [each for each in self._chain.whole if each.input.at <= now] if self._chain else []
+        begun = [each for each in self._chain.whole_chain if each.input.at <= now] if self._chain else []
         return max(begun, key=lambda each: each.input.at, default=None)
 
     @property
@@ -58,7 +58,7 @@ class ChainPath(ScreenPart):
         here, found = self.here, self._chain
         if here is None or found is None or found.critical is None:
             return ""
-        dearest, slowest = here.dearest, found.critical
+        dearest, slowest = here.longest_step, found.critical
         most = f", {duration(dearest.length)} of it: {dearest.words}" if dearest.length else ""
         way = f"{found.path[0]} to {found.path[-1]} took {duration(here.latency)}{most}"
         return f"{way}; the slowest {duration(slowest.latency)} at {timestamp(slowest.input.at)}"

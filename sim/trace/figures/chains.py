@@ -19,20 +19,20 @@ class ChainError(ValueError):
 
 
 class StepKind(StrEnum):
-    """What a stretch of a chain's time was spent with."""
+    """What a callback or its message did during a step of a chain."""
 
     WAITS = "waits"
-    """A message or request lay in a queue, and its callback was not called yet."""
+    """A message or request was in a queue, and its callback was not called yet."""
     RUNS = "runs"
     """A callback ran until it sent the next message, or to its end."""
     CALLS = "calls"
-    """A callback stood still in a service call."""
+    """A callback was blocked in a service call."""
     KEPT = "kept"
     """A callback had stored the message, until another one of its node used it."""
 
 
 _KEPT_COST = 10
-"""How far a message is that a callback kept, where one is 1 that the sender itself took."""
+"""The distance to a message that another callback had stored; to one that the sender took it is 1."""
 _WORDS = {
     StepKind.WAITS: "{} waits",
     StepKind.RUNS: "{} runs",
@@ -43,7 +43,7 @@ _WORDS = {
 
 @dataclass(frozen=True, slots=True)
 class ChainStep:
-    """A stretch of a chain; ``who`` is a callback, or the service that it calls, ``why`` a wait's reason."""
+    """A step of a chain; ``who`` is a callback, or the service that it calls, ``why`` a wait's reason."""
 
     kind: StepKind
     who: str
@@ -54,21 +54,21 @@ class ChainStep:
 
     @property
     def length(self) -> Nanoseconds:
-        """How long it took."""
+        """Nanoseconds from its start to its end."""
         return self.end - self.start
 
     @property
     def words(self) -> str:
-        """What it is, as a clause: ``scan_callback waits, group A held by timer_callback``."""
+        """The step as a clause: ``scan_callback waits, group A held by timer_callback``."""
         what = _WORDS[self.kind].format(self.who)
         return f"{what}, {self.why}" if self.why else what
 
 
 @dataclass(frozen=True, slots=True)
 class ChainRun:
-    """One output of a chain and the input that it came of; the steps fill the time between them.
+    """One output of a chain and the input that led to it; the steps fill the time between them.
 
-    ``first``: it is the first output of that input. Later ones use the same message once more.
+    ``first``: whether it is the first output of that input; later ones use the same message again.
     """
 
     input: Sending
@@ -82,14 +82,14 @@ class ChainRun:
         return self.output.at - self.input.at
 
     @property
-    def dearest(self) -> ChainStep:
+    def longest_step(self) -> ChainStep:
         """The step that took longest."""
         return max(self.steps, key=_length)
 
 
 @dataclass(frozen=True, slots=True)
 class Cost:
-    """What all steps of one kind and callback took together, and the longest of them."""
+    """The total time of all steps of one kind and callback, and the longest of them."""
 
     total: Nanoseconds
     longest: ChainStep
@@ -97,10 +97,10 @@ class Cost:
 
 @dataclass(frozen=True)
 class Chain:
-    """All that went through a chain. ``path`` are topics and services, from the first to the last one.
+    """The messages of a chain. ``path`` are topics and services, from the first to the last one.
 
-    Two latencies are told apart. *Whole chain*: from each input to its first output; inputs without one were
-    replaced by newer ones, lost, or are still on their way. *Last message*: from each output back to the
+    There are two latencies. *Whole chain*: from each input to its first output; inputs without one were
+    replaced by newer ones, lost, or have not arrived yet. *Last message*: from each output back to the
     input that it used, which a callback that keeps the latest message may use again and again.
     """
 
@@ -110,20 +110,20 @@ class Chain:
     outputs: int
 
     @cached_property
-    def whole(self) -> tuple[ChainRun, ...]:
+    def whole_chain(self) -> tuple[ChainRun, ...]:
         """The first output of each input that has one."""
         return tuple(each for each in self.runs if each.first)
 
     @property
     def critical(self) -> ChainRun | None:
-        """The slowest of the whole chain."""
-        return max(self.whole, key=lambda each: each.latency, default=None)
+        """The run with the longest latency of the whole chain; None if there is no run."""
+        return max(self.whole_chain, key=lambda each: each.latency, default=None)
 
     @property
     def costs(self) -> list[Cost]:
-        """What each step of the whole chain cost in all runs together, the dearest first."""
+        """The cost of each step of the whole chain in all its runs, the highest first."""
         steps: defaultdict[tuple[StepKind, str], list[ChainStep]] = defaultdict(list)
-        for each in self.whole:
+        for each in self.whole_chain:
             for step in each.steps:
                 steps[step.kind, step.who].append(step)
         costs = [Cost(sum(map(_length, found)), max(found, key=_length)) for found in steps.values()]
@@ -131,9 +131,9 @@ class Chain:
 
 
 def chain(timeline: Timeline, names: Sequence[str]) -> Chain:
-    """Follow a chain through a run; ``names`` are two or more topics or services on its way, in order.
+    """Follow a chain through a run; ``names`` are two or more of its topics and services, in order.
 
-    What lies between two names is found: the shortest way that messages took.
+    The names between two of these are found: those of the shortest way that messages took.
 
     Raises:
         ChainError: nothing was sent on a name, or no message led from one to the next.
@@ -169,21 +169,21 @@ def _at(sending: Sending) -> Nanoseconds:
 
 
 class _Tracer:
-    """Follows messages of one timeline back to what they came of."""
+    """Follows messages of one timeline back to the messages that led to them."""
 
     def __init__(self, timeline: Timeline) -> None:
         self._run = timeline
-        self._whole = Window(0, timeline.end + 1)
+        self._run_window = Window(0, timeline.end + 1)
         self.sent = cache(self._sent)
         self._calls: dict[int, Call] = {call.id: call for call in timeline.calls}
         self._taken = cache(self._taken_by)
         self._begun = cache(self._begun_by)
 
     def way(self, first: str, last: str) -> list[str]:
-        """The names between two, and the last one.
+        """Return the names between two, and the last one.
 
         Raises:
-            ChainError: nothing led from one to the other.
+            ChainError: no message led from one to the other.
         """
         after: dict[str, str] = {}
         known = {last: 0}
@@ -202,7 +202,7 @@ class _Tracer:
         raise ChainError(f"no message of {first} led to one of {last}")
 
     def back(self, output: Sending, path: Sequence[str]) -> tuple[Sending, list[ChainStep]] | None:
-        """The input that an output came of, and the steps from the one to the other; None if unknown."""
+        """Return the input that led to an output, and the steps between them; None if it is unknown."""
         steps: deque[ChainStep] = deque()
         at = output
         for name in reversed(path[:-1]):
@@ -214,7 +214,7 @@ class _Tracer:
         return at, list(steps)
 
     def _sources(self, name: str) -> dict[str, int]:
-        """The topics and services of which messages on a name came, and how far that is."""
+        """Return the topics and services whose messages led to those on a name, with their distances."""
         found: dict[str, int] = {}
         senders = {each.sender.entity: None for each in self._run.sent_on(name) if each.sender is not None}
         known = [self._run.entities[entity] for entity in senders if entity in self._run.entities]
@@ -233,7 +233,7 @@ class _Tracer:
                 yield each.name
 
     def _hop(self, output: Sending, name: str) -> tuple[Sending, list[ChainStep]] | None:
-        """The sending on ``name`` that an output came of, and what happened between them."""
+        """Return the sending on ``name`` that led to an output, and the steps between them."""
         call = output.sender
         known = None if call is None else self._run.entities.get(call.entity)
         if call is None or known is None:
@@ -247,7 +247,7 @@ class _Tracer:
         return self._asked(output, call, name) or self._kept(output, call, name)
 
     def _asked(self, output: Sending, call: Span, name: str) -> tuple[Sending, list[ChainStep]] | None:
-        """The latest answered request that the sending call made before."""
+        """Return the latest answered request that the sending call had made before."""
         began = self._began(call)
         sent = self._run.sent_on(name)
         for place in range(bisect_right(sent, output.at, key=_at) - 1, -1, -1):
@@ -261,7 +261,7 @@ class _Tracer:
         return None
 
     def _kept(self, output: Sending, call: Span, name: str) -> tuple[Sending, list[ChainStep]] | None:
-        """The last message that the sender's node had taken when the sending call began."""
+        """Return the last message that the sender's node had taken when the sending call began."""
         node = self._run.entities[call.entity].node
         began = self._began(call)
         latest: Span | None = None
@@ -280,7 +280,7 @@ class _Tracer:
         return source, [step for step in steps if step.length or step.kind is not StepKind.KEPT]
 
     def _served(self, source: Sending, service: str) -> list[ChainStep]:
-        """What a request took, until its reply was sent; one step if its service is not of this run."""
+        """Return the steps of a request until its reply; one step if the run does not offer the service."""
         replied = self._calls[source.id].replied or source.at
         for each in self._run.entities.values():
             if each.name == service and each.kind is EntityKind.SERVICE and source.id in self._begun(each.id):
@@ -288,7 +288,7 @@ class _Tracer:
         return [ChainStep(StepKind.CALLS, service, source.at, replied)]
 
     def _handled(self, call: Span, until: Nanoseconds, source: Sending) -> list[ChainStep]:
-        """The wait of a message or reply for its callback, and the callback's run."""
+        """Return the wait of a message or reply for its callback, and the callback's run."""
         began = self._began(call)
         since = source.at
         if self._run.entities[call.entity].kind is EntityKind.CLIENT:
@@ -303,7 +303,7 @@ class _Tracer:
         return [wait, *self._ran(call, began.start, until)]
 
     def _ran(self, call: Span, start: Nanoseconds, end: Nanoseconds) -> list[ChainStep]:
-        """The run of a callback, without the time for which it stood still in service calls."""
+        """Return the run of a callback, with a step for each service call in which it was blocked."""
         who = name_of(call.entity, self._run)
         steps: list[ChainStep] = []
         at = start
@@ -318,18 +318,18 @@ class _Tracer:
         return [*steps, ChainStep(StepKind.RUNS, who, at, end, entity=call.entity)]
 
     def _began(self, call: Span) -> Span:
-        """The span with which a call began: one that awaited something is several."""
+        """Return the first span of a call; a call that awaited something has several."""
         return self._begun(call.entity).get(call.message, call) if call.message else call
 
     def _sent(self, name: str) -> dict[int, Sending]:
         return {each.id: each for each in self._run.sent_on(name)}
 
     def _begun_by(self, entity: EntityId) -> dict[int, Span]:
-        """The span with which an entity's call began, by the message that it took."""
-        return {span.message: span for span in self._run.calls_begun(entity, self._whole)}
+        """Return the first span of each call of an entity by the message that it took."""
+        return {span.message: span for span in self._run.calls_begun(entity, self._run_window)}
 
     def _taken_by(self, entity: EntityId) -> tuple[list[Span], list[tuple[Nanoseconds, int]]]:
-        """The ended calls of a subscription in the order of their ends, with these and their numbers."""
-        ended = [span for span in self._run.spans_of(entity, self._whole) if span.end is not None]
+        """Return the ended calls of a subscription in order of their ends, and these with call numbers."""
+        ended = [span for span in self._run.spans_of(entity, self._run_window) if span.end is not None]
         ended.sort(key=lambda span: (span.end or 0, span.number))
         return ended, [(span.end or 0, span.number) for span in ended]

@@ -15,12 +15,12 @@ _MOST_COSTS = 5
 
 
 def chain_text(found: Chain) -> str:
-    """All of it, ending in a newline."""
+    """Return a chain as text, ending in a newline."""
     return "\n".join([*_lines(found), ""])
 
 
-def told_chain(timeline: Timeline, names: Sequence[str]) -> str:
-    """The same of a chain of a run, or a sentence that says why there is none."""
+def chain_report(timeline: Timeline, names: Sequence[str]) -> str:
+    """Return the text of a run's chain, or a sentence that says why there is none."""
     try:
         return chain_text(chain(timeline, names))
     except ChainError as error:
@@ -31,9 +31,9 @@ def _lines(found: Chain) -> Iterator[str]:
     yield f"Chain {' -> '.join(found.path)}"
     heads = ("least", "median", "95 %", "most")
     yield f"  {'latency':14}{'count':>7}{''.join(head.rjust(10) for head in heads)}"
-    yield _figures("whole chain", found.whole)
+    yield _figures("whole chain", found.whole_chain)
     yield _figures("last message", found.runs)
-    without = found.inputs - len(found.whole)
+    without = found.inputs - len(found.whole_chain)
     unknown = found.outputs - len(found.runs)
     if without:
         yield f"  {without} of {counted(found.inputs, 'input')} led to no output"
@@ -45,13 +45,14 @@ def _lines(found: Chain) -> Iterator[str]:
     yield f"  critical path, from {timestamp(critical.input.at)} to {timestamp(critical.output.at)}:"
     for step in critical.steps:
         if step.length:
-            yield f"  {'>' if step is critical.dearest else ' '} {duration(step.length):>8}  {step.words}"
-    yield f"  what cost most, in {counted(len(found.whole), 'run')} of the whole chain:"
+            sign = ">" if step is critical.longest_step else " "
+            yield f"  {sign} {duration(step.length):>8}  {step.words}"
+    yield f"  what cost most, in {counted(len(found.whole_chain), 'run')} of the whole chain:"
     for cost in found.costs[:_MOST_COSTS]:
         if cost.total:
             longest = f"{duration(cost.longest.length)} at {timestamp(cost.longest.start)}"
             yield f"    {duration(cost.total):>8}  {cost.longest.words}; longest {longest}"
-    yield from _plot(found.whole)
+    yield from _plot(found.whole_chain)
 
 
 def _figures(name: str, runs: Sequence[ChainRun]) -> str:

@@ -1,4 +1,4 @@
-"""Two runs callback by callback: the figures of the same window of both, callback by callback."""
+"""Compares two runs: the figures of the same window of both, callback by callback."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
@@ -97,7 +97,7 @@ def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
 
 
 def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> Incremental[Comparison]:
-    """The same, step by step. The runs may go on meanwhile: events after the window have no effect."""
+    """As ``compare``, step by step. The runs may continue: events after the window have no effect."""
     of_first = yield from _callbacks_of(first, window)
     of_second = yield from _callbacks_of(second, window)
     partners = _partners(of_first, of_second)

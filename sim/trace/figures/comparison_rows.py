@@ -66,10 +66,6 @@ class _Wording(NamedTuple):
     more_is_worse: bool = False
 
 
-def _count(number: float) -> str:
-    return f"{number:.0f}"
-
-
 def _length(nanoseconds: float) -> str:
     return duration(round(nanoseconds))
 
@@ -78,17 +74,13 @@ def _metres(metres: float) -> str:
     return f"{metres:.2f} m"
 
 
-def _radians(radians: float) -> str:
-    return f"{radians:.1f} rad"
-
-
-_COUNTS = _Wording(_count, "more", "fewer")
+_COUNTS = _Wording("{:.0f}".format, "more", "fewer")
 _LOSSES = _COUNTS._replace(more_is_worse=True)
 _WAITS = _Wording(_length, "longer", "shorter", more_is_worse=True)
 _AGES = _Wording(_length, "older", "fresher", more_is_worse=True)
 _LATENESS = _Wording(_length, "later", "sooner", more_is_worse=True)
 _DISTANCES = _Wording(_metres, "farther", "less far")
-_ANGLES = _Wording(_radians, "more", "less")
+_ANGLES = _Wording("{:.1f} rad".format, "more", "less")
 
 
 def sections(comparison: Comparison) -> tuple[Section, ...]:
@@ -99,16 +91,13 @@ def sections(comparison: Comparison) -> tuple[Section, ...]:
     )
 
 
-_TIE = "Neither run is better: no callback fails, loses or waits more in one of them"
-
-
-def is_tie(told: str) -> bool:
-    """Whether a verdict calls neither run better."""
-    return told == _TIE
+def is_tie(comparison: Comparison) -> bool:
+    """Whether neither run is better."""
+    return next(_differences(comparison), None) is None
 
 
 def verdict(comparison: Comparison) -> str:
-    """Return which run is better and by what, in one sentence that also tells what speaks against it.
+    """Return which run is better and by what, in one sentence that also names what is worse.
 
     Errors weigh most, then losses, collisions, subscriptions that do not match, waits, lateness, and the age
     of data.
@@ -118,7 +107,7 @@ def verdict(comparison: Comparison) -> str:
     for each in _differences(comparison):
         (better if each.second < each.first else worse).append(each)
     if not better and not worse:
-        return _TIE
+        return "Neither run is better: no callback fails, loses or waits more in one of them"
     is_better = min(map(_weight, better), default=_NONE) <= min(map(_weight, worse), default=_NONE)
     for_it, against = (better, worse) if is_better else (worse, better)
     told = f"{RUNS[1]} is {'better' if is_better else 'worse'}: {_listed(for_it)}"

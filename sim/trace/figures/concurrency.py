@@ -49,7 +49,7 @@ def threads_at_once(timeline: Timeline, window: Window) -> int:
 
 
 def threads_incrementally(timeline: Timeline, window: Window) -> Incremental[int]:
-    """The same, change by change."""
+    """As ``threads_at_once``, step by step."""
     best = 0
     for part in split(window, sum(timeline.calls_of(entity, window) for entity in timeline.entities)):
         rises = _rises(timeline, part, best)

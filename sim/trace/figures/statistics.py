@@ -84,7 +84,7 @@ def statistics(timeline: Timeline, window: Window | None = None) -> Statistics:
     Takes time in proportion to the calls and waits in the window.
     """
     asked = Window(0, timeline.end + 1) if window is None else window
-    callbacks = (statistics_of(timeline, entity, asked) for entity in timeline.entities)
+    callbacks = (run_to_end(statistics_incrementally(timeline, each, asked)) for each in timeline.entities)
     return Statistics(
         asked,
         tuple(each for each in callbacks if each.calls or each.drops or each.duration or each.wait),
@@ -93,19 +93,10 @@ def statistics(timeline: Timeline, window: Window | None = None) -> Statistics:
     )
 
 
-def statistics_of(timeline: Timeline, entity: EntityId, window: Window) -> CallbackStatistics:
-    """The statistics of one callback.
-
-    Raises:
-        KeyError: the timeline knows no such entity.
-    """
-    return run_to_end(statistics_incrementally(timeline, entity, window))
-
-
 def statistics_incrementally(
     timeline: Timeline, entity: EntityId, window: Window
 ) -> Incremental[CallbackStatistics]:
-    """The same, step by step; the run may go on meanwhile, after the window.
+    """The statistics of one callback, step by step; the run may continue after the window.
 
     Raises:
         KeyError: the timeline knows no such entity.

@@ -94,7 +94,7 @@ def summarise(timeline: Timeline) -> Summary:
         threads_used=sum(bool(of_thread) for of_thread in spans),
         threads_at_once=threads_at_once(timeline, whole),
         services=tuple(_services(timeline.calls)),
-        robot=robot_in(timeline, whole),
+        robot=run_to_end(robot_incrementally(timeline, whole)),
     )
 
 
@@ -157,13 +157,8 @@ def _services(calls: Iterable[Call]) -> Iterator[ServiceFigures]:
         yield ServiceFigures(service, len(made), answered)
 
 
-def robot_in(timeline: Timeline, window: Window) -> RobotFigures | None:
-    """The robot's motion in a window; ``travelled`` counts from the run's start."""
-    return run_to_end(robot_incrementally(timeline, window))
-
-
 def robot_incrementally(timeline: Timeline, window: Window) -> Incremental[RobotFigures | None]:
-    """The same, step by step."""
+    """The robot's motion in a window, step by step; ``travelled`` counts from the run's start."""
     last = timeline.robot(window.end - 1)
     if last is None or last.t < window.start:
         return None

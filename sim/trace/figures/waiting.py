@@ -1,4 +1,4 @@
-"""The callbacks that wait for something but themselves: one answer for every pane and sentence."""
+"""The callbacks that wait for others: one answer for every pane and sentence."""
 
 from sim.trace.model import Moment, Nanoseconds, Wait
 

@@ -1,4 +1,4 @@
-"""Follows every message of a trace to its end: published, then delivered, dropped, or still in a queue."""
+"""Counts the messages of a trace: each is published, then delivered, dropped, or still in a queue."""
 
 from collections import defaultdict
 from collections.abc import Iterable
@@ -21,7 +21,7 @@ from sim.trace.events import (
 
 @dataclass
 class _Subscription:
-    """What came to a subscription, and what became of it. ``queue`` is in order of arrival."""
+    """The counts of a subscription's messages; ``queue`` has those that wait, in order of arrival."""
 
     name: str
     published: int = 0
@@ -32,16 +32,16 @@ class _Subscription:
 
 
 class MessageCounts:
-    """Takes the events of a run in order; ``troubles`` are sentences on what does not add up."""
+    """Takes the events of a run in order; ``faults`` are sentences on counts that do not add up."""
 
     def __init__(self) -> None:
-        self.troubles: list[str] = []
+        self.faults: list[str] = []
         self.messages = 0
         self._all: dict[EntityId, _Subscription] = {}
         self._of_topic: dict[str, dict[EntityId, _Subscription]] = defaultdict(dict)
 
     def take(self, events: Iterable[AnyEvent]) -> None:
-        """Go on with the run."""
+        """Count the messages of the next events."""
         for event in events:
             match event:
                 case Published(topic=topic):
@@ -64,7 +64,7 @@ class MessageCounts:
                     self._of_topic[self._all[entity].name].pop(entity, None)
 
     def finish(self) -> None:
-        """See whether all adds up, when no more events come."""
+        """Check the counts once all events have been taken."""
         for entity, each in self._all.items():
             followed = self._of_topic[each.name].get(entity) is each
             if followed and each.published != each.arrived:
@@ -98,5 +98,5 @@ class MessageCounts:
             )
 
     def _complain(self, subscription: _Subscription, what: str) -> None:
-        if len(self.troubles) < 5:
-            self.troubles.append(f"{subscription.name}: {what}")
+        if len(self.faults) < 5:
+            self.faults.append(f"{subscription.name}: {what}")

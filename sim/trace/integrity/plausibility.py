@@ -1,4 +1,4 @@
-"""Looks whether a trace can be that of a run on virtual time: its order, ids, queues and groups."""
+"""Checks whether a trace can be that of a run on virtual time: its order, ids, queues and groups."""
 
 from collections import Counter
 from collections.abc import Iterable
@@ -10,7 +10,7 @@ from sim.trace.integrity.message_counts import MessageCounts
 from sim.trace.model import Nanoseconds
 
 _MOST_FAULTS = 2
-"""One thing that is wrong makes others wrong."""
+"""Limit for the reported faults, since one fault causes others."""
 _INTRODUCED: dict[type, str] = {
     ev.ProcessAppeared: "process",
     ev.ThreadAppeared: "thread",
@@ -22,14 +22,14 @@ _INTRODUCED: dict[type, str] = {
 """The events that introduce an id, and the field that has it: the ids of a kind are 1, 2, 3 and so on."""
 _KINDS = frozenset(_INTRODUCED.values())
 _HOLDER = "holder"
-"""The field that refers to an entity without being called so."""
+"""The field that refers to an entity by another name."""
 _NO_THREAD: ThreadId = 0
 _Place: TypeAlias = tuple[EntityId, ThreadId]
-"""A callback and the thread that it runs on; one that awaits something is on none."""
+"""A callback and its thread; a suspended callback has ``_NO_THREAD``."""
 
 
 class Plausibility:
-    """Takes the events of a run in order; ``faults`` are sentences on what no run can show."""
+    """Takes the events of a run in order; ``faults`` are sentences on what no run can produce."""
 
     def __init__(self) -> None:
         self.faults: list[str] = []
@@ -43,7 +43,7 @@ class Plausibility:
         self._inside = Counter[GroupId]()
 
     def take(self, events: Iterable[AnyEvent]) -> None:
-        """Go on with the run."""
+        """Check the next events."""
         batch = [*events]
         for event in batch:
             self._take_in_order(event)
@@ -52,8 +52,8 @@ class Plausibility:
         self._queues.take(batch)
 
     def finish(self) -> None:
-        """See whether the run came to its end, when no more events come."""
-        self.faults += self._queues.troubles
+        """Check that the run came to its end, once all events have been taken."""
+        self.faults += self._queues.faults
         if not self._ended:
             self._complain(self._now, "the trace stops before the end of the run")
 

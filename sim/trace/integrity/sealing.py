@@ -1,6 +1,6 @@
 """Seals the batches of a trace: numbered, and with a keyed digest, so that a second writer is noticed.
 
-A program shares the engine's process and can find the key there: a seal only stops who writes to the pipe.
+A program shares the engine's process and can find the key there: a seal detects only other writers.
 """
 
 import hashlib
@@ -30,7 +30,7 @@ class _Sealed(msgspec.Struct, frozen=True, array_like=True):
 
 
 class Seal:
-    """Seals batches in their order, or opens them in the same. ``key`` has up to 64 bytes."""
+    """Seals batches in order, or opens them in that order. ``key`` has up to 64 bytes."""
 
     def __init__(self, key: bytes) -> None:
         self._keyed = hashlib.blake2b(key=key, digest_size=_DIGEST_SIZE)
@@ -45,7 +45,7 @@ class Seal:
         """Return the next batch.
 
         Raises:
-            BrokenSealError: it was not sealed with the key, or is not the next one.
+            BrokenSealError: the data was not sealed with the key, or is not the next batch.
         """
         try:
             sealed = msgspec.msgpack.decode(data, type=_Sealed)
