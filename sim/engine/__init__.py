@@ -1,1 +1,1 @@
-"""The engine: the process of its own in which one program runs, and what is said to it and by it."""
+"""The engine: the process in which the programs of a run are executed, and its messages in and out."""

@@ -1,4 +1,4 @@
-"""Turns batches of events into the bytes that go down the pipe: encoded, and sealed if the run wants that."""
+"""Turns batches of events into the bytes for the pipe: encoded, and sealed if the run asks for it."""
 
 from collections.abc import Mapping
 from itertools import count
@@ -10,13 +10,13 @@ from sim.trace.events import AnyEvent, RunEnded, TimePassed
 from sim.trace.integrity.sealing import Seal
 
 _BATCHES_A_LOOK = 16
-"""Sealed batches to one that is sent with a look at the engine's own functions, which takes milliseconds."""
+"""One of so many sealed batches comes with a check of the engine's functions, which takes milliseconds."""
 
 
 class Batches:
-    """Packs batches, and makes the one that is sent while nothing happens. Used with the outbox's lock held.
+    """Packs batches, and creates the heartbeat. Used with the outbox's lock held.
 
-    ``key`` is what the trace is sealed with, b"" for nothing.
+    ``key`` seals the trace; b"" for no seal.
     """
 
     def __init__(self, clock: RunClock, contents: Contents, key: bytes) -> None:
@@ -28,12 +28,12 @@ class Batches:
         self._time_told = 0
 
     def guard(self, parts: Mapping[str, object]) -> None:
-        """Tell in sealed batches from now on which functions of the engine and ``parts`` are replaced."""
+        """Report in sealed batches from now on which functions of the engine and ``parts`` were replaced."""
         if self._seal is not None:
             self._integrity = FunctionIntegrity(parts)
 
     def pack(self, events: list[AnyEvent]) -> bytes:
-        """Return a batch as it is sent."""
+        """Return a batch as bytes."""
         packed = self._contents.pack(events)
         if self._seal is None:
             return packed
@@ -44,7 +44,7 @@ class Batches:
         return self._seal.close(packed, replaced)
 
     def heartbeat(self) -> list[AnyEvent]:
-        """Tell the time, if it has passed since; virtual time passes with events alone."""
+        """Return an event with the time if that has changed; virtual time changes with events only."""
         now = 0 if isinstance(self._clock, VirtualClock) else self._clock.now()
         if now <= self._time_told:
             return []

@@ -8,7 +8,7 @@ def overrides_of(setup: RunSetup) -> CallbackOverrides | None:
     """Return the overrides; None if the set-up has none.
 
     Raises:
-        ValueError: a wish that there is not.
+        ValueError: a group change has an unknown wish.
     """
     if not setup.groups and not setup.periods:
         return None

@@ -1,4 +1,4 @@
-"""Tells at which line of the learner's code each running callback is, and what it does there."""
+"""Records at which line of the learner's code each running callback is, and what it does there."""
 
 import ast
 import linecache
@@ -19,14 +19,14 @@ _WAITING = ("sim.clock.", "threading", "queue")
 """Modules in which threads wait for each other."""
 
 LOCK = "Lock.acquire"
-"""What a position calls every way of taking a lock."""
+"""The name that a position gives to every way of taking a lock."""
 
 Place: TypeAlias = tuple[str, int]
 Position: TypeAlias = tuple[Doing, str, tuple[tuple[str, str, int], ...], Place, int]
 
 
 class CallbackPositions:
-    """Looks at the threads' frames, and records the position of each running callback when it has changed."""
+    """Samples the threads' frames, and records the position of each running callback if it has changed."""
 
     def __init__(self, probe: Probe, clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
         self._probe = probe
@@ -35,7 +35,7 @@ class CallbackPositions:
         self._latest: dict[int, tuple[RunningCallback, Position]] = {}
 
     def look(self) -> None:
-        """Look once; any one thread at a time may call this."""
+        """Take one sample; one thread at a time may call this."""
         running = self._probe.running()
         if not running:
             return
@@ -47,14 +47,14 @@ class CallbackPositions:
                 self._record(CallbackAt(self._clock.now(), callback.entity, callback.thread, *position))
 
     def callback_on(self, ident: int) -> EntityId:
-        """The callback that runs on a thread (0: none), after a look."""
+        """Take a sample, and return the callback that runs on a thread (0: none)."""
         self.look()
         callback = self._probe.running().get(ident)
         return 0 if callback is None else callback.entity
 
 
 def position_of(top: FrameType | None, running: Mapping[int, RunningCallback]) -> Position | None:
-    """Where a thread is, in the callback if it runs one; None if it runs none of the program's code."""
+    """Return where a thread is, inside its callback if it runs one; None outside the program's code."""
     stack = list(takewhile(lambda frame: frame not in calls_the_program, outwards(top)))
     own = [place for place, frame in enumerate(stack) if is_own(frame) and _is_written(frame)]
     if not own:
@@ -70,12 +70,12 @@ def position_of(top: FrameType | None, running: Mapping[int, RunningCallback]) -
 
 
 def _is_written(frame: FrameType) -> bool:
-    """Whether a frame runs code of a file that is no installed package's."""
+    """Return whether a frame runs code of a file, but not of an installed package."""
     return not is_library(frame) and not frame.f_code.co_filename.startswith("<")
 
 
 def _activity(inside: list[FrameType]) -> tuple[Doing, str]:
-    """What goes on in the frames that the innermost line of the program has called, the outermost last."""
+    """Return what the frames do that the program's innermost line has called; the outermost is last."""
     if any(frame in waits_for_keyboard for frame in inside):
         return Doing.READS, "input"
     if not inside:
@@ -92,7 +92,7 @@ def _activity(inside: list[FrameType]) -> tuple[Doing, str]:
 
 
 def _lock_holder(inside: list[FrameType]) -> int:
-    """The identifier of the thread that holds the lock which these frames wait for; 0 if unknown."""
+    """Return the identifier of the thread that holds the lock for which these frames wait; 0 if unknown."""
     for frame in inside:
         ident = getattr(frame.f_locals.get("self"), "holder_ident", None)
         if ident is not None:
@@ -101,7 +101,7 @@ def _lock_holder(inside: list[FrameType]) -> int:
 
 
 def loop_around(file: str, line: int) -> Place | None:
-    """The innermost ``while`` around a line of a file; None for none."""
+    """Return file and line of the innermost ``while`` around a line; None for none."""
     found = [(first, last) for first, last in _loops(file) if first <= line <= last]
     return (file, max(found)[0]) if found else None
 

@@ -1,4 +1,4 @@
-"""Carries out what a run is told: commands from the console, and the inputs that its set-up has foreseen."""
+"""Carries out commands from the console, and the inputs that the set-up of a run schedules."""
 
 import os
 import threading
@@ -22,7 +22,7 @@ from sim.trace.events import AnyEvent, InputGiven, Notice, Severity
 
 
 class CommandLoop:
-    """Reads commands on a thread of its own; what changes the run is carried out in the run's time."""
+    """Reads commands on its own thread; those that change the run are carried out in the run's time."""
 
     def __init__(
         self,
@@ -46,14 +46,14 @@ class CommandLoop:
         self._requests = requests
         self._lines = lines
         self._terminal = terminal
-        self._exit_process = os._exit  # before the crash dump puts its own in its place
+        self._exit_process = os._exit  # from before the crash dump replaces it
 
     def start(self) -> None:
-        """Begin to read."""
+        """Start the reading thread."""
         threading.Thread(target=self._read, name="commands", daemon=True).start()
 
     def schedule(self, setup: RunSetup) -> None:
-        """Have the inputs of a set-up carried out at their moments."""
+        """Schedule the inputs of a set-up."""
         service = None if setup.service is None else setup.service.name
         for call in setup.calls:
             self._clock.call_at(call.at, partial(self._requests.set_bool, service, call.data))
@@ -86,7 +86,7 @@ class CommandLoop:
                 self._carry_out(command)
 
     def _carry_out_on(self, clock: VirtualClock, command: commands.WorldCommand) -> None:
-        """Have a command carried out at the end of the moment that the run is in."""
+        """Schedule a command for the end of the current moment of virtual time."""
         if isinstance(command, commands.CompleteLine):
             clock.time.steer(lambda: self._carry_out(command))
             return
@@ -120,7 +120,7 @@ class CommandLoop:
                 self._shutdown.stop()
 
     def _type(self, text: str, *, ends: bool = False, scheduled: bool = False) -> None:
-        """Type at the programs' terminal; ctrl+c ends the run, unless the program takes it as a key."""
+        """Type at the programs' terminal; ctrl+c ends the run, unless a program reads it as a key."""
         if self._terminal.interrupts(text):
             self._shutdown.request(Cause("it was interrupted from the keyboard", failed=False))
         else:

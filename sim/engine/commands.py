@@ -1,4 +1,4 @@
-"""What the console can tell a running engine; each is put on the trace at the run time it took effect."""
+"""The commands of the console to a running engine; each is recorded at the time at which it takes effect."""
 
 from typing import TypeAlias
 
@@ -10,7 +10,7 @@ class Pause(msgspec.Struct, frozen=True, tag="pause"):
 
 
 class Resume(msgspec.Struct, frozen=True, tag="resume"):
-    """Let time go on."""
+    """Let time pass again."""
 
 
 class SetSpeed(msgspec.Struct, frozen=True, tag="speed"):
@@ -20,24 +20,24 @@ class SetSpeed(msgspec.Struct, frozen=True, tag="speed"):
 
 
 class Step(msgspec.Struct, frozen=True, tag="step"):
-    """Go on to the next scheduling decision and let time stand there.
+    """Continue to the next scheduling decision, and stop time there.
 
-    That is where a callback begins, ends, leaves its thread or comes back to it, where a message, request or
-    reply arrives, or where time has jumped. Virtual clock only.
+    A decision is the start, end, suspension or resumption of a callback, the arrival of a message, request or
+    reply, or a jump of time. Virtual clock only.
     """
 
 
 class RunUntil(msgspec.Struct, frozen=True, tag="run_until"):
-    """Go on until all that happens up to ``moment`` (nanoseconds) has happened; let time stand there.
+    """Continue until everything up to ``moment`` (nanoseconds) has happened, and stop time there.
 
-    Virtual time gets there as fast as it can, the real clock at its speed.
+    Virtual time gets there as fast as possible, the real clock at its speed.
     """
 
     moment: int
 
 
 class Choose(msgspec.Struct, frozen=True, tag="choose"):
-    """Have the option with this index, from 0, go on where the run asks who is to."""
+    """Let the option with this index, from 0, continue where the run asks which thread does."""
 
     option: int
 
@@ -50,20 +50,20 @@ class CallService(msgspec.Struct, frozen=True, tag="call"):
 
 
 class RunLine(msgspec.Struct, frozen=True, tag="line"):
-    """Carry out a ``ros2`` line; ``line`` is a number of the sender's choice that no other line has."""
+    """Carry out a ``ros2`` line; ``line`` is a number that the sender chooses and uses once."""
 
     line: int
     text: str
 
 
 class InterruptLine(msgspec.Struct, frozen=True, tag="interrupt_line"):
-    """End a ``ros2`` line that goes on, as Ctrl-C would."""
+    """End a running ``ros2`` line, as Ctrl-C would."""
 
     line: int
 
 
 class CompleteLine(msgspec.Struct, frozen=True, tag="complete"):
-    """Tell what could stand at ``cursor`` (characters from the beginning) of a ``ros2`` line."""
+    """Complete the word at ``cursor`` (characters from the beginning) of a ``ros2`` line."""
 
     line: int
     text: str
@@ -71,7 +71,7 @@ class CompleteLine(msgspec.Struct, frozen=True, tag="complete"):
 
 
 class TerminalInput(msgspec.Struct, frozen=True, tag="type"):
-    """Type text at the terminal of the run's programs; with ``ends``, no more will come."""
+    """Type text at the terminal of the run's programs; ``ends``: it is the last."""
 
     text: str
     ends: bool = False
@@ -82,7 +82,7 @@ class ResetWorld(msgspec.Struct, frozen=True, tag="reset_world"):
 
 
 class KeepContents(msgspec.Struct, frozen=True, tag="contents"):
-    """Have what published messages hold on the trace from now on, or no longer."""
+    """Record the contents of published messages from now on, or no longer."""
 
     wanted: bool
 
@@ -96,16 +96,16 @@ PaceCommand: TypeAlias = Pause | Resume | SetSpeed | Step | RunUntil | Choose
 InputCommand: TypeAlias = (
     CallService | RunLine | InterruptLine | TerminalInput | ResetWorld | KeepContents | Stop
 )
-"""What changes a run: given again at the same moments, it brings about the same events."""
+"""Commands that change a run: repeated at the same moments, they produce the same events."""
 
 WorldCommand: TypeAlias = InputCommand | CompleteLine
 
 Command: TypeAlias = PaceCommand | WorldCommand
 
 INTERRUPT = "\x03"
-"""What ctrl+c types."""
+"""The character that ctrl+c types."""
 END_OF_INPUT = "\x04"
-"""What ctrl+d types: it submits an unfinished line; on an empty line it ends the input."""
+"""The character that ctrl+d types: it submits an unfinished line; on an empty line it ends the input."""
 
 _encoder = msgspec.msgpack.Encoder()
 _decoder: msgspec.msgpack.Decoder[Command] = msgspec.msgpack.Decoder(Command)
@@ -120,7 +120,7 @@ def decode(packed: bytes) -> Command:
     """Unpack what ``encode`` packed.
 
     Raises:
-        msgspec.DecodeError: the bytes are no command.
+        msgspec.DecodeError: the bytes are not a command.
     """
     try:
         return _decoder.decode(packed)
@@ -132,15 +132,15 @@ _input_decoder: msgspec.json.Decoder[InputCommand] = msgspec.json.Decoder(InputC
 
 
 def input_text(command: InputCommand) -> str:
-    """An input as the trace and set-ups have it: JSON."""
+    """Return an input as JSON, as the trace and set-ups have it."""
     return msgspec.json.encode(command).decode()
 
 
 def input_of(text: str) -> InputCommand:
-    """The input of which ``input_text`` made this text.
+    """Decode what ``input_text`` encoded.
 
     Raises:
-        msgspec.DecodeError: the text is no input that this version knows.
+        msgspec.DecodeError: the text is not an input that this version knows.
     """
     try:
         return _input_decoder.decode(text)

@@ -1,4 +1,4 @@
-"""The inputs of a run of before, read from its events so that they can be given again."""
+"""The inputs of an earlier run, read from its events to repeat them."""
 
 from collections.abc import Iterable
 
@@ -10,17 +10,17 @@ from sim.trace.events import AnyEvent, InputGiven
 
 
 class UnknownInputError(Exception):
-    """An input that this version cannot give; the text is a sentence."""
+    """An input that this version does not know; the text is a sentence."""
 
 
 def inputs_of(events: Iterable[AnyEvent]) -> tuple[TimedInput, ...]:
-    """The inputs that a run got from outside, in order.
+    """Return the inputs that a run got from outside, in order.
 
     A repetition on the virtual clock, with these inputs and otherwise the same set-up, has the same events,
     except those about changes of its pace and completions at its prompt.
 
     Raises:
-        UnknownInputError: one of them is none that this version knows.
+        UnknownInputError: this version does not know one of them.
     """
     found = tuple(
         TimedInput(event.t, event.command, event.recess) for event in events if isinstance(event, InputGiven)

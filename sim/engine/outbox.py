@@ -1,4 +1,4 @@
-"""The way of events out of the engine: a bounded queue, and a thread that sends batches down the pipe."""
+"""Sends events out of the engine: a bounded queue, and a thread that sends batches down the pipe."""
 
 import errno
 import os
@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection
 
 from sim.trace.events import AnyEvent, EventsLost, Logged, Notice, Printed, Severity, encode
 
-# Kept from before virtual time puts its own in their place.
+# Kept from before virtual time replaces them.
 _RealThread = threading.Thread
 _real_sleep = time.sleep
 _real_lock = threading.Lock
@@ -21,36 +21,36 @@ _monotonic = time.monotonic
 _PERIOD = 0.01
 """Seconds between two batches."""
 _LOOK = 0.001
-"""Seconds between two looks of a thread that is held up."""
+"""Seconds between two checks of a thread that is held up."""
 _QUIET = 10
-"""Periods without a batch after which a heartbeat tells that the engine is there."""
+"""Periods without a batch after which a heartbeat shows that the engine is alive."""
 _BATCH = 2048
-"""Events after which a batch goes out at once."""
+"""Events of a full batch, which is sent at once."""
 _BOUND = 200_000
-"""Events that may wait on the real clock; more are thrown away, and counted."""
+"""Events that may wait on the real clock; further ones are dropped and counted."""
 _LINES = 256
-"""Waiting events from which on a thread that writes a line on the real clock is held up until fewer wait."""
+"""Waiting events above which a thread that writes a line on the real clock is held up."""
 _PATIENCE = 1.0
-"""Seconds for which a line is held up at most: nobody may be reading."""
+"""Seconds for which a line is held up at most, as there may be no reader."""
 _TELL = 1.0
 """Seconds for which lines were held up until a notice reports it, once."""
 _IN_THE_PIPE = 1 << 12
-"""Bytes that the pipe takes on the real clock before they are read: an answer comes after all of them."""
+"""Bytes in the pipe's buffer on the real clock; small, as an answer waits behind all of them."""
 
 TRACE_CLOSED = 86
-"""The exit code of an engine whose program has closed the pipe that the trace goes down."""
+"""The exit code of an engine whose program has closed the trace's pipe."""
 
 
 class Outbox:
-    """Takes events from any thread in order and sends them.
+    """Takes events from any thread, in order, and sends them.
 
-    On the real clock recording does not wait, and what is too much is thrown away and counted. Only a thread
-    that writes lines faster than they are read is held up, as by a slow terminal: no line is lost then, and
-    the answer to a command does not come late behind them. On virtual time the thread that records sends a
-    full batch itself: waiting for a slow reader then costs no virtual time, and nothing is ever lost.
+    On the real clock recording does not wait, and events beyond a limit are dropped and counted. Only a
+    thread that writes lines faster than they are read is held up, as by a slow terminal: so no line is lost,
+    and the answer to a command is not late. On virtual time the recording thread sends a full batch itself:
+    waiting for a slow reader costs no virtual time, and no event is lost.
 
-    ``before_batch`` runs on the sending thread every period; ``pack`` makes bytes of a batch; ``heartbeat``
-    gives the batch that is sent when there has been none for a while, which may be empty.
+    ``before_batch`` runs on the sending thread every period; ``pack`` encodes a batch; ``heartbeat`` returns
+    the batch, perhaps empty, that is sent after some time without events.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class Outbox:
         heartbeat: Callable[[], list[AnyEvent]] = list,
     ) -> None:
         self._pipe = pipe
-        self._exit_process = os._exit  # before the crash dump puts its own in its place
+        self._exit_process = os._exit  # from before the crash dump replaces it
         self._pack = pack
         self._may_wait = may_wait
         self._before_batch = before_batch
@@ -76,18 +76,18 @@ class Outbox:
         self._quiet = 0
         self._held_up = 0.0
         self._bell = _real_lock()
-        """Released when there is something to send before the period is over."""
+        """Released to send before the end of the period."""
         self._bell.acquire()
         if not may_wait:
             with socket.socket(fileno=os.dup(pipe.fileno())) as end:
                 end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _IN_THE_PIPE)
 
     def start(self) -> None:
-        """Begin to send."""
+        """Start the sending thread."""
         _RealThread(target=self._send_for_ever, name="outbox", daemon=True).start()
 
     def record(self, event: AnyEvent) -> None:
-        """Take an event; nothing once closed."""
+        """Take an event; ignored once closed."""
         if self._closed:
             return
         if not self._may_wait:
@@ -101,9 +101,9 @@ class Outbox:
             self.flush()
 
     def _hold_up(self, t: int) -> None:
-        """Have the calling thread wait until fewer events do."""
+        """Block the calling thread until fewer events wait."""
         began = _monotonic()
-        with suppress(RuntimeError):  # another thread has rung
+        with suppress(RuntimeError):  # another thread has released it
             self._bell.release()
         while len(self._waiting) >= _LINES and _monotonic() < began + _PATIENCE and not self._closed:
             _real_sleep(_LOOK)
@@ -116,11 +116,11 @@ class Outbox:
             self._waiting.append(Notice(t, Severity.INFO, text))
 
     def flush(self) -> None:
-        """Send everything that waits. A reader that has gone away is no error: nobody is left to tell."""
+        """Send all waiting events. A reader that is gone is not an error."""
         with self._sending:
             waiting = len(self._waiting)
             while waiting > 0 or self._lost > self._lost_told:
-                # A reader that was away for a while gets no more at once than otherwise.
+                # After a pause of the reader, batches are no larger than usual.
                 batch = [self._waiting.popleft() for _ in range(min(waiting, _BATCH))]
                 waiting -= len(batch)
                 self._send(batch)

@@ -1,4 +1,4 @@
-"""What every engine imports, for a process that engines are forked from to import once."""
+"""Imports what every engine needs, in the process that engines are forked from."""
 
 import sim.engine.process
 import sim.robot.driver

@@ -1,7 +1,7 @@
-"""The engine process: puts the parts of a run together, runs its programs, and ends.
+"""The engine process: assembles the parts of a run, runs its programs, and ends.
 
-``run`` is what the process does, from its first line to ``os._exit``. A program ends as under CPython, and is
-on the trace until it has; what takes longer than ``ending.GRACE`` does not keep the process alive.
+``run`` is the process from its first line to ``os._exit``. A program ends as under CPython, and its events
+are recorded until then; what takes longer than ``ending.GRACE`` does not keep the process alive.
 """
 
 import os
@@ -66,7 +66,7 @@ if TYPE_CHECKING:
     from sim.shell import OnExit, Running
 
 _PERIODS_A_LOOK = 5
-"""Periods of the outbox, of 10 ms each, to one look at the threads' frames on the real clock."""
+"""Periods of the outbox, of 10 ms each, between two samples of the threads' frames on the real clock."""
 
 
 class Engine:
@@ -77,7 +77,7 @@ class Engine:
         self._pipe = pipe
         self._crash_dump = crash_dump
         self._pid = os.getpid()
-        self._exit_process = os._exit  # before the crash dump puts its own in its place
+        self._exit_process = os._exit  # from before the crash dump replaces it
         clock = (
             VirtualClock(setup.speed, schedule_of(setup.seed), setup.explored_from)
             if setup.clock == "virtual"
@@ -139,7 +139,7 @@ class Engine:
         self._modules = set(sys.modules)
 
     def run(self) -> NoReturn:
-        """Run the programs to their ends or the run's, and leave the process."""
+        """Run the programs until they or the run end, and exit the process."""
         try:
             self._prepare()
             outcome = run_programs(self._setup.programs, self._programs, self._starter, self._lines)
@@ -149,12 +149,12 @@ class Engine:
         except WorldUnavailable as error:
             self._shutdown.conclude(Cause(str(error), failed=True))
             self._shutdown.leave()
-        except Exception as error:  # noqa: BLE001 - an error of the engine's own, which nobody else tells of
+        except Exception as error:  # noqa: BLE001 - an error of the engine itself, reported here alone
             self._shutdown.conclude(Cause(breakdown(error), failed=True))
             self._shutdown.leave()
 
     def _prepare(self) -> None:
-        """Do all that comes before the first line of a program."""
+        """Prepare everything that a program needs before its first line."""
         setup, clock, record = self._setup, self._clock, self._outbox.record
         self._outbox.start()
         record(RunStarted(0, setup.title, setup.clock, clock.epoch, str(self._host.profile)))
@@ -191,9 +191,9 @@ class Engine:
         self._modules = set_engine_apart()
 
     def _live_on(self, clock: VirtualClock) -> None:
-        """Have Python's ways to wait live on the virtual clock, and watch over it.
+        """Move Python's waits to the virtual clock, and start the watchdogs.
 
-        A run that keeps to a speed is watched by a person, who can end it; any other is given up.
+        A person watches a run that has a speed, and can end it; the watchdogs end any other that hangs.
         """
         record, is_watched = self._outbox.record, self._setup.speed is not None
         assert self._endless is not None
@@ -212,7 +212,7 @@ class Engine:
                 self._control.choose = asked.choose
 
     def _end(self, outcome: ProgramOutcome) -> NoReturn:
-        """End as CPython does once a script has, and leave."""
+        """Do what CPython does at the end of a script, and exit."""
         folders = {Path(program.path).resolve().parent for program in self._setup.programs}
         finalise(self._modules, lambda file: any(is_learners(file, folder) for folder in folders))
         if os.getpid() != self._pid:
@@ -242,7 +242,7 @@ class Engine:
 
 
 def _ignore(_what: object) -> None:
-    """Stand in for what a run that a person watches does not need."""
+    """Take the place of a watchdog's action in a run that a person watches."""
 
 
 def _launch(
@@ -258,7 +258,7 @@ def _launch(
 
 
 def run(packed_setup: bytes, pipe: Connection, crash_dump: Connection) -> None:
-    """Be the engine process of one run; where its threads stand as it crashes goes to ``crash_dump``."""
+    """Run one set-up in this process; ``crash_dump`` takes the threads' stacks if it crashes."""
     leave_terminal()
     safe_path.forget()
     setup = msgspec.msgpack.decode(packed_setup, type=RunSetup)

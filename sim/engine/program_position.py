@@ -1,4 +1,4 @@
-"""Tells where a program is that comes to no ``spin()``, or spins where a node is still being made."""
+"""Records where a program is that does not reach ``spin()``, or that spins inside a node's constructor."""
 
 import sys
 import threading
@@ -11,13 +11,13 @@ from sim.ros.middleware.process import process_of
 from sim.trace.events import AnyEvent, ProgramAt
 
 _EVERY = 250_000_000
-"""Nanoseconds of the run between two looks."""
+"""Nanoseconds of the run between two samples."""
 
 
 class ProgramPosition:
-    """Looks at the main thread of the only program, and records where it is when that has changed.
+    """Samples the main thread of a run's only program, and records its position if that has changed.
 
-    Several programs of a run have threads each, and are not looked at.
+    A run of several programs is not sampled: each has threads of its own.
     """
 
     def __init__(self, probe: Probe, clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
@@ -29,7 +29,7 @@ class ProgramPosition:
         self._latest: tuple[object, ...] = ()
 
     def look(self) -> None:
-        """Look once, if that is due; any one thread at a time may call this."""
+        """Take a sample if one is due; one thread at a time may call this."""
         now = self._clock.now()
         if now < self._due:
             return
@@ -40,7 +40,7 @@ class ProgramPosition:
             self._record(found)
 
     def _position(self) -> ProgramAt | None:
-        """Where the program is; without frames if it spins, None if that is not known."""
+        """Return where the program is; without frames if it spins, None if it is unknown."""
         ident = self._main.ident
         if ident is None or ident in self._probe.running():
             return None

@@ -1,4 +1,4 @@
-"""Which release of rclpy a run is like: the one its set-up names, else the first that a program asks for."""
+"""The release of rclpy that a run models: that of its set-up, else the first that a program asks for."""
 
 import re
 from collections.abc import Callable
@@ -12,7 +12,7 @@ _WISH = re.compile(r"^#\s*cbtui:\s*distro\s*=\s*(\S+)", re.MULTILINE)
 
 
 def profile_of(setup: RunSetup, complain: Callable[[str], None]) -> Profile:
-    """The profile of a run; a wish that cannot be had is told and passed over."""
+    """Return the profile of a run; ``complain`` gets a sentence on an unknown release, which is ignored."""
     if setup.distro:
         return Profile.named(setup.distro)
     for program in setup.programs:
@@ -23,5 +23,5 @@ def profile_of(setup: RunSetup, complain: Callable[[str], None]) -> Profile:
         except UnknownProfileError as error:
             complain(f"{program.path}: {error}; the run is like {Profile()}")
         except OSError:
-            pass  # who runs it will tell
+            pass  # running the program reports it
     return Profile()

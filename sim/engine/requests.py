@@ -10,14 +10,14 @@ from sim.trace.events import AnyEvent, CommandGiven, CommandKind, Notice, Severi
 
 
 class Requests:
-    """Sends requests to services. Call it on a thread that has the run's time (see ``Clock.call_at``)."""
+    """Sends requests to services. Call it on threads that have the run's time (see ``Clock.call_at``)."""
 
     def __init__(self, host: Host, record: Callable[[AnyEvent], None]) -> None:
         self._host = host
         self._record = record
 
     def set_bool(self, name: str | None, data: bool) -> None:
-        """Call a SetBool service, the program's first for None; a notice tells when nobody offers it."""
+        """Call a SetBool service, the program's first for None; if nobody offers it, a notice says so."""
         srv_type = service("std_srvs", "SetBool")
         if name is None:
             name = self._first_offered(srv_type)

@@ -1,4 +1,4 @@
-"""The robot of a run: there from the beginning, from its first use on, or never."""
+"""Starts the robot of a run: at the beginning, at its first use, or never."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -14,48 +14,42 @@ if TYPE_CHECKING:
 def provide_robot(
     setup: RunSetup, host: Host, record: Callable[[AnyEvent], None], unavailable: Callable[[str], None]
 ) -> None:
-    """Have the robot there when it is to be.
+    """Start the robot when the set-up says.
 
-    ``unavailable`` gets the sentence that tells why one that comes with its first use cannot be.
+    ``unavailable`` gets a sentence if a robot cannot be started at its first use.
 
     Raises:
-        WorldUnavailable: one that is to be there from the beginning cannot be; the text says what to do.
+        WorldUnavailable: a robot cannot be started at the beginning; the text says what to do.
     """
-    match setup.robot:
-        case RobotUse.ALWAYS:
-            _start_at_once(setup, host, record)
-        case RobotUse.WHEN_USED:
-            _start_when_used(setup, host, record, unavailable)
-        case RobotUse.NEVER:
-            return
+    if setup.robot is RobotUse.NEVER:
+        return
+    if setup.robot is RobotUse.ALWAYS:
+        world = _build(setup)
+        _start(setup, host, record, lambda: world)
+        return
 
-
-def _start_at_once(setup: RunSetup, host: Host, record: Callable[[AnyEvent], None]) -> None:
-    from sim.robot.model_port import start_robot
-    from sim.robot.world import World
-
-    world = World(physics=setup.physics)
-    start_robot(host, record, lambda: world, setup.sensor_rate)
-
-
-def _start_when_used(
-    setup: RunSetup, host: Host, record: Callable[[AnyEvent], None], unavailable: Callable[[str], None]
-) -> None:
     from sim.robot.bullet import WorldUnavailable
     from sim.robot.names import NAMES
 
     def build() -> "World":
-        from sim.robot.world import World
-
         try:
-            return World(physics=setup.physics)
+            return _build(setup)
         except WorldUnavailable as error:
             unavailable(str(error))
             raise
 
-    def start() -> None:
-        from sim.robot.model_port import start_robot
+    host.network.on_first_use(NAMES, lambda: _start(setup, host, record, build))
 
-        start_robot(host, record, build, setup.sensor_rate)
 
-    host.network.on_first_use(NAMES, start)
+def _build(setup: RunSetup) -> "World":
+    from sim.robot.world import World
+
+    return World(physics=setup.physics)
+
+
+def _start(
+    setup: RunSetup, host: Host, record: Callable[[AnyEvent], None], world: "Callable[[], World]"
+) -> None:
+    from sim.robot.model_port import start_robot
+
+    start_robot(host, record, world, setup.sensor_rate)

@@ -1,4 +1,4 @@
-"""What a run is set up with: its programs, its clock, its robot and the inputs it is to get."""
+"""The set-up of a run: its programs, its clock, its robot and its scheduled inputs."""
 
 from enum import StrEnum
 
@@ -9,58 +9,58 @@ from sim.robot.physics import PhysicsChoice as PhysicsChoice  # noqa: PLC0414 - 
 
 
 class RobotUse(StrEnum):
-    """When the lessons' robot is there."""
+    """When a run has the lessons' robot."""
 
     ALWAYS = "always"
     WHEN_USED = "when used"
-    """From the moment at which something uses one of its topics or services."""
+    """From the first use of one of its topics or services."""
     NEVER = "never"
 
 
 class ServiceChoice(msgspec.Struct, frozen=True):
-    """The SetBool service that the call key fires."""
+    """The SetBool service that the call key calls."""
 
     name: str
     type: str
 
 
 class TimedCall(msgspec.Struct, frozen=True):
-    """A SetBool call to be made at ``at`` nanoseconds with ``data``."""
+    """A SetBool call with ``data`` at ``at`` nanoseconds."""
 
     at: int
     data: bool
 
 
 class TimedLine(msgspec.Struct, frozen=True):
-    """A ``ros2`` line to be carried out at ``at`` nanoseconds."""
+    """A ``ros2`` line at ``at`` nanoseconds."""
 
     at: int
     text: str
 
 
 class TimedText(msgspec.Struct, frozen=True):
-    """Text to be typed at the terminal of the run's programs at ``at`` nanoseconds."""
+    """Text that is typed at the terminal of the run's programs at ``at`` nanoseconds."""
 
     at: int
     text: str
 
 
 class Keyboard(StrEnum):
-    """Who types at the terminal of a run's programs, besides what is ``typed`` by the set-up."""
+    """The source of input at the terminal of a run's programs, besides the set-up's ``typed`` texts."""
 
     NOBODY = "nobody"
-    """The input ends behind what is ``typed``."""
+    """The input ends after the ``typed`` texts."""
     LIVE = "live"
-    """Somebody may at any time; a run that goes as fast as it can waits for him."""
+    """A person may at any time; a run as fast as possible waits for them."""
     REPEATED = "repeated"
-    """Somebody did, in the run that this one repeats: it is among the ``inputs``."""
+    """A person did in the run that this one repeats; the ``inputs`` have it."""
 
 
 class TimedInput(msgspec.Struct, frozen=True):
-    """An input of a run of before, to be carried out at the end of moment ``at`` (nanoseconds).
+    """An input of an earlier run, which is given at the end of moment ``at`` (nanoseconds).
 
-    ``command`` is what ``sim.engine.commands.input_text`` makes of it, ``recess`` which recess of a moment
-    that did not end it was given in, 0 for none.
+    ``command`` is the text of ``sim.engine.commands.input_text``; ``recess`` is the recess, in a moment
+    without end, in which the input was given, 0 for none.
     """
 
     at: int
@@ -71,7 +71,7 @@ class TimedInput(msgspec.Struct, frozen=True):
 class ProgramSetup(msgspec.Struct, frozen=True):
     """A Python file to run, a node's or a launch file, with its command-line arguments.
 
-    ``text`` is run in place of the node's file, "" for what the file holds.
+    ``text`` replaces the node's source; "": not replaced.
     """
 
     path: str
@@ -80,15 +80,15 @@ class ProgramSetup(msgspec.Struct, frozen=True):
 
     @property
     def is_launch_file(self) -> bool:
-        """Whether it is a file for ``ros2 launch``, by its name."""
+        """Whether the file's name is that of a launch file."""
         return self.path.endswith(("launch.py", ".xml", ".yaml", ".yml"))
 
 
 class GroupChange(msgspec.Struct, frozen=True):
     """Another callback group for one callback of a node ("": of any), by their names on the trace.
 
-    ``wish`` is a value of ``sim.ros.middleware.callback_overrides.GroupChoice``. For what has no callback,
-    ``callback`` is its topic or service.
+    ``wish`` is a value of ``sim.ros.middleware.callback_overrides.GroupChoice``. For an entity without a
+    callback, ``callback`` is its topic or service.
     """
 
     node: str
@@ -105,11 +105,10 @@ class PeriodChange(msgspec.Struct, frozen=True):
 
 
 class RealRos(msgspec.Struct, frozen=True):
-    """A real ROS 2: the one that the interpreter ``python`` has, "" for the one that runs this.
+    """A real ROS 2: that of the interpreter ``python``, "" for the interpreter that runs this.
 
-    With ``watched``, a folder of probes' sockets, nothing is run: what ``processes`` do is shown (numbers of
-    the operating system), or what all do whose probes listen there. The same for ``addresses``, host and port
-    each.
+    With ``watched``, a folder of probes' sockets, no program is run: the run shows ``processes``, by their
+    ids, or all whose probes listen there. ``addresses`` are probes on the network, host and port each.
     """
 
     python: str = ""
@@ -119,31 +118,33 @@ class RealRos(msgspec.Struct, frozen=True):
 
     @property
     def is_watched(self) -> bool:
-        """Whether others have started what is shown."""
+        """Whether the run shows programs that it has not started."""
         return bool(self.watched or self.addresses)
 
 
 class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
-    """All that an engine needs to know to run some programs.
+    """Everything that an engine needs to run some programs.
 
-    ``speed`` is seconds of the run per real second, None for as fast as it can: on the real clock that is 1.
-    ``until`` is nanoseconds of run time after which the run ends, None for no end. ``threads`` replaces
-    the number of threads of the programs' executors, None leaves their own. ``service`` None means the
-    first SetBool service that a program offers. ``lines`` get the numbers 1, 2, … on the trace.
-    ``packages`` are folders in which packages are looked for, after those around the programs. A run
-    without programs ends with its lines. ``inputs`` are in the order of their moments; the real clock
-    gives them as near to those as the machine can. ``groups`` and ``periods`` change the programs'
-    callbacks, the later of two changes of one callback counts. ``sensor_rate`` (Hz) is that of the
-    robot's odometry and scans, None leaves the usual one;
-    ``physics`` None is PyBullet if it is installed, else numpy. With ``contents``
-    the trace has what published messages hold. ``seed`` chooses,
-    on the virtual clock, among the orders in which a machine could run threads; None and 0 are first come,
-    first served; up to ``explored_from`` (nanoseconds) they run so in any case. Tracebacks are without the
-    frames of the model, unless they are to be ``whole_tracebacks``.
-    With ``real`` the programs run on real rclpy, in processes of their own, and on the real clock.
-    ``distro`` is the release of rclpy that the model is like, as ``sim.releases`` spells it, "" for what
-    its programs ask for, or the usual one. ``seal`` is the key that its trace is sealed with
-    (``sim.trace.integrity.sealing``), b"" for none.
+    A run without programs ends with its lines. A field is None or empty for the usual behaviour.
+
+    - ``service``: the SetBool service of the call key; None: the first that a program offers.
+    - ``speed``: seconds of the run per real second; None: as fast as possible, which on the real clock is 1.
+    - ``until``: nanoseconds of run time after which the run ends; None: no end.
+    - ``threads``: replaces the number of threads of the programs' executors.
+    - ``lines``: numbered 1, 2, … on the trace.
+    - ``inputs``: in the order of their moments, which the real clock keeps only approximately.
+    - ``packages``: folders to search for packages, after those around the programs.
+    - ``sensor_rate``: of the robot's odometry and scans, in Hz.
+    - ``physics``: None: PyBullet if it is installed, else numpy.
+    - ``groups``, ``periods``: changes of the programs' callbacks; of two for one callback the later counts.
+    - ``contents``: whether the trace has the contents of published messages.
+    - ``seed``: chooses among possible orders of threads on the virtual clock, from ``explored_from``
+      (nanoseconds) on; None and 0: first come, first served.
+    - ``whole_tracebacks``: whether tracebacks have the frames of the model.
+    - ``real``: runs the programs on real rclpy, in processes of their own, on the real clock.
+    - ``distro``: the modelled release of rclpy, as in ``sim.releases``; "": that of the programs' comments,
+      or the usual one.
+    - ``seal``: the key that seals the trace (``sim.trace.integrity.sealing``); b"": no seal.
     """
 
     title: str

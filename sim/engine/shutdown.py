@@ -1,4 +1,4 @@
-"""How a run ends: the first reason counts, the program is interrupted, and the process is gone in time."""
+"""Ends a run: the first cause counts, the program is interrupted, and the process exits in time."""
 
 import os
 import signal
@@ -24,15 +24,15 @@ from sim.ros.middleware.host import Host
 from sim.trace.events import Notice, RunEnding, Severity
 
 _SIGNAL_AFTER = 0.5
-"""Real seconds after which a program on virtual time that comes to no wait is interrupted by a signal."""
+"""Real seconds after which a program on virtual time that does not wait is interrupted by a signal."""
 
-# Kept from before a clock or a program puts its own in their place.
+# Kept from before a clock or a program replaces them.
 _real_sleep = time.sleep
 _allocate_lock = threading.Lock
 
 
 class RunShutdown:
-    """Ends a run. Thread-safe: a command, a watchdog, the clock and the program itself may all ask for it."""
+    """Ends a run. Thread-safe: a command, a watchdog, the clock or the program itself may request it."""
 
     def __init__(
         self,
@@ -58,16 +58,16 @@ class RunShutdown:
         self._endless = endless
         self._cause: Cause | None = None
         self._leaves = _allocate_lock()
-        self._exit_process = os._exit  # before the crash dump puts its own in its place
+        self._exit_process = os._exit  # from before the crash dump replaces it
         self._grace_begins = threading.Semaphore(0)
 
     def start(self) -> None:
-        """See from now on that the process is gone soon after the run's end."""
+        """Start the thread that makes the process exit soon after the run's end."""
         threading.Thread(target=self._end_in_time, name="grace", daemon=True).start()
 
     @property
     def has_begun(self) -> bool:
-        """Whether there is a reason to end."""
+        """Whether there is a cause to end."""
         return self._cause is not None
 
     def fail(self, sentence: str) -> None:
@@ -75,18 +75,18 @@ class RunShutdown:
         self.request(Cause(sentence, failed=True))
 
     def stop(self) -> None:
-        """End the run because somebody wants that."""
+        """End the run on request."""
         self.request(Cause(STOPPED, failed=False))
 
     def time_is_up(self) -> None:
-        """End the run because it has lasted as long as it was to."""
+        """End the run because its time is up."""
         failures = self._programs.failures
         sentence = "; ".join(["its time was up", *(each.sentence for each in failures[:1])])
         first = failures[0] if failures else ProgramOutcome(sentence, failed=False)
         self.request(Cause(sentence, bool(failures), first.error, first.failure, time_was_up=True))
 
     def request(self, cause: Cause) -> None:
-        """Have the program end as by Ctrl-C, and the run with it; by force if that takes too long."""
+        """End the program as Ctrl-C would, and with it the run; by force if that takes too long."""
         self._grace_begins.release()
         if self.conclude(cause):
             self._outbox.record(RunEnding(self._clock.now(), cause.reason))
@@ -99,12 +99,12 @@ class RunShutdown:
                 self._virtual.time.inject(partial(self._interrupt_on, self._virtual))
 
     def hurry(self) -> None:
-        """Let the grace period begin, and time pass if it is paused: a request to stop is on its way."""
+        """Begin the grace period, and let paused time pass: a request to stop is on its way."""
         self._grace_begins.release()
         self._control.let_go()
 
     def conclude(self, cause: Cause) -> bool:
-        """Take the cause of the run's end and return True; False if there is one already."""
+        """Set the cause of the run's end and return True; return False if there is one already."""
         if self._cause is not None:
             return False
         self._cause = cause
@@ -117,7 +117,7 @@ class RunShutdown:
         return True
 
     def finish(self, outcome: ProgramOutcome) -> NoReturn:
-        """Leave once the program has ended; it may have failed after it was told to end."""
+        """Exit once the program has ended; it may have failed after a request to end."""
         cause = Cause(outcome.sentence, outcome.failed, outcome.error, outcome.failure)
         if not self.conclude(cause) and outcome.failed:
             self._tell(Severity.ERROR, outcome.sentence)
@@ -125,7 +125,7 @@ class RunShutdown:
         self.leave()
 
     def end_computation(self, clock: VirtualClock, sentence: str) -> None:
-        """End a program of which a thread comes to no wait: the main thread by a signal, another by force."""
+        """End a program with a thread that does not wait: the main thread by a signal, another by force."""
         if not self.conclude(Cause(sentence, failed=True)):
             return
         self._outbox.record(RunEnding(clock.now(), sentence))
@@ -138,10 +138,10 @@ class RunShutdown:
         _signal_main()
 
     def leave(self) -> NoReturn:
-        """Send the cause as the last event of all, and leave the process. For any thread, once."""
+        """Send the cause as the last event, and exit the process. Any thread may call this."""
         if not self._leaves.acquire(blocking=False):
             while True:
-                _real_sleep(GRACE)  # another thread is at it
+                _real_sleep(GRACE)  # another thread does it
         self._descriptors.finish()
         cause = self._cause or Cause(STOPPED, failed=False)
         self._outbox.close(cause.event(self._clock.now()))
@@ -165,7 +165,7 @@ class RunShutdown:
         clock.call_at(clock.now() + VIRTUAL_GRACE, partial(self._end_by_force, VIRTUAL_GRACE / 1e9))
 
     def _end_in_time(self) -> None:
-        """Wait on a thread outside the clock for the run's end, and see that the process ends then."""
+        """Wait, on a thread outside the clock, for the run's end; exit the process after the grace period."""
         self._grace_begins.acquire()
         _real_sleep(_SIGNAL_AFTER)
         if self._virtual is not None and self._main_computes_on(self._virtual):
@@ -175,7 +175,7 @@ class RunShutdown:
         self._end_by_force(GRACE)
 
     def _main_computes_on(self, clock: VirtualClock) -> bool:
-        """Whether the main thread has come to no wait since it was to be interrupted there."""
+        """Return whether the main thread has not waited since it was to be interrupted at a wait."""
         main = clock.current
         computes = main.is_main and not clock.time.rests and (main.interrupted or self._cause is None)
         main.interrupted = main.interrupted and not computes
@@ -191,7 +191,7 @@ class RunShutdown:
             self.leave()
 
     def _blocking_threads(self) -> str:
-        """Return what keeps the program from ending, as " (worker: node.py:12, in work)"."""
+        """Return which thread keeps the program from ending, as " (worker: node.py:12, in work)"."""
         frames = sys._current_frames()
         left = [thread for process in self._programs.processes for thread in threads_left_by(process)]
         for thread in (threading.main_thread(), *left):

@@ -1,7 +1,7 @@
-"""What commands do to a run's time: stop it, change its speed, go on to a step, a moment or an event.
+"""Controls a run's time: stops it, changes its speed, continues to a step, a moment or an event.
 
-A control stands in the way of the probe's events, and lets time stand where one comes that was to be waited
-for. Whatever is done to time is on the trace, so that a trace tells why it took as long as it did.
+A control receives the probe's events, and stops time at one that it waits for. All commands for time are
+recorded, so that a trace shows why it took as long as it did.
 """
 
 from collections.abc import Callable
@@ -33,12 +33,12 @@ _DECISIONS = (CallbackStarted, CallbackEnded, CallbackSuspended, CallbackResumed
 
 
 def is_decision(event: AnyEvent) -> bool:
-    """Whether a step ends with this event."""
+    """Return whether a step ends with this event."""
     return isinstance(event, _DECISIONS)
 
 
 class VirtualControl:
-    """Steers a virtual clock. ``record`` takes the probe's events, ``sink`` gets them."""
+    """Controls a virtual clock. ``record`` takes the probe's events and passes them to ``sink``."""
 
     def __init__(self, clock: VirtualClock, sink: Sink) -> None:
         self._clock = clock
@@ -46,22 +46,22 @@ class VirtualControl:
         self._wanted: Wanted | None = None
         self._goal = ""
         self.choose: Callable[[int], None] = _ignore
-        """Takes the answer where the run asks which thread is to go on."""
+        """Takes the answer when the run asks which thread continues."""
         clock.time.pace.on_halt = self._note_halt
 
     def record(self, event: AnyEvent) -> None:
-        """Take an event; time stands before this returns if it is what the run was to go on to."""
+        """Take an event; stop time before this returns if the run continued up to such an event."""
         self._sink(event)
         wanted = self._wanted
         if wanted is not None and wanted(event) and self._clock.owns_current_thread():
             self._clock.halt()
 
     def obey(self, command: PaceCommand) -> None:
-        """Carry out a command, as soon as the run's threads let it; any thread may call this."""
+        """Carry out a command as soon as the run's threads allow it; any thread may call this."""
         self._clock.time.steer(lambda: self._carry_out(command))
 
     def let_go(self) -> None:
-        """Have the run come to the end of the moment that it stands in; any thread may call this."""
+        """Let the run complete the moment in which it stands; any thread may call this."""
         self._clock.time.steer(self._leave_moment)
 
     def _leave_moment(self) -> None:
@@ -101,9 +101,9 @@ class VirtualControl:
 
 
 class RealControl:
-    """Steers a paced clock. ``record`` takes the probe's events, ``sink`` gets them. Thread-safe.
+    """Controls a paced clock. ``record`` passes the probe's events to ``sink``. Thread-safe.
 
-    Only what waits stands still: a callback that computes goes on, and so does what it brings about.
+    A pause stops waits only: a callback that computes continues, with its effects.
     """
 
     def __init__(self, clock: PacedClock, sink: Sink) -> None:
@@ -139,7 +139,7 @@ class RealControl:
                 self._clock.resume()
 
     def let_go(self) -> None:
-        """Have time pass as it does, so that the run can end."""
+        """Let time pass at real speed, so that the run can end."""
         self._clock.resume()
         self._clock.set_speed(1.0)
 
@@ -151,7 +151,7 @@ class RealControl:
         self._sink(given(self._clock.now(), commands.SetSpeed(speed)))
 
     def _halt(self, goal: PaceCommand) -> None:
-        if goal is self._goal:  # else another command has come meanwhile
+        if goal is self._goal:  # else another command has replaced it
             self._goal = commands.Pause()
             self._clock.pause()
             self._sink(TimeHalted(self._clock.now(), in_words(goal)))
@@ -171,12 +171,12 @@ _KINDS = {
 
 
 def given(now: int, command: PaceCommand) -> CommandGiven:
-    """Return the text of a command on the trace."""
+    """Return the event of a command."""
     return CommandGiven(now, in_words(command), _KINDS[type(command)])
 
 
 def in_words(command: PaceCommand) -> str:
-    """Return a command as the trace words it."""
+    """Return a command as text."""
     match command:
         case commands.Pause():
             return "pause"
@@ -198,4 +198,4 @@ def _too_late(now: int, moment: int) -> Notice:
 
 
 def _ignore(_option: int) -> None:
-    """Stand in where a run asks nobody."""
+    """Take the place of ``choose`` in a run that does not ask."""

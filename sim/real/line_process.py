@@ -31,7 +31,7 @@ from sim.trace.events import LineCompleted, LineEnded, LineSaid
 
 stand_in.install()
 
-from sim.shell import CommandFailed, OnExit, ShellLine, complete, word_start  # noqa: E402 -- with rclpy's modules
+from sim.shell import OnExit, ShellLine, complete, word_start  # noqa: E402 -- with rclpy's modules
 
 _TO_DISCOVER = 1.0
 """Seconds after its start for which lines wait, so that discovery finds the graph."""
@@ -187,8 +187,8 @@ class _Program:
 
 
 @dataclass
-class _Tools:
-    """Reports to the run what one line prints, and which programs it asks for."""
+class _Starter:
+    """Reports to the run what one line prints, and which programs it starts."""
 
     line: int
     lines: "_Lines"
@@ -227,15 +227,12 @@ class _Tools:
 
     def describe_launch(self, package: str | None, launch_file: str) -> str:
         """What ``ros2 launch --show-args`` prints of a launch file."""
-        from sim.launch import LaunchError, describe_arguments
+        from sim.launch import describe_arguments
 
         known = self.packages()
-        try:
-            return describe_arguments(
-                Path(launch_file) if package is None else known.package(package).launch_file(launch_file)
-            )
-        except LaunchError as error:
-            raise CommandFailed(str(error)) from error
+        return describe_arguments(
+            Path(launch_file) if package is None else known.package(package).launch_file(launch_file)
+        )
 
 
 class _Lines:
@@ -248,11 +245,15 @@ class _Lines:
         self.running: dict[int, ShellLine] = {}
         self.programs: dict[int, _Program] = {}
 
+    def _line(self, number: int, text: str) -> ShellLine:
+        starter = _Starter(number, self)
+        return ShellLine(self._ground, text, starter, starter.say, starter.ended)
+
     def obey(self, request: object) -> None:
         """Do what the run asks for."""
         match request:
             case commands.RunLine(line=number, text=text):
-                line = self.running[number] = ShellLine(self._ground, text, _Tools(number, self))
+                line = self.running[number] = self._line(number, text)
                 line.start()
             case commands.InterruptLine(line=number) if number in self.running:
                 self.running[number].interrupt()

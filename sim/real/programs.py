@@ -246,7 +246,9 @@ class Program:
 
 def ended_by(uncaught: Uncaught, name: str, advice: str = "") -> Cause:
     """The end of the program that people call ``name`` by an exception."""
-    failure = Failure(uncaught.file, uncaught.line, f"{name} raised {uncaught.error}", advice)
+    failure = Failure(
+        uncaught.file, uncaught.line, f"{name} raised {uncaught.error}", advice, uncaught.exception
+    )
     return Cause(failure.sentence, True, uncaught.error, failure)
 
 

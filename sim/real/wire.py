@@ -120,6 +120,8 @@ class Uncaught(msgspec.Struct, frozen=True, array_like=True, tag="uncaught"):
     file: str
     """Innermost file of the program's own code."""
     line: int
+    exception: str = ""
+    """Its class."""
 
 
 class Left(msgspec.Struct, frozen=True, array_like=True, tag="left"):

@@ -1,4 +1,4 @@
-"""Which commands of ``ros2`` are carried out here, and which belong to a ROS 2 machine."""
+"""The commands of ``ros2`` that are modelled, and those that need a ROS 2 machine."""
 
 COMMANDS = ("action", "interface", "launch", "lifecycle", "node", "param", "pkg", "run", "service", "topic")
 
@@ -16,9 +16,9 @@ ELSEWHERE = (
     "test",
     "wtf",
 )
-"""Commands of ``ros2`` that are not carried out here."""
+"""Commands of ``ros2`` that are not modelled."""
 
 
 def listed() -> str:
-    """The commands as a sentence names them."""
+    """Return the modelled commands as an enumeration."""
     return f"{', '.join(COMMANDS[:-1])} and {COMMANDS[-1]}"

@@ -1,4 +1,4 @@
-"""The tree of commands and verbs, and the parsers made of it."""
+"""The tree of commands and verbs, and their parsers."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ COMMANDS = (ACTION, INTERFACE, LAUNCH, LIFECYCLE, NODE, PARAM, PKG, RUN, SERVICE
 
 
 def parse(words: list[str]) -> Namespace:
-    """What a line's words mean: its ``verb``, and the values of that verb's arguments.
+    """Parse a line's words; return its ``verb``, and the values of that verb's arguments.
 
     Raises:
-        HelpAsked: nothing is to be done but to show that help.
-        UsageError: the words are no such line.
+        HelpAsked: the line asks for help.
+        UsageError: the words are not a valid line.
     """
     found = verb_parser(words)
     if found is not None:
@@ -34,27 +34,27 @@ def parse(words: list[str]) -> Namespace:
         try:
             return parser.parse_args(words[used:])
         except (HelpAsked, UsageError):
-            pass  # the parser of all lines, which takes long to make, says it in ros2's words
+            pass  # the parser of all lines, which is slow to create, has ros2's wording
     return _line_parser().parse_args(words)
 
 
 def _line_parser() -> LineParser:
     description = "ros2 is an extensible command-line tool for ROS 2."
     parser = LineParser(prog="ros2", description=description)
-    commands = _subparsers(parser, "Commands", "ros2 <command>")
+    commands = _subparsers(parser, "ros2 <command>")
     for command in COMMANDS:
         own = commands.add_parser(command.name, help=command.help, description=command.help)
         if command.itself is not None:
             _make(own, command.itself)
             continue
-        verbs = _subparsers(own, "Commands", f"ros2 {command.name} <verb>")
+        verbs = _subparsers(own, f"ros2 {command.name} <verb>")
         for verb in command.verbs:
             _make(verbs.add_parser(verb.name, help=verb.help, description=verb.help), verb)
     return parser
 
 
 def verb_parser(words: list[str]) -> tuple[LineParser, int] | None:
-    """The parser of the verb that the words begin with, and how many of them name it; None: no such verb."""
+    """Return the parser of the verb that the words begin with, and the number of words that name it."""
     command = next((each for each in COMMANDS if words[:1] == [each.name]), None)
     if command is None:
         return None
@@ -65,17 +65,17 @@ def verb_parser(words: list[str]) -> tuple[LineParser, int] | None:
 
 
 def next_names(words: list[str]) -> list[str]:
-    """The commands, or the verbs of the command, that can follow."""
+    """Return the commands, or the verbs of the command, that can follow."""
     if not words:
         return [each.name for each in COMMANDS]
     command: ShellCommand | None = next((each for each in COMMANDS if each.name == words[0]), None)
     return [each.name for each in command.verbs] if command is not None and len(words) == 1 else []
 
 
-def _subparsers(parser: LineParser, title: str, form: str) -> Any:
+def _subparsers(parser: LineParser, form: str) -> Any:
     hint = f"Call `{form} -h` for more detailed usage."
     parser.set_defaults(verb=Verb("", "", no_arguments, lambda *_: parser.print_help()))
-    return parser.add_subparsers(title=title, metavar=hint, parser_class=LineParser)
+    return parser.add_subparsers(title="Commands", metavar=hint, parser_class=LineParser)
 
 
 def _made(verb: Verb, prog: str) -> LineParser:

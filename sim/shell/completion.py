@@ -16,15 +16,15 @@ _MANY = (argparse.ONE_OR_MORE, argparse.ZERO_OR_MORE, argparse.REMAINDER)
 
 
 def word_start(text: str, cursor: int) -> int:
-    """Where the word at the cursor begins; the cursor itself where none does."""
+    """Return the start of the word at the cursor; the cursor itself if there is no word."""
     scanned = scan(text[:cursor])
     return scanned.words[-1].start if scanned.ends_in_word else cursor
 
 
 def complete(ground: Ground, packages: Packages, text: str, cursor: int) -> list[str]:
-    """What can stand in place of the text from ``word_start`` to the cursor, quoted for a shell.
+    """Return candidates for the text from ``word_start`` to the cursor, quoted for a shell.
 
-    Looks at the graph as it is; takes no time and starts nothing. Thread-safe on the real clock; on
+    Reads the current graph, without waiting. Thread-safe on the real clock; on
     virtual time, call it on a thread of the run.
     """
     scanned = scan(text[:cursor])
@@ -44,7 +44,7 @@ def complete(ground: Ground, packages: Packages, text: str, cursor: int) -> list
 
 
 class _Place:
-    """Where in a verb's arguments the cursor is, after the words given so far."""
+    """The position of the cursor in a verb's arguments, after some words."""
 
     def __init__(self, parser: LineParser, words: list[str]) -> None:
         self._parser = parser
@@ -65,7 +65,7 @@ class _Place:
             return []
         try:
             return sorted(set(completer(Surroundings(ground, packages, tuple(self._given)))))
-        except (CommandFailed, PackageError, DefinitionError):  # what was given before is not known
+        except (CommandFailed, PackageError, DefinitionError):  # an earlier argument is unknown
             return []
 
     def _take(self, word: str) -> None:

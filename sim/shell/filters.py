@@ -1,4 +1,4 @@
-"""``--filter``: a Python expression that decides which messages count."""
+"""``--filter``: a Python expression that selects messages."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def add_filter_option(parser: LineParser, purpose: str) -> None:
 
 
 def compiled_filter(expression: str | None) -> Callable[[Any], object] | None:
-    """The function that decides, None without an expression; raises CommandFailed if it is none."""
+    """Return the function of an expression, None without one; raise CommandFailed if it is not valid."""
     if expression is None:
         return None
     try:
@@ -29,7 +29,7 @@ def compiled_filter(expression: str | None) -> Callable[[Any], object] | None:
 
     def decide(message: Any) -> object:
         try:
-            # The run's programs execute Python of the same author in this process already.
+            # The run's programs already execute Python of the same author in this process.
             return eval(code, {"m": message})
         except Exception as error:
             raise CommandFailed(

@@ -1,10 +1,11 @@
-"""Names on the network: what is hidden, what has which type, and candidates for completion."""
+"""Names on the network: hidden names, types of topics, and candidates for completion."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from typing import TypeAlias
 
+from sim.interfaces import Kind, names, packages
 from sim.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from sim.ros.naming.expand_topic_name import expand_topic_name
 from sim.ros.naming.validate_full_topic_name import validate_full_topic_name
@@ -15,22 +16,22 @@ NamesAndTypes: TypeAlias = list[tuple[str, list[str]]]
 
 
 def is_hidden(name: str) -> bool:
-    """Whether a part of the name begins with an underscore, so that lists leave it out."""
+    """Return whether a part of a name begins with an underscore; lists leave such names out."""
     return any(part.startswith("_") for part in name.split("/"))
 
 
 def without_hidden(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
-    """The names that a list shows."""
+    """Return the names that a list shows."""
     return [(name, types) for name, types in found if include_hidden or not is_hidden(name)]
 
 
 def shown(found: NamesAndTypes, with_types: bool) -> Iterator[str]:
-    """The lines of a list: names, with their types if these are asked for."""
+    """Return the lines of a list: names, with their types if ``with_types``."""
     return (f"{name} [{', '.join(types)}]" if with_types else name for name, types in found)
 
 
 def full_topic_name(session: ShellSession, topic: str) -> str:
-    """The full name of a topic; raises CommandFailed if the name breaks the rules."""
+    """Return the full name of a topic; raise CommandFailed if the name is not valid."""
     node = session.node
     try:
         full: str = expand_topic_name(topic, node.get_name(), node.get_namespace())
@@ -41,14 +42,14 @@ def full_topic_name(session: ShellSession, topic: str) -> str:
 
 
 def topic_types(session: ShellSession, topic: str) -> list[str] | None:
-    """The types of a topic, None if nobody speaks of it."""
+    """Return the types of a topic; None if it does not exist."""
     full = full_topic_name(session, topic)
     session.ground.want(full)
     return dict(session.node.get_topic_names_and_types()).get(full)
 
 
 def topic_type(session: ShellSession, topic: str) -> str | None:
-    """The type of a topic, None if nobody speaks of it; raises CommandFailed if it has more than one."""
+    """Return the type of a topic; None if it does not exist. Raise CommandFailed if it has several."""
     types = topic_types(session, topic)
     if types is None:
         return None
@@ -60,7 +61,7 @@ def topic_type(session: ShellSession, topic: str) -> str | None:
 
 
 def absolute(node_name: str) -> str:
-    """A node's full name, with the slash that a line may leave out."""
+    """Return a node's full name, with the slash that a line may omit."""
     return node_name if node_name.startswith("/") else f"/{node_name}"
 
 
@@ -87,6 +88,19 @@ def known_parameters(surroundings: Surroundings) -> list[str]:
     return surroundings.ground.parameters(absolute(surroundings.given[0]))
 
 
-def type_of_given(known: Callable[[Surroundings], dict[str, list[str]]]) -> Completer:
-    """Candidates for a type: those of the name that was given before."""
-    return lambda surroundings: known(surroundings).get(surroundings.given[0], [])
+def type_of_given(
+    known: Callable[[Surroundings], dict[str, list[str]]], kind: Kind | None = None
+) -> Completer:
+    """Return a completer for the types of the name that was given first, or for all types of a kind."""
+
+    def candidates(surroundings: Surroundings) -> list[str]:
+        found = known(surroundings).get(surroundings.given[0], [])
+        return found or ([] if kind is None else type_names(kind))
+
+    return candidates
+
+
+def type_names(kind: Kind, package: str | None = None) -> list[str]:
+    """Return the full names of every interface of a kind, of one package or of all."""
+    chosen = sorted(packages()) if package is None else [package]
+    return [f"{each}/{kind}/{name}" for each in chosen for name in names(each, kind)]

@@ -1,4 +1,4 @@
-"""What lines need of the rclpy that they are carried out with, the model's or the real one."""
+"""The interface between lines and the rclpy that carries them out, modelled or real."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ class LineSignal(Protocol):
     """A one-shot event that a line waits for."""
 
     def set(self) -> None:
-        """Wake whoever waits."""
+        """Wake the waiting line."""
 
     def wait(self, deadline: int | None, /) -> object:
         """Wait until it is set; a line gives no deadline."""
 
 
 class LineProcess(Protocol):
-    """One line's stay on the graph."""
+    """One line's presence on the graph."""
 
     @property
     def context(self) -> Context:
@@ -39,20 +39,20 @@ class LineProcess(Protocol):
         """The name of a hidden node that no other node has."""
 
     def start_thread(self, run: Callable[[], None]) -> None:
-        """Have the line carried out; does not wait."""
+        """Run the line; does not wait."""
 
     def on_own_time(self, deed: Callable[[], None]) -> None:
-        """Do something that does not wait, from any thread."""
+        """Run an action that does not wait; any thread may call this."""
 
     def leave(self) -> None:
         """Leave the graph."""
 
 
 class Ground(Protocol):
-    """A ROS graph. Its questions take no time and can be asked on any thread that has the graph's time."""
+    """A ROS graph. Queries do not wait; any thread that has the graph's time may call them."""
 
     def enter(self, take: TakeOutput) -> LineProcess:
-        """Have a line join; what its process prints goes to ``take``."""
+        """Let a line join the graph; ``take`` gets the output of its process."""
 
     def now(self) -> int:
         """Nanoseconds of a steady clock."""
@@ -61,10 +61,10 @@ class Ground(Protocol):
         """A signal on the ground's time."""
 
     def want(self, name: str) -> None:
-        """Tell that a line is about to use a topic or service."""
+        """Announce that a line uses a topic or service."""
 
     def interface(self, kind: Kind, package: str, name: str) -> Any:
-        """The class of a message, service or action; raises UnknownInterfaceError if there is none."""
+        """Return the class of a message, service or action; raise UnknownInterfaceError if there is none."""
 
     def topics(self) -> dict[str, list[str]]:
         """Every topic and its types."""
@@ -76,4 +76,4 @@ class Ground(Protocol):
         """The full name of every node."""
 
     def parameters(self, node: str) -> list[str]:
-        """The parameters of a node, as far as they are known at once."""
+        """Return the parameters of a node that are known without waiting."""

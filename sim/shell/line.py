@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import signal
+from collections.abc import Callable
 
 from sim.shell.command_names import ELSEWHERE, listed
 from sim.shell.commands import parse
-from sim.shell.ground import Ground
+from sim.shell.ground import Ground, TakeOutput
 from sim.shell.parser import HelpAsked, UsageError
 from sim.shell.session import CommandFailed, CommandInterrupted, Ended, ShellSession
 from sim.shell.splitting import LineError, split
-from sim.shell.tools import Tools
+from sim.shell.starter import Starter
 
 _USAGE_STATUS = 2
 _INTERRUPTED = int(signal.SIGINT)
@@ -18,18 +19,25 @@ _INTERRUPTED = int(signal.SIGINT)
 
 
 class ShellLine:
-    """A ``ros2`` line. What it prints and how it ends goes to ``tools``; its node is hidden."""
+    """A ``ros2`` line, whose node is hidden; ``starter`` starts its programs.
 
-    def __init__(self, ground: Ground, text: str, tools: Tools) -> None:
+    ``take`` gets what it prints and ``end``, last of all, its exit status, both on the line's thread. A line
+    that the end of the run cuts off has no status.
+    """
+
+    def __init__(
+        self, ground: Ground, text: str, starter: Starter, take: TakeOutput, end: Callable[[int], None]
+    ) -> None:
         self._text = text
-        self._session = ShellSession(ground, tools)
+        self._end = end
+        self._session = ShellSession(ground, starter, take)
 
     def start(self) -> None:
-        """Begin. It does not wait; call it on a thread that has the ground's time."""
+        """Begin. Does not wait; call it on a thread that has the ground's time."""
         self._session.process.start_thread(self._run)
 
     def interrupt(self) -> None:
-        """End the line as Ctrl-C would; again if what it started does not end. Any thread may call it."""
+        """End the line as Ctrl-C would. Any thread may call it, again if a started program does not end."""
         self._session.process.on_own_time(self._session.interrupt)
 
     def _run(self) -> None:
@@ -37,10 +45,10 @@ class ShellLine:
             status = self._status()
         finally:
             self._session.close()
-        self._session.tools.ended(status)
+        self._end(status)
 
     def _status(self) -> int:
-        """Carry the line out, say what is to be said of its end, and return the exit status."""
+        """Carry the line out, print the message of its end if there is one, and return the exit status."""
         try:
             self._carry_out()
         except HelpAsked as asked:
@@ -50,7 +58,7 @@ class ShellLine:
             return _INTERRUPTED
         except Ended as ended:
             return ended.status
-        except Exception as error:  # noqa: BLE001 -- as ros2, which ends with a traceback: the last line of it
+        except Exception as error:  # noqa: BLE001 -- ros2 ends with a traceback; this is its last line
             text, status = _complaint(error)
             self._session.complain(text)
             return status
@@ -66,12 +74,12 @@ class ShellLine:
 
 
 def _complaint(error: Exception) -> tuple[str, int]:
-    """What to say of an error, and the exit status."""
+    """Return the message of an error, and the exit status."""
     if isinstance(error, UsageError):
         return str(error), _USAGE_STATUS
-    if isinstance(error, CommandFailed | LineError):
+    if isinstance(error, LineError):
         return str(error), error.status
-    # The model's own errors are sentences; Python's say little without their names.
+    # Errors of the model and of the shell are sentences; Python's need their names.
     is_sentence = isinstance(error, NotImplementedError) or type(error).__module__.startswith(
         ("sim.", "rclpy.")
     )

@@ -17,19 +17,19 @@ NO_DICTIONARY = "The passed value needs to be a dictionary in YAML format"
 
 
 def message_class(ground: Ground, name: str) -> type[Message]:
-    """The class of ``std_msgs/msg/Int32`` or ``std_msgs/Int32``; raises CommandFailed if there is none."""
+    """Return the class of ``std_msgs/msg/Int32`` or ``std_msgs/Int32``; raise CommandFailed for none."""
     found: type[Message] = _found(ground, name, "msg", "message")
     return found
 
 
 def service_class(ground: Ground, name: str) -> ServiceType:
-    """The class of ``std_srvs/srv/SetBool`` or ``std_srvs/SetBool``; or raises CommandFailed."""
+    """Return the class of ``std_srvs/srv/SetBool`` or ``std_srvs/SetBool``; raise CommandFailed for none."""
     found: ServiceType = _found(ground, name, "srv", "service")
     return found
 
 
 def action_class(ground: Ground, name: str) -> ActionType:
-    """The class of ``example_interfaces/action/Fibonacci``; raises CommandFailed if there is none."""
+    """Return the class of ``example_interfaces/action/Fibonacci``; raise CommandFailed for none."""
     found: ActionType = _found(ground, name, "action", "action")
     return found
 
@@ -49,12 +49,12 @@ def _found(ground: Ground, name: str, kind: Kind, noun: str) -> Any:
 
 
 def prototype_of(cls: type[Message]) -> str:
-    """A message with its default values as YAML."""
+    """Return a message with its default values as YAML."""
     return message_to_yaml(cls())
 
 
 def prototype_word(cls: type[Message]) -> str:
-    """A message with its default values, as YAML on one line and quoted for a shell."""
+    """Return a message with its default values as YAML on one line, quoted for a shell."""
     text = prototype_of(cls)
     if text.count("\n") == 1:
         return quoted(text)
@@ -62,7 +62,7 @@ def prototype_word(cls: type[Message]) -> str:
 
 
 def given_values(text: str) -> object:
-    """The values that a line gives; raises CommandFailed if they are no YAML."""
+    """Return the values in a line's YAML; raise CommandFailed if it is not YAML."""
     try:
         return plain_yaml.load(text)
     except YamlError as error:
@@ -70,7 +70,7 @@ def given_values(text: str) -> object:
 
 
 class Outgoing:
-    """A message to send, and the times in it that are to be those of sending: ``now``, a header's ``auto``.
+    """A message to send, with the fields that get the time of sending: ``now``, a header's ``auto``.
 
     Raises:
         CommandFailed: a value does not fit.
@@ -81,7 +81,7 @@ class Outgoing:
         try:
             self._stamps = set_message_fields(
                 self.message,
-                values,  # type: ignore[arg-type] # what is no mapping is refused in ros2's words
+                values,  # type: ignore[arg-type] # a value that is not a mapping is refused in ros2's words
                 expand_header_auto=True,
                 expand_time_now=True,
             )
@@ -89,6 +89,6 @@ class Outgoing:
             raise CommandFailed(f"Failed to populate field: {error}") from None
 
     def stamp(self, now: Message) -> None:
-        """Put the time, a builtin_interfaces/msg/Time, where it is wanted."""
+        """Set the time, a builtin_interfaces/msg/Time, in these fields."""
         for set_stamp in self._stamps:
             set_stamp(now)

@@ -28,10 +28,10 @@ _FIND: dict[Kind, Callable[[str, str], Any]] = {
 
 
 class _LineNode(Node):
-    """A line's node: its parameters are set before any other program could have discovered it."""
+    """A line's node: its parameters are set before any other program discovers it."""
 
     def _tell_parameter_change(self, change: ParameterChange) -> None:
-        """Tell nobody."""
+        pass
 
 
 class _ModelProcess:
@@ -44,11 +44,9 @@ class _ModelProcess:
         self.context.process.take_output = take
 
     def make_node(self, name: str) -> Node:
-        """Make the line's node."""
         return _LineNode(name, context=self.context, start_parameter_services=False, enable_rosout=False)
 
     def free_name(self) -> str:
-        """The first name of a hidden node that no other node has."""
         with self._host.lock:
             taken = {node.get_name() for node in self.context.network.nodes()}
         number = 1
@@ -61,7 +59,6 @@ class _ModelProcess:
         self.context.process.start_thread(run, "ros2")
 
     def on_own_time(self, deed: Callable[[], None]) -> None:
-        """Do something on a thread of the run; any thread may ask for it."""
         clock = self._host.clock
         if isinstance(clock, VirtualClock) and not clock.owns_current_thread():
             clock.time.inject(deed)
@@ -69,40 +66,32 @@ class _ModelProcess:
             deed()
 
     def leave(self) -> None:
-        """End the context."""
         self.context.try_shutdown()
 
 
 class ModelGround:
-    """The graph of a run. On virtual time, use it on threads of the run."""
+    """The graph of a run (see `Ground`). On virtual time, use it on threads of the run."""
 
     def __init__(self, host: Host) -> None:
         self._host = host
 
     def enter(self, take: TakeOutput) -> _ModelProcess:
-        """Have a line join as a process of its own."""
         return _ModelProcess(self._host, take)
 
     def now(self) -> int:
-        """Nanoseconds of the run's time."""
         return self._host.clock.now()
 
     def signal(self) -> AutoResetEvent:
-        """A signal on the run's time."""
         return self._host.clock.auto_reset_event()
 
     def want(self, name: str) -> None:
-        """Tell the network that a line is about to use a topic or service."""
         with self._host.lock:
             self._host.network.announce_use(name)
 
     def interface(self, kind: Kind, package: str, name: str) -> Any:
-        """The model's class."""
         return _FIND[kind](package, name)
 
     def topics(self) -> dict[str, list[str]]:
-        """Every topic and its types."""
-
         def ends(node: Node) -> list[tuple[str, Any]]:
             heard = [(each.topic_name, each.msg_type) for each in node.subscriptions]
             return heard + [(each.topic_name, each.msg_type) for each in node.publishers]
@@ -110,16 +99,14 @@ class ModelGround:
         return self._ends(ends)
 
     def services(self) -> dict[str, list[str]]:
-        """Every service and its types."""
         return self._ends(lambda node: [(each.name, each.srv_type) for each in node.services])
 
     def nodes(self) -> list[str]:
-        """The full name of every node."""
         with self._host.lock:
             return [node.get_fully_qualified_name() for node in nodes_on(self._host.network)]
 
     def parameters(self, node: str) -> list[str]:
-        """The parameters of a node, known even while nobody spins it."""
+        """Return the parameters of a node, also of one that does not spin."""
         with self._host.lock:
             for each in nodes_on(self._host.network):
                 if each.get_fully_qualified_name() == node:

@@ -1,4 +1,4 @@
-"""Options and arguments of the verbs: argparse, whose help and complaints come as exceptions."""
+"""Options and arguments of the verbs: argparse with exceptions for help and errors."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from sim.packages import Packages
 from sim.shell.ground import Ground
 
 _WIDTH = 78
-"""Columns of help and usage: what argparse makes of a terminal of 80."""
+"""Columns of help and usage, as argparse has on a terminal of 80 columns."""
 
 
 @dataclass(frozen=True, slots=True)
 class Surroundings:
-    """What candidates are looked up in; ``given`` are the arguments before the one that is completed."""
+    """The sources of candidates; ``given`` are the arguments before the completed one."""
 
     ground: Ground
     packages: Packages
@@ -24,15 +24,15 @@ class Surroundings:
 
 
 Completer: TypeAlias = Callable[[Surroundings], Iterable[str]]
-"""Tells candidates, quoted for a shell; Failed or PackageError: what was given before is not known."""
+"""Returns candidates, quoted for a shell; raises CommandFailed or PackageError for unknown arguments."""
 
 
-class HelpAsked(Exception):  # noqa: N818 -- no error
-    """``-h`` was among the words; the text is the help."""
+class HelpAsked(Exception):  # noqa: N818 -- not an error
+    """A line asks for help, which is the text."""
 
 
 class UsageError(Exception):
-    """The words are no such line; the text is argparse's complaint."""
+    """The words are not a valid line; the text is argparse's message."""
 
 
 class LineParser(argparse.ArgumentParser):
@@ -48,7 +48,7 @@ class LineParser(argparse.ArgumentParser):
         self.completers: dict[argparse.Action, Completer] = {}
 
     def argument(self, *names: str, completer: Completer | None = None, **options: Any) -> None:
-        """Add an option or argument, and who tells candidates for its value."""
+        """Add an option or argument, with a completer for its value."""
         action = self.add_argument(*names, **options)
         if completer is not None:
             self.completers[action] = completer
@@ -72,7 +72,7 @@ class _Formatter(argparse.HelpFormatter):
 
 
 def positive_float(text: str) -> float:
-    """A number above zero; raises ArgumentTypeError for another, ValueError for no number."""
+    """Read a number above zero; raise ArgumentTypeError for another, ValueError for other text."""
     value = float(text)
     if not value > 0.0:
         raise argparse.ArgumentTypeError("value must be positive")
@@ -80,7 +80,7 @@ def positive_float(text: str) -> float:
 
 
 def positive_int(text: str) -> int:
-    """An integer above zero; raises as ``positive_float``."""
+    """Read an integer above zero; raises as ``positive_float``."""
     value = int(text)
     if value <= 0:
         raise argparse.ArgumentTypeError("value must be a positive integer")
@@ -88,7 +88,7 @@ def positive_int(text: str) -> int:
 
 
 def nonnegative_int(text: str) -> int:
-    """An integer of zero or more; raises as ``positive_float``."""
+    """Read an integer of zero or more; raises as ``positive_float``."""
     value = int(text)
     if value < 0:
         raise argparse.ArgumentTypeError("value must be positive or zero")
@@ -96,7 +96,7 @@ def nonnegative_int(text: str) -> int:
 
 
 def unsigned_int(text: str) -> int:
-    """A length; raises as ``positive_float``."""
+    """Read a length; raises as ``positive_float``."""
     value = int(text)
     if value < 0:
         raise argparse.ArgumentTypeError("value must be non-negative integer")

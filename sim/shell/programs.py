@@ -1,4 +1,4 @@
-"""Waiting for programs that a line started, and candidates for their names."""
+"""Waits for programs that a line started, and completes their names."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from sim.packages import Package
 from sim.shell.parser import Surroundings
 from sim.shell.quoting import quoted
 from sim.shell.session import ShellSession
-from sim.shell.tools import OnExit, Running
+from sim.shell.starter import OnExit, Running
 
 
 def wait_for(session: ShellSession, start: Callable[[OnExit], Running]) -> int:
-    """Start programs and wait for their end, whatever they make of Ctrl-C; returns the exit status."""
+    """Start programs, wait for their end, also after Ctrl-C, and return the exit status."""
     signal = session.ground.signal()
     statuses: list[int] = []
 
@@ -28,8 +28,8 @@ def wait_for(session: ShellSession, start: Callable[[OnExit], Running]) -> int:
 
 
 def package(session: ShellSession, name: str) -> Package:
-    """The package of that name; raises PackageError if there is none."""
-    return session.tools.packages().package(name)
+    """Return a package by name; raise PackageError if there is none."""
+    return session.starter.packages().package(name)
 
 
 def known_packages(surroundings: Surroundings) -> list[str]:

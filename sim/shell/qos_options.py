@@ -1,4 +1,4 @@
-"""The options for quality of service, and the quality that fits a topic's publishers.
+"""The options for quality of service, and the profile that matches a topic's publishers.
 
 Source: ros2topic's api module.
 """
@@ -58,13 +58,13 @@ def add_qos_options(parser: LineParser, purpose: str, default: str) -> None:
 
 
 def qos_is_given(arguments: Namespace) -> bool:
-    """Whether the line asks for any quality of service."""
+    """Return whether a line has any option for quality of service."""
     given = (arguments.qos_profile, arguments.qos_depth, arguments.qos_liveliness_lease_duration_seconds)
     return any(each is not None for each in (*given, *_policies(arguments).values()))
 
 
 def chosen_qos(arguments: Namespace) -> QoSProfile:
-    """The profile that the options make."""
+    """Return the profile of the options."""
     name = arguments.qos_profile or arguments.default_qos_profile
     profile = copy(QoSPresetProfiles.get_from_short_key(name))
     if arguments.qos_depth is not None:
@@ -77,8 +77,8 @@ def chosen_qos(arguments: Namespace) -> QoSProfile:
     return profile
 
 
-def fitting_qos(session: ShellSession, topic: str, arguments: Namespace) -> QoSProfile:
-    """The profile that the options make; without any, one that hears all of the topic's publishers."""
+def matching_qos(session: ShellSession, topic: str, arguments: Namespace) -> QoSProfile:
+    """Return the profile of the options; without any, one that matches all of a topic's publishers."""
     profile = chosen_qos(arguments)
     publishers = session.node.get_publishers_info_by_topic(topic)
     if qos_is_given(arguments) or not publishers:

@@ -1,4 +1,4 @@
-"""Writes a word so that a shell reads it as it is meant."""
+"""Quotes a word for a shell."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ _TO_ESCAPE_IN_DOUBLE_QUOTES = re.compile(r'[$`"\\]')
 
 
 def quoted(text: str) -> str:
-    """The word with backslashes, as a shell completes it; text of several lines in double quotes.
+    """Return a word with backslashes, as a shell completes it; text of several lines in double quotes.
 
-    The line end after a single line is left out.
+    The line end after a single line is removed.
     """
     line = text.removesuffix("\n")
     if "\n" in line:
@@ -23,7 +23,7 @@ def quoted(text: str) -> str:
 
 
 def double_quoted(text: str) -> str:
-    """The word in double quotes."""
+    """Return a word in double quotes."""
     return f'"{_TO_ESCAPE_IN_DOUBLE_QUOTES.sub(_backslashed, text)}"'
 
 

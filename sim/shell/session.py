@@ -1,4 +1,4 @@
-"""What a verb has at hand while it is carried out: a hidden node, its time, and a place for its output."""
+"""What a verb uses while it is carried out: a hidden node, its time, and a place for its output."""
 
 from __future__ import annotations
 
@@ -8,23 +8,19 @@ from typing import Any
 from sim.ros.node.node import Node
 from sim.ros.scheduling.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from sim.ros.scheduling.task import Future
-from sim.shell.ground import Ground
-from sim.shell.tools import Tools
+from sim.shell.ground import Ground, TakeOutput
+from sim.shell.starter import Starter
 
 _SERVICE_POLL = 0.25
 """Seconds between two looks for a service, as in rclpy."""
 
 
-class CommandFailed(Exception):  # noqa: N818 -- what a line did, as a shell would say it
-    """The line failed: the text goes to stderr, the status is the line's."""
-
-    def __init__(self, text: str, status: int = 1) -> None:
-        super().__init__(text)
-        self.status = status
+class CommandFailed(Exception):  # noqa: N818 -- a line's result, as a shell would word it
+    """The line failed with exit status 1; the text goes to stderr."""
 
 
 class Ended(Exception):  # noqa: N818
-    """The line ended with a status and nothing more to say."""
+    """The line ended with a status, without a message."""
 
     def __init__(self, status: int) -> None:
         super().__init__(status)
@@ -36,12 +32,13 @@ class CommandInterrupted(Exception):  # noqa: N818
 
 
 class ShellSession:
-    """One line's stay on the network. Only ``interrupt`` may be called by other threads than the line's."""
+    """One line's presence on the network. Other threads than the line's may only call ``interrupt``."""
 
-    def __init__(self, ground: Ground, tools: Tools) -> None:
+    def __init__(self, ground: Ground, starter: Starter, take: TakeOutput) -> None:
         self.ground = ground
-        self.tools = tools
-        self.process = ground.enter(tools.say)
+        self.starter = starter
+        self.process = ground.enter(take)
+        self._take = take
         self._interrupted = False
         self._listeners: list[Callable[[], None]] = []
         self._made_node: Node | None = None
@@ -49,14 +46,14 @@ class ShellSession:
 
     @property
     def node(self) -> Node:
-        """The hidden node, which is made when first asked for."""
+        """The hidden node, which is created at its first use."""
         if self._made_node is None:
             self.make_node(self.process.free_name())
         assert self._made_node is not None
         return self._made_node
 
     def make_node(self, name: str) -> None:
-        """Make the line's node under another name than the one it gets by itself."""
+        """Make the line's node under a name that the line chooses."""
         self._made_node = self.process.make_node(name)
         self._executor.add_node(self._made_node)
 
@@ -72,10 +69,10 @@ class ShellSession:
     def say(self, text: str = "") -> None:
         """Write text, and a line end, to stdout."""
         for line in text.split("\n"):
-            self.tools.say(line, error=False)
+            self._take(line, False)
 
     def say_each(self, lines: Iterable[str], count: bool = False) -> None:
-        """Write texts line by line; with ``count`` only how many there are."""
+        """Write texts line by line; with ``count`` only their number."""
         every = list(lines)
         if count:
             self.say(str(len(every)))
@@ -85,12 +82,12 @@ class ShellSession:
     def complain(self, text: str) -> None:
         """Write text, and a line end, to stderr."""
         for line in text.split("\n"):
-            self.tools.say(line, error=True)
+            self._take(line, True)
 
     # Waiting
 
     def spin(self, until: Future[Any] | None = None, seconds: float | None = None) -> bool:
-        """Serve the node until the future is done, at most for some seconds; whether it is done.
+        """Spin the node until the future is done, for at most some seconds; return whether it is done.
 
         Raises:
             CommandInterrupted: the line was interrupted meanwhile.
@@ -110,7 +107,7 @@ class ShellSession:
             self.spin(seconds=seconds)
 
     def wait_until(self, condition: Callable[[], bool], poll: float = _SERVICE_POLL) -> None:
-        """Ask ``condition`` every ``poll`` seconds until it holds; raises as ``spin``."""
+        """Check ``condition`` every ``poll`` seconds until it holds; raises as ``spin``."""
         while not condition():
             self.sleep(poll)
 
@@ -126,13 +123,13 @@ class ShellSession:
     # Interrupting
 
     def on_interrupt(self, listener: Callable[[], None]) -> None:
-        """Have ``listener`` called at every Ctrl-C, at once if there was one already; it must not wait."""
+        """Call ``listener`` at every Ctrl-C, at once if there was one already; it must not wait."""
         self._listeners.append(listener)
         if self._is_interrupted:
             listener()
 
     def interrupt(self) -> None:
-        """Have every wait of the line end."""
+        """End every wait of the line."""
         self._interrupted = True
         for listener in tuple(self._listeners):
             listener()

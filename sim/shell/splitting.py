@@ -1,4 +1,4 @@
-"""Takes a line apart into words as a POSIX shell does.
+"""Splits a line into words as a POSIX shell does.
 
 Rules: POSIX.1-2017, Shell Command Language, sections 2.2 (quoting) and 2.3 (token recognition).
 """
@@ -17,7 +17,7 @@ _UNREADABLE, _NO_COMMAND = 2, 127
 
 
 class LineError(ValueError):
-    """A line cannot be carried out; the text says why, ``status`` is what a shell would end with."""
+    """A line cannot be carried out; the text says why, ``status`` is a shell's exit status."""
 
     def __init__(self, text: str, status: int = _UNREADABLE) -> None:
         super().__init__(text)
@@ -26,7 +26,7 @@ class LineError(ValueError):
 
 @dataclass(slots=True)
 class ShellWord:
-    """A word without its quotes; in the line it begins at ``start``."""
+    """A word without its quotes, and its start in the line."""
 
     text: str
     start: int
@@ -34,7 +34,7 @@ class ShellWord:
 
 @dataclass(slots=True)
 class Scan:
-    """What a line is made of: its words, the quote that was left open, and the first operator, if any."""
+    """The parts of a line: its words, an open quote, and the first operator; "" for none."""
 
     words: list[ShellWord] = field(default_factory=list)
     quote: str = ""
@@ -43,12 +43,12 @@ class Scan:
 
 
 def split(text: str) -> list[str]:
-    """The words of a ``ros2`` line without that first word; a ``$`` prompt before it is left out.
+    """Return the words of a line after ``ros2``; a ``$`` prompt before that is skipped.
 
-    A backslash at the very end, where a shell would wait for another line, counts for nothing.
+    A backslash at the end, after which a shell would wait for another line, is ignored.
 
     Raises:
-        LineError: a quote is not closed, the line is more than one command, or the command is another.
+        LineError: a quote is not closed, the line has several commands, or the command is not ``ros2``.
     """
     scanned = scan(text)
     if scanned.quote:
@@ -67,7 +67,7 @@ def split(text: str) -> list[str]:
 
 
 def scan(text: str) -> Scan:
-    """Take any line apart, finished or not."""
+    """Scan a line, complete or not."""
     prompt = _PROMPT.match(text)
     assert prompt is not None
     return _LineScanner(text, prompt.end()).run()

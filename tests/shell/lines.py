@@ -7,9 +7,10 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from sim.clock import RunClock
+from sim.packages import Packages
 from sim.ros.node.node import Node
 from sim.ros.scheduling.executors import SingleThreadedExecutor
-from sim.shell import OnExit, Packages, Running, ShellLine
+from sim.shell import OnExit, Running, ShellLine
 from sim.shell.model_ground import ModelGround
 from tests.support.simulation import Simulation, Trace, simulate
 
@@ -121,7 +122,7 @@ def carry_out(
         kept.append(tools)
         setup(simulation)
         simulation.sleep(at)
-        line = ShellLine(ModelGround(simulation.host), text, tools)
+        line = ShellLine(ModelGround(simulation.host), text, tools, tools.say, tools.ended)
         line.start()
         if interrupt_at is not None:
             simulation.at(interrupt_at, line.interrupt)

@@ -70,7 +70,7 @@ def test_an_unclosed_quote_is_one_sentence() -> None:
 def test_a_line_leaves_nothing_on_the_network() -> None:
     def program(simulation: Simulation) -> None:
         tools = FakeTools(simulation.clock)
-        ShellLine(ModelGround(simulation.host), "topic list", tools).start()
+        ShellLine(ModelGround(simulation.host), "topic list", tools, tools.say, tools.ended).start()
         simulation.sleep(1.0)
         assert tools.statuses == [0]
         assert Node("looker").get_node_names() == ["looker"]
@@ -82,7 +82,13 @@ def test_lines_at_the_same_time_have_nodes_of_their_own() -> None:
     def program(simulation: Simulation) -> None:
         tools = FakeTools(simulation.clock)
         lines = [
-            ShellLine(ModelGround(simulation.host), f"topic pub /t{i} std_msgs/msg/Int32", tools)
+            ShellLine(
+                ModelGround(simulation.host),
+                f"topic pub /t{i} std_msgs/msg/Int32",
+                tools,
+                tools.say,
+                tools.ended,
+            )
             for i in range(3)
         ]
         for line in lines:
@@ -100,7 +106,9 @@ def test_lines_at_the_same_time_have_nodes_of_their_own() -> None:
 def test_a_line_can_be_interrupted_before_it_begins() -> None:
     def program(simulation: Simulation) -> None:
         tools = FakeTools(simulation.clock)
-        line = ShellLine(ModelGround(simulation.host), "topic pub /t std_msgs/msg/Int32", tools)
+        line = ShellLine(
+            ModelGround(simulation.host), "topic pub /t std_msgs/msg/Int32", tools, tools.say, tools.ended
+        )
         line.interrupt()
         line.start()
         simulation.sleep(0.0)
@@ -112,7 +120,9 @@ def test_a_line_can_be_interrupted_before_it_begins() -> None:
 def test_a_thread_outside_the_run_can_interrupt() -> None:
     def program(simulation: Simulation) -> None:
         tools = FakeTools(simulation.clock)
-        line = ShellLine(ModelGround(simulation.host), "topic echo /t std_msgs/msg/Int32", tools)
+        line = ShellLine(
+            ModelGround(simulation.host), "topic echo /t std_msgs/msg/Int32", tools, tools.say, tools.ended
+        )
         line.start()
         simulation.sleep(0.1)
         outside = threading.Thread(target=line.interrupt)
@@ -152,7 +162,13 @@ def test_lines_run_on_the_real_clock_too() -> None:
     clock = PacedClock()
     tools, ended = FakeTools(clock), threading.Event()
     tools.statuses = _Telling(ended)
-    line = ShellLine(ModelGround(Host(clock, SilentProbe(clock))), "topic pub /t std_msgs/msg/Int32", tools)
+    line = ShellLine(
+        ModelGround(Host(clock, SilentProbe(clock))),
+        "topic pub /t std_msgs/msg/Int32",
+        tools,
+        tools.say,
+        tools.ended,
+    )
     line.start()
     while not any("publishing #1" in each.text for each in tools.said):
         clock.sleep(1_000_000)

@@ -6,9 +6,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from sim.shell import LineError, split
 from sim.shell.quoting import quoted
-from sim.shell.splitting import scan
+from sim.shell.splitting import LineError, scan, split
 
 _SHELL_TEXT = st.text(st.sampled_from("ab \t\n'\"\\${}:#-;|&>é`"), max_size=24)
 

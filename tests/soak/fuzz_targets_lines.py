@@ -23,10 +23,11 @@ from sim.ros.logging.record import LogRecord
 from sim.ros.logging.severity import LoggingSeverity
 from sim.ros.middleware.host import Host
 from sim.ros.node.node import Node
-from sim.shell import LineError, complete, split, word_start
+from sim.shell import complete, word_start
 from sim.shell.commands import parse, verb_parser
 from sim.shell.model_ground import ModelGround
 from sim.shell.parser import HelpAsked, UsageError
+from sim.shell.splitting import LineError, split
 from sim.trace.events import Logged, Severity
 from tests.soak.fuzz_target import Target, text_of
 

@@ -1,1 +1,1 @@
-"""Exploring the orders of a program's threads: where its own lines share data, and who may go on there."""
+"""Explores the orders of a program's threads: where lines share data, and which thread continues there."""

@@ -1,4 +1,4 @@
-"""Has each choice among threads made from outside: time stands until a command says who goes on."""
+"""Leaves each choice among threads to a command from outside; time stands until it comes."""
 
 import sys
 from collections.abc import Callable, Hashable
@@ -7,6 +7,7 @@ from types import FrameType
 from sim.clock import VirtualClock
 from sim.clock.moves import Choice, MovesSchedule
 from sim.clock.virtual_threads import VirtualThread
+from sim.engine.programs.program import pooled_threads
 from sim.engine.watchdogs.wait_descriptions import waits
 from sim.probes.own_code import own_frame, place_of
 from sim.ros.middleware.host import Host
@@ -15,9 +16,9 @@ from sim.trace.events.fields import SourcePlace
 
 
 class AskedChoices:
-    """Asks at each choice behind the moves that the schedule plays.
+    """Asks at each choice after the moves that the schedule plays.
 
-    A run that is told to go on without an answer asks no more, and the first option goes on from there.
+    If the run is resumed without an answer, it asks no more, and takes the first option from there on.
     """
 
     def __init__(
@@ -31,7 +32,7 @@ class AskedChoices:
         self._answer: int | None = None
 
     def decide(self, choice: Choice) -> int:
-        """Return what the schedule plays, or what is chosen; time stands meanwhile."""
+        """Return the schedule's move, or the answer to the question; time stands while it waits."""
         if not self._asks or choice.number <= self._schedule.last_move:
             return self._schedule.move_at(choice)
         self._tell(choice)
@@ -41,7 +42,7 @@ class AskedChoices:
         return answer if answer is not None and answer < len(choice.options) else 0
 
     def choose(self, option: int) -> None:
-        """Have that option go on; call it through ``VirtualTime.steer``."""
+        """Let an option continue; call this through ``VirtualTime.steer``."""
         self._answer = option
         self._clock.time.resume()
 
@@ -71,6 +72,7 @@ class AskedChoices:
                 tuple(map(_line, frames)),
                 choice.preempts,
                 kept,
+                tuple(place for place, each in enumerate(threads) if each.ident in pooled_threads()),
             )
         )
 
@@ -80,7 +82,7 @@ def _line(frame: FrameType | None) -> SourcePlace:
 
 
 def position(thread: Hashable) -> str:
-    """The name of a thread, and the line of the program in front of which it stands."""
+    """Return a thread's name, and the line of the program that it runs next."""
     assert isinstance(thread, VirtualThread)
     place = place_of(sys._current_frames().get(thread.ident))
     return f"{thread.name} ({place})" if place else thread.name

@@ -1,4 +1,4 @@
-"""Finds where a thread used shared data twice, and another one came between so that it mattered."""
+"""Finds accesses to shared data that another thread's access interrupted with an effect."""
 
 from collections import defaultdict, deque
 from collections.abc import Callable, Hashable
@@ -12,7 +12,7 @@ Data: TypeAlias = tuple[Hashable, int]
 """A name, and the identity of its owner: two objects have attributes of their own."""
 
 _KEPT = 64
-"""Latest accesses that are remembered of each data."""
+"""The number of latest accesses that are kept of each data."""
 
 
 @dataclass(frozen=True)
@@ -27,9 +27,9 @@ class _Access:
 class Conflicts:
     """Takes all accesses to shared data, and records each triple of conflicting places once.
 
-    The accesses of a ``unit``, such as one call of a callback, should be atomic. They were not if another
-    unit's access came between two of them so that one saw what the other wrote: no order of whole units gives
-    the same result.
+    The accesses of a ``unit``, such as one call of a callback, should be atomic. They are not if another
+    unit's access comes between two of them and one reads what the other wrote: then no order of whole units
+    gives the same result.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class Conflicts:
         self._told: set[object] = set()
 
     def take(self, data: Data, unit: Hashable, file: str, line: int, writes: bool) -> None:
-        """A unit is about to use data at a line."""
+        """Take an access: a unit is about to use data at a line."""
         access = _Access(unit, file, line, writes, self._callback_here())
         between: list[_Access] = []
         for earlier in reversed(self._accesses[data]):

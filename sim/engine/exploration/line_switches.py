@@ -1,4 +1,4 @@
-"""Lets threads switch in front of each line of the program that touches data which threads may share."""
+"""Lets threads switch before each line of the program that uses data which threads may share."""
 
 import ast
 import linecache
@@ -20,8 +20,8 @@ from sim.probes.own_code import is_library, is_own, outwards
 class LineSwitches:
     """Traces the program's own code on every thread of the clock.
 
-    A line is atomic, as CPython leaves it only where it calls something, and that has lines of its own; but
-    for the lines of ``SharedData.split``, of the program's own file, which have two steps.
+    A line is atomic: CPython switches threads inside it only where it calls something that has lines of its
+    own. The lines of ``SharedData.split`` in the program's own file are exceptions, with two steps each.
     """
 
     def __init__(self, clock: VirtualClock, conflicts: Conflicts) -> None:
@@ -32,7 +32,7 @@ class LineSwitches:
         self._own: dict[CodeType, SharedData | None] = {}
 
     def start(self) -> None:
-        """Trace the calling thread, and each that starts from now on; split lines of what is compiled."""
+        """Trace the calling thread and each new one, and split lines of code that is compiled from now on."""
         source.changes.append(self._split)
         threading.settrace(self._called)
         sys.settrace(self._called)
@@ -43,14 +43,24 @@ class LineSwitches:
             own = is_own(frame) and not is_library(frame)
             self._own[code] = self._shared_data(code.co_filename) if own else None
         data = self._own[code]
-        # A coroutine that goes on keeps the trace of its frame.
-        return None if data is None else frame.f_trace or _FrameTrace(self, data).take
+        # A resumed coroutine keeps the trace of its frame.
+        return None if data is None else frame.f_trace or self._trace_of(data)
+
+    def _trace_of(self, data: SharedData) -> Any:
+        """Return the trace function of one call of a function."""
+
+        def take(frame: FrameType, event: str, _argument: object) -> Any:
+            if event == "line":
+                self._come_to_line(frame, data)
+            return take
+
+        return take
 
     def _shared_data(self, file: str) -> SharedData:
         if file not in self._files:
             found = self._files[file] = shared_data("".join(linecache.getlines(file)))
             self._written |= found.written
-            found.split.clear()  # of a module that was imported, and not compiled here
+            found.split.clear()  # an imported module was not compiled here
         return self._files[file]
 
     def _split(self, tree: ast.Module, text: str, file: str) -> ast.Module:
@@ -59,12 +69,12 @@ class LineSwitches:
         return split_lines(tree, found, self._come_to_write)
 
     def _come_to_write(self, value: object, name: str) -> object:
-        """Let other threads go first in the middle of a split line."""
+        """Let other threads go first inside a split line."""
         self._come_to(sys._getframe(1), {name: True})
         return value
 
-    def come_to_line(self, frame: FrameType, data: SharedData) -> None:
-        """Let other threads go first if the line touches shared data, and note what it touches."""
+    def _come_to_line(self, frame: FrameType, data: SharedData) -> None:
+        """Let other threads go first if the line uses shared data, and note its accesses."""
         later = data.split.get(frame.f_lineno)
         found = data.lines.get(frame.f_lineno, {})
         self._come_to(frame, {name: writes and name != later for name, writes in found.items()})
@@ -82,21 +92,8 @@ class LineSwitches:
                 self._conflicts.take((name, owner), unit, frame.f_code.co_filename, frame.f_lineno, writes)
 
 
-class _FrameTrace:
-    """The trace of one call of a function."""
-
-    def __init__(self, lines: LineSwitches, data: SharedData) -> None:
-        self._lines = lines
-        self._data = data
-
-    def take(self, frame: FrameType, event: str, _argument: object) -> Any:
-        if event == "line":
-            self._lines.come_to_line(frame, self._data)
-        return self.take
-
-
 def _outermost(frame: FrameType) -> Hashable:
-    """The key of the current call of a callback, or of the program's outermost call outside callbacks."""
+    """Return the key of the callback's current call, or of the program's outermost call outside callbacks."""
     trace = frame.f_trace
     for each in outwards(frame):
         if each in calls_the_program:

@@ -1,4 +1,4 @@
-"""Finds the lines of a source file that touch data which several threads may share."""
+"""Finds the lines of a source file that use data which several threads may share."""
 
 import ast
 import re
@@ -19,13 +19,13 @@ _Function: TypeAlias = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 class SharedData:
     """The accesses of a source file to attributes, globals and nonlocal names.
 
-    ``lines`` has for each line the names, an attribute's with a dot in front, and whether they are written.
-    ``written`` are the names that functions other than ``__init__`` write, or change in place: others are
-    constant once the program runs. What a local name stands for is not followed, but for objects that the
-    function makes itself, which are left out.
+    ``lines`` has for each line its names, an attribute's with a dot in front, and whether each is written.
+    ``written`` are the names that functions other than ``__init__`` assign or change in place; all others are
+    constant once the program runs. Aliases by local names are not followed. Objects that a function creates
+    itself are left out.
 
-    ``split`` has the lines that read a name, then call something or read a field of an argument, which on
-    rclpy's messages is a call, too, and write the name after that: CPython can leave these in between.
+    ``split`` has the lines that read a name, then call something, and then write the name: CPython can switch
+    threads in between. Reading a field of an argument counts as a call, as it is one on rclpy's messages.
     """
 
     lines: defaultdict[int, dict[str, bool]] = field(default_factory=lambda: defaultdict(dict))
@@ -33,7 +33,7 @@ class SharedData:
     split: dict[int, str] = field(default_factory=dict)
 
     def note(self, name: str, line: int, *, writes: bool, counts: bool) -> None:
-        """Add an access; a write that ``counts`` makes the name one that changes."""
+        """Add an access; a write that ``counts`` adds the name to ``written``."""
         self.lines[line][name] = writes or self.lines[line].get(name, False)
         if writes and counts:
             self.written.add(name)
@@ -78,7 +78,7 @@ class _Accesses:
         return (each for each in self._nodes if isinstance(each, ast.Name))
 
     def collect(self) -> None:
-        """Add the accesses to what was found."""
+        """Add the function's accesses to ``found``."""
         for node in self._nodes:
             match node:
                 case ast.Attribute() | ast.Name():
@@ -106,7 +106,7 @@ class _Accesses:
             is_read = is_read or (isinstance(each, ast.Attribute | ast.Name) and ast.unparse(each) == shared)
 
     def _leaves(self, node: ast.expr) -> bool:
-        """Whether CPython may go on with another thread there."""
+        """Return whether CPython may switch threads at a node."""
         if isinstance(node, ast.Attribute):
             return isinstance(node.value, ast.Name) and node.value.id in self._arguments
         return isinstance(node, ast.Call)
@@ -132,7 +132,7 @@ def _without_index(node: ast.expr) -> ast.expr:
 
 
 def _in_order(node: ast.expr) -> Iterator[ast.expr]:
-    """An expression and those in it, in the order in which they are worked out."""
+    """Yield an expression and those in it, in the order of their evaluation."""
     for child in ast.iter_child_nodes(node):
         if isinstance(child, ast.expr) and not isinstance(child, ast.Lambda):
             yield from _in_order(child)
@@ -140,7 +140,7 @@ def _in_order(node: ast.expr) -> Iterator[ast.expr]:
 
 
 def _inside(function: ast.AST) -> Iterator[ast.AST]:
-    """The nodes of a function without those of the functions in it."""
+    """Yield the nodes of a function without those of nested functions."""
     for child in ast.iter_child_nodes(function):
         yield child
         if not isinstance(child, _Function):
@@ -152,5 +152,5 @@ def _last_name(node: ast.expr) -> str:
 
 
 def _makes_object(value: ast.expr) -> bool:
-    """Whether it is a call of something named like a class, ``Twist()``."""
+    """Return whether a value is a call of something named like a class: ``Twist()``."""
     return isinstance(value, ast.Call) and _last_name(value.func)[:1].isupper()

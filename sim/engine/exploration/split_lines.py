@@ -1,4 +1,4 @@
-"""Lets threads switch in lines that read shared data, call something, and write the data after that."""
+"""Lets threads switch inside lines that read shared data, call something, and then write the data."""
 
 import ast
 import builtins
@@ -7,13 +7,13 @@ from collections.abc import Callable
 from sim.engine.exploration.shared_data import SharedData
 
 _BETWEEN = "__cbtui_between__"
-"""The function that such a line calls when all but its write is done."""
+"""The built-in function that such a line calls before its write."""
 
 
 def split_lines(tree: ast.Module, data: SharedData, between: Callable[[object, str], object]) -> ast.Module:
-    """Have ``between`` called in front of the write in each line of ``data.split``.
+    """Insert a call of ``between`` before the write in each line of ``data.split``.
 
-    It gets the value, which it hands on, and the name of what is written.
+    ``between`` gets the value and the written name, and returns the value.
     """
     setattr(builtins, _BETWEEN, between)
     _Splitting(data).visit(tree)

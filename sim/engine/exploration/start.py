@@ -1,4 +1,4 @@
-"""Sets a run up for exploring: its program's own lines become switch points, and choices are recorded."""
+"""Prepares a run for exploring: the program's own lines become switch points, and choices are recorded."""
 
 from collections.abc import Callable
 
@@ -14,7 +14,7 @@ from sim.trace.events import AnyEvent, ThreadChosen
 def explore(clock: VirtualClock, host: Host, record: Callable[[AnyEvent], None]) -> AskedChoices | None:
     """Switch threads at the program's own lines from now on, and record choices and conflicts.
 
-    Returns what gets the answers, None for a schedule that asks nobody.
+    Returns the object that takes the answers; None for a schedule that does not ask.
     """
     schedule, asked = clock.schedule, None
     if isinstance(schedule, MovesSchedule):

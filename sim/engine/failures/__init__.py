@@ -1,1 +1,1 @@
-"""How a program failed, in the words a learner can act on."""
+"""How a program failed, in words that a learner can act on."""

@@ -1,4 +1,4 @@
-"""What a learner most likely has to do about a program that failed or did nothing, in half a sentence."""
+"""Advice to a learner whose program failed or did nothing, as a clause."""
 
 import ast
 import builtins
@@ -18,7 +18,7 @@ from sim.trace.events import EntityKind
 
 
 def advice_on(error: BaseException, frame: FrameType | None) -> str:
-    """What to do about an exception that came up in ``frame``; empty where its text says it all."""
+    """Return advice on an exception that was raised in ``frame``; empty where its text is enough."""
     match error:
         case ModuleNotFoundError(name=str(name)):
             from sim.engine.failures.missing import on_missing
@@ -44,7 +44,7 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
 
 @dataclass(frozen=True, slots=True)
 class RejectedCallback:
-    """A callback that does not take what rclpy hands it: where it is written, and what to do."""
+    """A callback with other parameters than rclpy passes: where it is written, and what to do."""
 
     file: str
     line: int
@@ -52,7 +52,7 @@ class RejectedCallback:
 
 
 def rejected_callback(error: BaseException) -> RejectedCallback | None:
-    """The callback whose parameters were wrong, if that is why an exception came up in rclpy."""
+    """Return the callback whose wrong parameters made rclpy raise an exception; None for another cause."""
     frames = [frame for frame, _ in walk_tb(error.__traceback__)]
     if not frames or not isinstance(error, TypeError | RuntimeError) or is_own(frames[-1]):
         return None
@@ -61,7 +61,7 @@ def rejected_callback(error: BaseException) -> RejectedCallback | None:
     code = getattr(callback, "__code__", None)
     if code is None or not any(each in str(error) for each in ("positional argument", "callback should")):
         return None
-    taken = _HANDED_OVER[getattr(inside.get("self"), "kind", EntityKind.SUBSCRIPTION)]
+    taken = _PARAMETERS[getattr(inside.get("self"), "kind", EntityKind.SUBSCRIPTION)]
     own = ["self"] if inspect.ismethod(callback) else []
     written = f"def {code.co_name}({', '.join([*own, *taken])})"
     return RejectedCallback(
@@ -69,7 +69,7 @@ def rejected_callback(error: BaseException) -> RejectedCallback | None:
     )
 
 
-_HANDED_OVER = {
+_PARAMETERS = {
     EntityKind.TIMER: [],
     EntityKind.GUARD: [],
     EntityKind.SUBSCRIPTION: ["message"],
@@ -97,7 +97,7 @@ def _names_of(frame: FrameType) -> list[str]:
 
 
 def _misplaced_in(frame: FrameType, name: str) -> str:
-    """What is to say of a function that a class of the frame's module holds instead of the module."""
+    """Return advice on a function that is in a class of the frame's module instead of the module."""
     for owner in frame.f_globals.values():
         function = vars(owner).get(name) if isinstance(owner, type) else None
         code = getattr(function, "__code__", None)
@@ -107,7 +107,7 @@ def _misplaced_in(frame: FrameType, name: str) -> str:
 
 
 def misplaced(name: str, source: str) -> str:
-    """What is to say of a function that stands inside a class of a file; empty if none does."""
+    """Return advice on a function that is inside a class of a file; empty if there is none."""
     for owner in ast.parse(source).body:
         if isinstance(owner, ast.ClassDef):
             for each in owner.body:
@@ -120,8 +120,8 @@ def _misplaced(name: str, line: int, owner: str) -> str:
     return f"the {name}() of line {line} is indented into the class {owner}; move it to the left margin"
 
 
-def silence() -> str:
-    """How a program of the calling thread's process ended that made callbacks and never spun; else empty."""
+def never_spun() -> str:
+    """Return advice if the calling thread's program created callbacks and never spun; else an empty text."""
     process = current_process()
     if process.callbacks == 0 or process.spins > 0:
         return ""

@@ -10,7 +10,7 @@ from sim.trace.events import Nanoseconds, RunEnded
 class Cause:
     """Why a run or a program ends: a sentence, whether it failed, and the exception ("" for none).
 
-    ``failure`` tells where that came up, and what to do.
+    ``failure`` has the exception's source line and advice.
     """
 
     reason: str
@@ -20,9 +20,16 @@ class Cause:
     time_was_up: bool = False
 
     def event(self, t: Nanoseconds) -> RunEnded:
-        """The last event of a run that ends at ``t``."""
+        """Return the last event of a run that ends at ``t``."""
         found = self.failure or Failure("", 0, "")
-        place = found.file, found.line
         return RunEnded(
-            t, self.reason, self.failed, self.time_was_up, self.error, place, found.what, found.advice
+            t,
+            self.reason,
+            self.failed,
+            self.time_was_up,
+            self.error,
+            (found.file, found.line),
+            found.what,
+            found.advice,
+            found.exception,
         )

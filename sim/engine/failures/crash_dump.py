@@ -1,7 +1,7 @@
-"""The crash dump: where a program's threads stood when its process ended without Python's help.
+"""The crash dump: where a program's threads were when its process ended without Python's help.
 
-``faulthandler`` writes it to a file that the console handed to the engine: when C code crashes, when the
-process is aborted, and when the console asks by a signal. The console reads the file once the engine is gone.
+``faulthandler`` writes it to a file that the console opens for the engine: when C code crashes, when the
+process is aborted, and when the console sends a signal. The console reads the file once the engine is gone.
 """
 
 import faulthandler
@@ -14,14 +14,14 @@ from pathlib import Path
 from typing import Any, NamedTuple, NoReturn
 
 ASKED = getattr(signal, "SIGRTMAX", signal.SIGUSR2)
-"""The signal by which the console asks where the threads stand: one that hardly any program uses."""
+"""The signal by which the console requests a crash dump; hardly any program uses it."""
 
 _FRAME = re.compile(r'  File "(.*)", line (\d+) in (.*)')
 _THREAD = re.compile(r"^(Current thread|Thread) 0x[^\n]*\n(.*?)(?=^$|\Z)", re.MULTILINE | re.DOTALL)
-_KEPT = "Timeout ("
-"""Begins what ``faulthandler`` writes when its time is up."""
+_TIMEOUT = "Timeout ("
+"""The start of a crash dump that ``faulthandler`` writes at its timeout."""
 _CUT = "\n  ..."
-"""Ends a list of frames of which there are too many to write them all down."""
+"""The end of a list of frames that ``faulthandler`` has shortened."""
 
 _MODEL = str(Path(__file__).parents[2])
 
@@ -33,9 +33,9 @@ class _Frame(NamedTuple):
 
 
 def enable_crash_dump(file: Connection, flush: Callable[[], None]) -> None:
-    """Write crash dumps to ``file`` from now on; ``flush`` sends what waits to be sent.
+    """Write crash dumps to ``file`` from now on; ``flush`` sends the waiting events.
 
-    ``os._exit``, of which the interpreter takes no notice, writes and flushes before it ends the process.
+    ``os._exit``, which the interpreter does not notice, writes a dump and flushes before it ends the process.
     """
     number = file.fileno()
     os.set_inheritable(number, False)
@@ -54,20 +54,20 @@ def enable_crash_dump(file: Connection, flush: Callable[[], None]) -> None:
 
 
 def exit_unless_renewed(file: Connection, seconds: float) -> None:
-    """End the process with a crash dump unless this is called again in time, which code in C may prevent."""
+    """End the process with a crash dump unless this is called again in time, which C code may prevent."""
     faulthandler.dump_traceback_later(seconds, exit=True, file=file.fileno())
 
 
 def timed_out(crash_dump: str) -> bool:
-    """Whether the process ended because ``exit_unless_renewed`` was not called again."""
-    return _KEPT in crash_dump
+    """Return whether the process ended because ``exit_unless_renewed`` was not called again."""
+    return _TIMEOUT in crash_dump
 
 
 def place_in(crash_dump: str, programs: Iterable[str]) -> str:
-    """Where in the learner's own files a thread stood, as "node.py:42, in tick"; "" if nowhere.
+    """Return where in the learner's files a thread was, as "node.py:42, in tick"; "" for none.
 
-    ``programs`` are the paths of the programs. The thread that crashed takes precedence, then one that was
-    computing in a file of theirs.
+    ``programs`` are the paths of the programs. The crashed thread takes precedence, then one that was
+    computing in one of their files.
     """
     paths = [Path(each) for path in programs for each in (path, os.path.realpath(path))]
     folders = tuple(f"{path.parent}{os.sep}" for path in paths)
@@ -81,12 +81,12 @@ def place_in(crash_dump: str, programs: Iterable[str]) -> str:
 
 
 def overflowed(crash_dump: str) -> bool:
-    """Whether the thread that crashed had called more functions within one another than can be told."""
+    """Return whether the crashed thread had more nested calls than the dump shows."""
     return any(_CUT in text for text in _threads(crash_dump)[:1])
 
 
 def _threads(crash_dump: str) -> list[str]:
-    """The frames of each thread, those of the current one first."""
+    """Return the frames of each thread, those of the current one first."""
     found = sorted(_THREAD.findall(crash_dump), key=lambda each: each[0] != "Current thread")
     return [text for _, text in found]
 

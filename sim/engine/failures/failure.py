@@ -1,4 +1,4 @@
-"""Tells in one sentence how a program failed: the learner's own file and line, what came up, what to do."""
+"""Describes in one sentence how a program failed: the learner's file and line, the error, what to do."""
 
 import traceback
 from dataclasses import dataclass
@@ -14,16 +14,20 @@ _MODEL = Path(__file__).parents[2]
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """How a program failed: the learner's file and line (0: none), what happened there, and what to do."""
+    """How a program failed: the learner's file and line (0: none), what happened there, and what to do.
+
+    ``exception`` is the exception's class.
+    """
 
     file: str
     line: int
     what: str
     advice: str = ""
+    exception: str = ""
 
     @property
     def sentence(self) -> str:
-        """All in one sentence."""
+        """The failure as one sentence."""
         advice = f"; {self.advice}" if self.advice else ""
         return f"{_place(self.file, self.line)}: {self.what}{advice}"
 
@@ -31,36 +35,36 @@ class Failure:
 def failure(error: BaseException, path: str, folder: str) -> Failure:
     """Describe an exception that a program did not catch.
 
-    ``path`` is the program's file; files in ``folder`` count as the learner's own too.
+    ``path`` is the program's file; files in ``folder`` also count as the learner's own.
     """
+    exception, text = type(error).__name__, _text(error)
     if isinstance(error, SyntaxError) and error.filename and _is_own(error.filename, path, folder):
-        return Failure(error.filename, error.lineno or 0, str(error.msg))
-    text = _text(error)
-    what = f"the program raised {type(error).__name__}{f': {text}' if text else ''}"
+        return Failure(error.filename, error.lineno or 0, str(error.msg), exception=exception)
+    what = f"the program raised {exception}{f': {text}' if text else ''}"
     rejected = rejected_callback(error)
     if rejected is not None and _is_own(rejected.file, path, folder):
-        return Failure(rejected.file, rejected.line, what, rejected.advice)
+        return Failure(rejected.file, rejected.line, what, rejected.advice, exception)
     found = _innermost(error, path, folder)
     if found is None:
-        return Failure(path, 0, what, advice_on(error, None))
-    return Failure(found[0].f_code.co_filename, found[1], what, advice_on(error, found[0]))
+        return Failure(path, 0, what, advice_on(error, None), exception)
+    return Failure(found[0].f_code.co_filename, found[1], what, advice_on(error, found[0]), exception)
 
 
 def breakdown(error: Exception) -> str:
-    """The sentence for an exception of the engine's own, outside all programs."""
+    """Return a sentence on an exception of the engine itself, outside all programs."""
     frames = traceback.extract_tb(error.__traceback__)
     place = f" ({_place(frames[-1].filename, frames[-1].lineno or 0)})" if frames else ""
     return f"the engine failed: {type(error).__name__}: {error_text(error)}{place}; cbtui doctor may tell why"
 
 
 def place_of(error: BaseException, path: str, folder: str) -> str:
-    """Where in the learner's own files an exception came up, as " (file:line)"; empty where it did not."""
+    """Return where in the learner's own files an exception was raised, as "file:line"; "" for nowhere."""
     found = _innermost(error, path, folder)
-    return "" if found is None else f" ({_place(found[0].f_code.co_filename, found[1])})"
+    return "" if found is None else _place(found[0].f_code.co_filename, found[1])
 
 
 def _text(error: BaseException) -> str:
-    """An exception's text, the names of modules as the learner knows them."""
+    """Return an exception's text, with module names as the learner knows them."""
     text = error_text(error)
     if isinstance(error, ImportError):
         text = text.partition(" (")[0]
@@ -80,7 +84,7 @@ def _is_own(file: str, path: str, folder: str) -> bool:
 
 
 def is_learners(file: str, folder: str | Path) -> bool:
-    """Whether a file in ``folder`` or below is the learner's, and neither installed nor the model's."""
+    """Return whether a file is below ``folder``, and neither installed nor part of the model."""
     where = Path(file)
     within = where.is_relative_to(folder) and not where.is_relative_to(_MODEL)
     return within and "site-packages" not in where.parts

@@ -1,4 +1,4 @@
-"""What a learner has to do about a module that cannot be found: what it is, and where it comes from."""
+"""Advice on a module that cannot be found: what it is, and where it comes from."""
 
 import pkgutil
 import sys
@@ -42,8 +42,8 @@ _PIP_BY_NAME = """
     PyQt5 PySide6 casadi control cvxpy depthai filterpy flask gpiozero gymnasium keyboard matplotlib mediapipe
     networkx numba open3d pandas plotly py_trees pyaudio pygame pymavlink pynput pyproj pyrealsense2 requests
     scipy seaborn shapely smbus2 sympy tensorflow torch torchvision tqdm ultralytics utm websockets
-""".split()  # noqa: SIM905 -- one to a line they would hide the rest
-"""Those whose distributions are named as they are."""
+""".split()  # noqa: SIM905 -- one name a line would be long
+"""Modules whose distributions have the same name."""
 
 _ROS_1 = {
     "actionlib": "rclpy.action has ActionClient and ActionServer",
@@ -65,7 +65,7 @@ _ROS_1 = {
     "smach": "py_trees takes its place",
     "tf": "tf2_ros takes its place, and tf_transformations that of tf.transformations",
 }
-"""Packages of ROS 1, with what ROS 2 has in their place."""
+"""Packages of ROS 1, with their replacement in ROS 2."""
 
 _GEOMETRY = "tf2_geometry_msgs transforms messages, and tf_transformations has quaternions and matrices"
 _PICTURES = "cv_bridge makes numpy arrays of sensor_msgs/msg/Image"
@@ -100,7 +100,7 @@ _ROS_2 = {
     "urdf_parser_py": _THERE,
     "xacro": "give robot_description as URDF",
 }
-"""Python packages of ROS 2 that are not here, with what does the work in their place."""
+"""Python packages of ROS 2 that are not modelled, with a replacement."""
 
 _INTERFACES = """
     apriltag_msgs aruco_msgs autoware_msgs cartographer_ros_msgs controller_manager_msgs
@@ -109,7 +109,7 @@ _INTERFACES = """
     pcl_msgs px4_msgs radar_msgs robot_localization ros_gz_interfaces rtcm_msgs slam_toolbox turtlebot3_msgs
     ublox_msgs ur_msgs velodyne_msgs webots_ros2_msgs
 """.split()  # noqa: SIM905 -- as above
-"""Packages of interfaces that others publish, and that are not here."""
+"""Packages of interfaces by other publishers, which cbtui does not have."""
 
 _HERE = "into the Python that runs cbtui"
 _OWN = "your own are found beside the file or in its workspace, as {0}/msg/Name.msg"
@@ -133,7 +133,7 @@ _OURS = {"cbtui", "lessons", "sim"}
 
 
 def on_missing(module: str) -> str:
-    """What to do about a module that cannot be imported, in half a sentence."""
+    """Return advice on a module that cannot be imported, as a clause."""
     package = module.partition(".")[0]
     if package in _OURS:
         return f"{package} is a package of cbtui's own, which hides yours; rename yours"
@@ -157,7 +157,7 @@ def _on_unknown(package: str) -> str:
 
 
 def _nearest(name: str, known: Iterable[str]) -> str:
-    """A likely slip of the fingers; that both end with ``_msgs``, say, does not make two packages alike."""
+    """Return advice on a likely typing error; a common ending such as ``_msgs`` is not counted."""
     stems = {_stem(each): each for each in known if not each.startswith("_")}
     close = get_close_matches(_stem(name), stems, n=1, cutoff=0.75)
     return f"did you mean {stems[close[0]]!r}?" if close else ""

@@ -1,4 +1,4 @@
-"""What a learner has to do about a name that a package of ROS 2 has, and the model of it here has not."""
+"""Advice on a name that a package of ROS 2 has and its model lacks."""
 
 import re
 
@@ -50,15 +50,15 @@ _MISSING = (
     ),
 )
 _INSTEAD = {f"{module}.{name}": instead for module, names, instead in _MISSING for name in names.split()}
-"""What does the work of what is missing."""
+"""The replacement of each missing name."""
 
 
 def on_missing_name(module: str, name: str) -> str:
-    """What to do about a name that a module has in ROS 2 and lacks here, in half a sentence; else empty."""
+    """Return advice on a name that a module has in ROS 2 and lacks in the model, as a clause; else ""."""
     whole = f"{names_for_programs(module)}.{name}"
     return f"{whole} is not modelled here; {_INSTEAD[whole]}" if whole in _INSTEAD else ""
 
 
 def names_for_programs(text: str) -> str:
-    """A text with the names of modules as programs import them."""
+    """Return a text with module names as programs import them."""
     return _HOME.sub("", text)

@@ -1,4 +1,4 @@
-"""Tracebacks without the frames of the model, of the engine and of what these call: the learner's alone."""
+"""Tracebacks of the learner's code alone, without frames of the model and the engine."""
 
 import traceback
 from types import TracebackType
@@ -8,10 +8,10 @@ from sim.probes.own_code import is_library, is_own, module_root
 
 
 class LearnersTraceback(traceback.TracebackException):
-    """A traceback as Python prints it, of what the learner's code called and of what that called.
+    """A traceback as Python prints it, of the learner's code and what that called.
 
-    Frames of the model and of the engine are left out, and those of Python's own modules and of installed
-    packages where these run on behalf of the model. Where no frame is left, the exception is told alone.
+    Frames of the model and the engine are left out, and those of Python's modules and installed packages that
+    the model called. If no frame is left, only the exception is printed.
     """
 
     def __init__(
@@ -28,9 +28,9 @@ class LearnersTraceback(traceback.TracebackException):
 
 
 def leave_out_own_frames() -> None:
-    """Have all that goes through Python's ``traceback`` module, as ``logging`` does, printed in this way.
+    """Print all tracebacks of Python's ``traceback`` module, which ``logging`` also uses, in this way.
 
-    The module looks its class up whenever it prints (Python 3.11 to 3.13).
+    The module looks up its class whenever it prints (Python 3.11 to 3.13).
     """
     module: Any = traceback
     module.TracebackException = LearnersTraceback

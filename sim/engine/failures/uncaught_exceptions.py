@@ -13,15 +13,15 @@ Tell = Callable[[str], None]
 
 
 def report_uncaught(tell: Tell, path: str, folder: str) -> None:
-    """Have ``tell`` called with a sentence for each line they come from, and their tracebacks printed.
+    """Print the tracebacks of such exceptions, and pass one sentence for each source line to ``tell``.
 
-    ``path`` is the program's file; files in ``folder`` count as the learner's own too. What came up in none
-    of these is only printed.
+    ``path`` is the program's file; files in ``folder`` also count as the learner's own. Exceptions from
+    outside these files are only printed.
     """
     told: set[str] = set()
 
     def say(error: BaseException, what_follows: str) -> None:
-        place = place_of(error, path, folder).strip(" ()")
+        place = place_of(error, path, folder)
         if place and place not in told:
             told.add(place)
             text = f"{type(error).__name__}: {error_text(error)}".removesuffix(": ")
@@ -51,9 +51,9 @@ def report_uncaught(tell: Tell, path: str, folder: str) -> None:
 
 
 def _source(failed: Any) -> tuple[str, str | None]:
-    """The function or object that an exception came out of, and Python's words for what it was called for.
+    """Return the function or object that an exception came from, and Python's heading for it.
 
-    From 3.13 on Python may hand over words alone, which hold an address and so differ from run to run.
+    From 3.13 on Python may pass a heading alone; it has an address in it, and so differs from run to run.
     """
     if failed.object is None and failed.exc_traceback is not None:
         return failed.exc_traceback.tb_frame.f_code.co_qualname, None

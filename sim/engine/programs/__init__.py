@@ -1,1 +1,1 @@
-"""The programs of a run: found, started, run and ended as CPython and ROS 2 do."""
+"""Finds, starts, runs and ends the programs of a run as CPython and ROS 2 do."""

@@ -1,4 +1,4 @@
-"""Processes that a learner's program starts by itself, with ``multiprocessing``: they compute and print."""
+"""Processes that a learner's program starts with ``multiprocessing``: they may compute and print."""
 
 import multiprocessing
 import multiprocessing.process
@@ -15,27 +15,27 @@ from sim.engine.stdio.descriptors import print_to_descriptors
 from sim.ros.middleware.host import Host
 from sim.trace.events import AnyEvent
 
-# Kept from before a clock puts its own in its place.
+# Kept from before a clock replaces it.
 _sleep = time.sleep
 
 _POLL = 0.5
-"""Seconds after which a child notices that its engine is gone."""
+"""Seconds between two checks of a child whether its engine is alive."""
 
 
 def allow_children(host: Host, outbox: Outbox, pipe: Connection) -> None:
-    """Let programs start processes; what these print goes to the engine's descriptors.
+    """Let programs start processes; their output goes to the engine's descriptors.
 
-    They are forked, as by default on Linux, and end with the engine, whose ``pipe`` they have no part in.
-    ROS stays with the program: a child that uses it gets NotImplementedError.
+    They are forked, as by default on Linux, do not keep the engine's ``pipe``, and end with the engine. A
+    child that uses ROS gets NotImplementedError.
     """
     multiprocessing.set_start_method("fork", force=True)  # the engine itself was spawned
     current: Any = multiprocessing.process.current_process()
-    current._config["daemon"] = False  # a daemon must not have children, and the engine is one
+    current._config["daemon"] = False  # a daemon, as the engine is, must not have children
     engine = os.getpid()
 
     def be_child() -> None:
         lock: Any = host.lock
-        lock._at_fork_reinit()  # whoever held it is a thread of the engine
+        lock._at_fork_reinit()  # its holder may be a thread of the engine
         outbox._waiting = _NoRos()
         with suppress(OSError):  # a program may have closed it
             pipe.close()
@@ -46,7 +46,7 @@ def allow_children(host: Host, outbox: Outbox, pipe: Connection) -> None:
 
 
 def refuse_children() -> None:
-    """Have every start of a process say that there are none on virtual time."""
+    """Make every start of a process raise NotImplementedError, as virtual time has none."""
 
     def start(_process: object) -> NoReturn:
         raise NotImplementedError("multiprocessing does not live on virtual time; use --clock real")
@@ -61,14 +61,9 @@ def refuse_children() -> None:
 
 
 class _NoRos(deque[AnyEvent]):
-    """Stands in a child for the events that wait to be sent: nobody would send them."""
+    """Replaces the queue of events in a child, which has no thread to send them; ``append`` raises."""
 
     def append(self, _event: AnyEvent) -> NoReturn:
-        """Refuse.
-
-        Raises:
-            NotImplementedError: always.
-        """
         raise NotImplementedError(
             "a process that a program starts with multiprocessing cannot use ROS here, only compute and "
             "print; hand its results to the program, and publish and log there"

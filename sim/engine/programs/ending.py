@@ -1,7 +1,7 @@
-"""What CPython does once a script has ended, done while the trace still takes what comes of it.
+"""Does what CPython does at the end of a script, while the trace still takes events.
 
-The engine leaves by ``os._exit``, since daemon threads and libraries in C may not survive an interpreter that
-tears itself down. So exit functions, destructors and the flushing of files are seen to here, before that.
+The engine exits by ``os._exit``, as daemon threads and C libraries may crash while an interpreter finalises.
+So exit functions and destructors run here before that, and files are flushed.
 """
 
 import atexit
@@ -16,22 +16,22 @@ from typing import Any
 from sim.clock.virtual_threads import start_outside
 
 GRACE = 3.0
-"""Real seconds that a program gets to end once its run is over; then it is ended by force."""
+"""Real seconds in which a program must end after its run; then it is ended by force."""
 VIRTUAL_GRACE = 5_000_000_000
-"""Virtual nanoseconds that it gets, on virtual time."""
+"""The same limit in nanoseconds of virtual time."""
 TO_LEAVE = 1.5
-"""Real seconds that an engine may need beyond the grace until its process is gone."""
+"""Real seconds after ``GRACE`` in which an engine's process must be gone."""
 
-# Kept from before a clock puts its own in its place.
+# Kept from before a clock replaces it.
 _Thread = threading.Thread
 _join = threading.Thread.join
 
 _TO_FLUSH = 0.3
-"""Real seconds for files to be flushed where a program is ended by force."""
+"""Real seconds for flushing the files of a program that is ended by force."""
 
 
 def set_engine_apart() -> set[str]:
-    """Have the garbage collector pass over all objects so far; returns the names of the modules so far."""
+    """Exclude all objects so far from garbage collection; return the names of the modules so far."""
     gc.freeze()
     return set(sys.modules)
 
@@ -39,13 +39,13 @@ def set_engine_apart() -> set[str]:
 def finalise(modules_before: set[str], is_own: Callable[[str], bool]) -> None:
     """Run exit functions, destroy what a program's modules hold, and flush its files.
 
-    Modules imported since ``modules_before`` are dropped if ``is_own`` says so of their files. What is still
-    used, by a daemon thread or a node on the network, is not destroyed; its files are flushed all the same.
+    Modules imported since ``modules_before`` are dropped if ``is_own`` holds for their files. Objects that a
+    daemon thread or a node on the network still uses are not destroyed; their files are flushed too.
     """
     for step in (
         run_thread_exit_functions,
         atexit._run_exitfuncs,
-        _close_compressed,  # in a cycle, the collector may end a file before what is written through it
+        _close_compressed,  # the collector may close a file of a cycle before the one that writes to it
         lambda: _drop_modules(modules_before, is_own),
         _close_compressed,
     ):
@@ -56,7 +56,7 @@ def finalise(modules_before: set[str], is_own: Callable[[str], bool]) -> None:
 
 
 def run_thread_exit_functions() -> None:
-    """Run what is to run before threads are joined: thread pools end their idle threads there."""
+    """Run the functions that come before the joining of threads: thread pools end idle threads there."""
     exits: list[Callable[[], None]] = threading._threading_atexits  # type: ignore[attr-defined]
     while exits:
         exits[-1]()
@@ -72,21 +72,21 @@ def _drop_modules(before: set[str], is_own: Callable[[str], bool]) -> None:
 
 
 def flush_files() -> None:
-    """Flush every file that is open for writing, those first that are written through others."""
+    """Flush every file that is open for writing, text files before the binary files under them."""
     for file in sorted(_files(), key=lambda each: not isinstance(each, io.TextIOBase)):
-        with suppress(Exception):  # CPython drops them here, too
+        with suppress(Exception):  # CPython drops errors here, too
             file.flush()
 
 
 def flush_files_soon() -> None:
-    """Flush the files, unless that takes long: a pipe may take nothing."""
+    """Flush the files, but wait only a little: a pipe may be full."""
     flushing = _Thread(target=flush_files, daemon=True)
     start_outside(flushing)
     _join(flushing, _TO_FLUSH)
 
 
 def _close_compressed() -> None:
-    """Flush all files, and write the ends of compressed ones, without which these cannot be read."""
+    """Flush all files, and close compressed ones, which cannot be read without their end."""
     flush_files()
     for file in _files():
         if not isinstance(file, _PLAIN):

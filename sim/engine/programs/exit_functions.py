@@ -1,4 +1,4 @@
-"""What a program registers with ``atexit``: one of several programs has it run as that program ends."""
+"""Exit functions of programs (``atexit``): those of one of several programs run when that program ends."""
 
 import atexit
 import sys
@@ -13,10 +13,10 @@ _Call = tuple[Callable[..., object], tuple[Any, ...], Mapping[str, Any]]
 
 
 def share_exit_functions() -> None:
-    """Keep what each of several programs registers apart, for ``run_exit_functions``. Call it once.
+    """Keep the exit functions of several programs apart, for ``run_exit_functions``. Call it once.
 
-    What serves all of them runs at the run's end: functions registered by an only program, by Python's own
-    and by installed modules, and as a module is imported.
+    All others run at the end of the run: those of an only program, of Python's and installed modules, and
+    those registered during an import.
     """
     register, unregister = atexit.register, atexit.unregister
 
@@ -38,7 +38,7 @@ def share_exit_functions() -> None:
 
 
 def run_exit_functions() -> None:
-    """Run those that the calling thread's program registered, the last first; what one raises is told."""
+    """Run those of the calling thread's program, the last first; report their exceptions."""
     own = of_process(_calls)
     while own:
         function, args, kwargs = own.pop()

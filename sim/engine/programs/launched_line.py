@@ -3,7 +3,6 @@
 import shlex
 from collections.abc import Sequence
 
-from sim.engine.programs.line_tools import LineTools
 from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.programs.starting import ProgramStarter
 from sim.launch import OnOutput
@@ -13,7 +12,7 @@ from sim.trace.events import Printed, ProcessEnded
 
 
 class LaunchedLine:
-    """Carries out the line from the moment of making on."""
+    """Starts the line when it is created."""
 
     def __init__(
         self,
@@ -28,12 +27,12 @@ class LaunchedLine:
         self._on_exit = on_exit
         self._on_output = on_output
         self.number = programs.announce(label)
-        tools = LineTools(starter, self._take, self._end)
-        self._line = ShellLine(ModelGround(programs.host), shlex.join(words), tools)
+        ground = ModelGround(programs.host)
+        self._line = ShellLine(ground, shlex.join(words), starter, self._take, self._end)
         self._line.start()
 
     def interrupt(self) -> None:
-        """End it as Ctrl-C would, and as any other signal does."""
+        """End the line as Ctrl-C would; other signals do the same."""
         self._line.interrupt()
 
     terminate = kill = interrupt

@@ -1,11 +1,11 @@
-"""A launch in an engine: its processes are programs of the run, its time is the run's."""
+"""A launch in an engine: its processes are programs of the run, on the run's time."""
 
 import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from sim.engine.programs.launched_line import LaunchedLine
-from sim.engine.programs.program import ProgramOutcome, ProgramSpec
+from sim.engine.programs.program import ProgramOutcome, program_of
 from sim.engine.programs.programs import ProgramSupervisor, RunningProgram
 from sim.engine.programs.starting import ProgramStarter
 from sim.launch import LaunchRun, OnOutput, ProcessSpec, RunningProcess
@@ -17,7 +17,7 @@ from sim.trace.events import Printed
 class ModelLaunch:
     """Carries out one launch file. It counts as running until the launch is over.
 
-    Everything that the launch does, it does one thing at a time: on whatever thread, under one lock.
+    The launch is single-threaded by a lock: any thread may run it.
     """
 
     def __init__(
@@ -37,7 +37,7 @@ class ModelLaunch:
         self._run = LaunchRun(path, arguments, self, packages=packages, on_finish=self._over)
 
     def start(self) -> "ModelLaunch":
-        """Begin.
+        """Start the launch and return it.
 
         Raises:
             LaunchError: the launch file cannot be carried out.
@@ -46,13 +46,13 @@ class ModelLaunch:
         try:
             with self._lock:
                 self._run.start()
-        except BaseException:  # whatever it is, nothing is held up by a launch that did not begin
+        except BaseException:  # a launch that did not begin must not keep the run alive
             self._programs.release()
             raise
         return self
 
     def interrupt(self) -> None:
-        """End it as Ctrl-C would; does not wait."""
+        """End the launch as Ctrl-C would; does not wait."""
         self._later(0, self._run.interrupt)
 
     def _over(self, status: int) -> None:
@@ -62,7 +62,7 @@ class ModelLaunch:
         self._programs.release()
 
     def _later(self, seconds: float, action: Callable[[], None]) -> None:
-        """Have something done under the lock, on a thread of its own: it may wait for the lock."""
+        """Run an action under the lock, on a thread of its own, which may wait for the lock."""
 
         def begin() -> None:
             self._host.clock.start_thread(self._locked(action), "launch")
@@ -79,29 +79,17 @@ class ModelLaunch:
     def _under_lock(self, on_exit: OnExit) -> OnExit:
         return lambda status: self._locked(lambda: on_exit(status))()
 
-    # What a launch needs of the machine
+    # The launch's machine
 
     def start_process(self, spec: ProcessSpec, on_exit: OnExit, on_output: OnOutput) -> RunningProgram:
         """Start a program."""
         if spec.working_folder is not None:
             raise NotImplementedError("cwd: all programs of a run share one working folder")
-        program = ProgramSpec(
-            path=str(spec.path),
-            folder=str(spec.folder),
-            arguments=tuple(spec.arguments),
-            module=spec.module,
-            function=spec.function,
-        )
-
         leave = self._under_lock(on_exit)
-
-        def ended(outcome: ProgramOutcome) -> None:
-            leave(outcome.status)
-
         return self._programs.start(
-            program,
+            program_of(spec, spec.arguments),
             spec.label,
-            ended,
+            lambda outcome: leave(outcome.status),
             environment=spec.environment,
             shows_stdout=spec.output != "log",
             has_keyboard=False,

@@ -1,4 +1,6 @@
-"""Runs a learner's file as ``python FILE ARGS`` would, and tells in one sentence how it ended."""
+"""Runs a learner's file as ``python FILE ARGS`` would, and describes in one sentence how it ended."""
+
+from __future__ import annotations
 
 import ast
 import importlib.util
@@ -8,14 +10,14 @@ import sys
 import threading
 import traceback
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from types import CodeType, ModuleType
-from typing import Any
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
 
-from sim.engine.failures.advice import misplaced, silence
+from sim.engine.failures.advice import misplaced, never_spun
 from sim.engine.failures.failure import Failure, failure, place_of
 from sim.engine.programs.ending import run_thread_exit_functions
 from sim.engine.programs.source import NothingToRunError, compiled, read_source
@@ -24,8 +26,12 @@ from sim.interpreter.exception_text import error_line
 from sim.ros.context.signals import deliver_sigint
 from sim.ros.middleware.process import Process, current_process, process_of
 
+if TYPE_CHECKING:
+    from sim.launch import ProcessSpec
+    from sim.packages import Executable
+
 STOPPED = "it was stopped"
-"""What is said of a program that ended because somebody wanted that."""
+"""The sentence on a program that was asked to end."""
 
 _INTERRUPTED = 130
 
@@ -34,8 +40,8 @@ _INTERRUPTED = 130
 class ProgramSpec:
     """What to run: the file ``path`` as a script, or ``function`` of the module ``module``.
 
-    ``folder`` is where imports look first. ``arguments`` are those behind the program's own name. ``text`` is
-    run in place of the file's, "" for that.
+    ``folder`` is where imports look first. ``arguments`` follow the program's own name. ``text`` replaces the
+    file's source; "": not replaced.
     """
 
     path: str
@@ -47,15 +53,22 @@ class ProgramSpec:
 
 
 def script(path: str, arguments: tuple[str, ...] = (), text: str = "") -> ProgramSpec:
-    """The program that a file is, as Python runs it: what a link leads to imports from its own folder."""
+    """Return the program of a file as Python runs it: the target of a link imports from its own folder."""
     return ProgramSpec(path, str(Path(path).resolve().parent), arguments, text)
+
+
+def program_of(found: Executable | ProcessSpec, arguments: Sequence[str]) -> ProgramSpec:
+    """Return an executable of a package, or a process of a launch, as a program."""
+    return ProgramSpec(
+        str(found.path), str(found.folder), tuple(arguments), module=found.module, function=found.function
+    )
 
 
 @dataclass(frozen=True, slots=True)
 class ProgramOutcome:
     """How a program ended: a sentence, whether it failed, the exit code, and the exception ("" for none).
 
-    ``failure`` tells where that came up, and what to do.
+    ``failure`` has the exception's source line and advice.
     """
 
     sentence: str
@@ -66,16 +79,16 @@ class ProgramOutcome:
 
 
 def run_program(program: ProgramSpec) -> ProgramOutcome:
-    """Run it in this thread, and wait for the threads that it leaves.
+    """Run a program in this thread, and wait for the threads that it leaves.
 
-    A file that defines ``main`` and does nothing with it, as one for an entry point may, has it called.
+    If a file only defines ``main``, as a module with an entry point may, ``main`` is called.
     """
     warnings.formatwarning = _as_short_warning
     if program.folder not in sys.path:
         sys.path.insert(0, program.folder)
     outcome = _outcome_of(program)
     if outcome.status == _INTERRUPTED:
-        deliver_sigint(current_process())  # what spins on threads ends
+        deliver_sigint(current_process())  # ends spins on other threads
     for _ in range(2):  # Ctrl-C while main waits for its threads does not end these
         with suppress(KeyboardInterrupt):
             _join_left_threads()
@@ -94,11 +107,11 @@ def _outcome_of(program: ProgramSpec) -> ProgramOutcome:
         return ProgramOutcome(str(error), failed=True, status=1)
     except KeyboardInterrupt:
         return ProgramOutcome(STOPPED, failed=False, status=_INTERRUPTED)
-    except BaseException as error:  # noqa: BLE001 -- whatever a learner's program raises ends its run, not the engine
+    except BaseException as error:  # noqa: BLE001 -- an error of a learner's program ends its run, not the engine
         traceback.print_exception(error)
         told = failure(error, program.path, program.folder)
         return ProgramOutcome(told.sentence, failed=True, status=1, error=error_line(error), failure=told)
-    return ProgramOutcome(silence() or _returned(), failed=status != 0, status=status)
+    return ProgramOutcome(never_spun() or _returned(), failed=status != 0, status=status)
 
 
 def _returned() -> str:
@@ -107,11 +120,11 @@ def _returned() -> str:
 
 
 def _load(program: ProgramSpec) -> Callable[[], object]:
-    """What has to be called to run the program."""
+    """Return the function that runs the program."""
     if program.function:
         source = _source(program)
         names = _namespace(program, program.module)
-        exec(_code(program, source), names)
+        exec(compiled(source, program.path), names)
         if not callable(names.get(program.function)):
             missing = f"defines no {program.function}(), which its package names as its entry point"
             raise NothingToRunError(_on_no_entry(program, source, program.function, missing))
@@ -120,7 +133,7 @@ def _load(program: ProgramSpec) -> Callable[[], object]:
 
 
 def _source(program: ProgramSpec) -> str:
-    """The program's source; tracebacks show its lines, too, if it is another than the file's."""
+    """Return the program's source; if it replaces the file's, tracebacks show its lines too."""
     if not program.text:
         return read_source(Path(program.path))
     lines = program.text.splitlines(keepends=True)
@@ -131,7 +144,7 @@ def _source(program: ProgramSpec) -> str:
 def _run_script(program: ProgramSpec) -> object:
     source = _source(program)
     names = _namespace(program, "__main__")
-    exec(_code(program, source), names)
+    exec(compiled(source, program.path), names)
     if _starts_itself(source):
         return None
     if not callable(names.get("main")):
@@ -147,7 +160,7 @@ def _on_no_entry(program: ProgramSpec, source: str, function: str, otherwise: st
 
 
 def _entry(program: ProgramSpec, function: Callable[..., object]) -> Callable[[], object]:
-    """The function, if it can be called as an entry point is."""
+    """Return a function if it can be called as an entry point, without arguments."""
     try:
         inspect.signature(function).bind()
     except TypeError as error:
@@ -159,12 +172,8 @@ def _entry(program: ProgramSpec, function: Callable[..., object]) -> Callable[[]
     return function
 
 
-def _code(program: ProgramSpec, source: str) -> CodeType:
-    return compiled(source, program.path)
-
-
 def _namespace(program: ProgramSpec, name: str) -> dict[str, Any]:
-    """The globals of a module of its own: two programs of one file share nothing."""
+    """Return the globals of a new module: two programs of one file share nothing."""
     spec = importlib.util.spec_from_file_location(name, program.path)
     assert spec is not None
     module: ModuleType = importlib.util.module_from_spec(spec)
@@ -175,12 +184,12 @@ def _namespace(program: ProgramSpec, name: str) -> dict[str, Any]:
 
 
 def _status(returned: object) -> int:
-    """The exit code of a program whose entry point returned that: ``sys.exit`` is called with it."""
+    """Return the exit code for a value that an entry point returned, as ``sys.exit`` does."""
     return returned if isinstance(returned, int) else 0 if returned is None else 1
 
 
 def _starts_itself(source: str) -> bool:
-    """Whether the file does more at its top level than to import, define and assign."""
+    """Return whether the top level of a file does more than import, define and assign."""
     passive = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Assign)
     body = ast.parse(source).body
     return any(not isinstance(each, (*passive, ast.AnnAssign)) and not _is_text(each) for each in body)
@@ -193,7 +202,7 @@ def _is_text(statement: ast.stmt) -> bool:
 def _as_short_warning(
     message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None
 ) -> str:
-    """A warning as Python prints it, but with the file's name alone."""
+    """Format a warning as Python does, but with the file's name instead of its path."""
     source = f"\n  {line.strip()}" if line else ""
     return f"{Path(filename).name}:{lineno}: {category.__name__}: {message}{source}\n"
 
@@ -211,26 +220,32 @@ def _join_left_threads() -> None:
 
 
 def threads_left_by(process: Process) -> list[threading.Thread]:
-    """The threads of a process that Python waits for: neither daemons nor the calling one.
+    """Return the threads of a process that Python waits for: neither daemons nor the calling one.
 
-    Those of a pool in a run of several programs end with the run, as they serve it until then.
+    In a run of several programs the threads of a pool end with the run.
     """
-    pools = sys.modules.get("concurrent.futures.thread")
-    pooled = getattr(pools, "_threads_queues", ())
+    pooled = pooled_threads()
     return [
         each
         for each in threading.enumerate()
         if not each.daemon
         and each is not threading.current_thread()
         and process_of(each) is process
-        and (process.number == 0 or each not in pooled)
+        and (process.number == 0 or each.ident not in pooled)
     ]
+
+
+def pooled_threads() -> set[int | None]:
+    """Return the identifiers of the worker threads of all thread pools."""
+    pools = sys.modules.get("concurrent.futures.thread")
+    return {each.ident for each in getattr(pools, "_threads_queues", ())}
 
 
 def _exited(exit_: SystemExit, program: ProgramSpec) -> ProgramOutcome:
     if exit_.code in {None, 0}:
         return ProgramOutcome("the program returned", failed=False)
-    place = place_of(exit_, program.path, program.folder)
+    found = place_of(exit_, program.path, program.folder)
+    place = f" ({found})" if found else ""
     if isinstance(exit_.code, int):
         sentence = f"the program ended with exit code {exit_.code}{place}"
         return ProgramOutcome(sentence, failed=True, status=exit_.code)

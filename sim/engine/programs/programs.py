@@ -1,7 +1,7 @@
-"""The programs of a run, each in a process of its own: its context, executor, loggers and arguments.
+"""The programs of a run, each in a modelled process with its own context, executor, loggers and arguments.
 
-A run's only program has the engine's main thread; several run on threads of their own, which stand for the
-main threads of their processes.
+A run's only program uses the engine's main thread. Several run on threads of their own, which represent
+the main threads of their processes.
 """
 
 import signal
@@ -23,7 +23,7 @@ from sim.ros.middleware.host import Host
 from sim.ros.middleware.process import Process
 from sim.trace.events import AnyEvent, Notice, ProcessAppeared, ProcessEnded, Severity
 
-# Kept from before a clock puts its own in its place.
+# Kept from before a clock replaces it.
 _set_handler = signal.signal
 
 Ended = Callable[[ProgramOutcome], None]
@@ -31,7 +31,7 @@ Ended = Callable[[ProgramOutcome], None]
 
 @dataclass(eq=False)
 class RunningProgram:
-    """A program that was started; ``number`` stands for the process id."""
+    """A started program; ``number`` represents its process id."""
 
     programs: "ProgramSupervisor"
     process: Process
@@ -42,33 +42,33 @@ class RunningProgram:
 
     @property
     def number(self) -> int:
-        """What tells its process from others on the trace."""
+        """The number of its process on the trace."""
         return self.process.number
 
     def interrupt(self) -> None:
-        """Have it end as Ctrl-C would; nothing happens once it has ended."""
+        """End the program as Ctrl-C would; does nothing once it has ended."""
         deliver_sigint(self.process)
         if self.outcome is None and self.thread is not None:
             self.process.host.clock.interrupt(self.thread)
 
     def terminate(self) -> None:
-        """Have it end as SIGTERM would: its contexts end, and nothing is raised."""
+        """End the program as SIGTERM would: its contexts end, and nothing is raised."""
         if self.outcome is None:
             end_contexts_by_signal(self.process)
 
     def kill(self) -> None:
-        """Have it be over whatever it does."""
+        """End the program whatever it does, as SIGKILL would."""
         self.programs.kill(self)
 
 
 @dataclass(eq=False)
 class ProgramSupervisor:
-    """Starts programs and knows which of them run. Thread-safe; ``record`` takes events."""
+    """Starts programs and keeps track of them. Thread-safe; ``record`` takes events."""
 
     host: Host
     record: Callable[[AnyEvent], None]
     failures: list[ProgramOutcome] = field(default_factory=list)
-    """Of the programs, and of what started programs, those that failed, with their names in the sentences."""
+    """The outcomes of programs and launches that failed, with their names in the sentences."""
     _running: list[RunningProgram] = field(default_factory=list)
     _only: list[Process] = field(default_factory=list)
     _numbers: "count[int]" = field(default_factory=lambda: count(1))
@@ -111,7 +111,7 @@ class ProgramSupervisor:
         return running
 
     def announce(self, label: str) -> int:
-        """Put one more process on the trace; returns its number."""
+        """Record a new process; return its number."""
         with self.host.lock:
             number = next(self._numbers)
             self.record(ProcessAppeared(self.host.clock.now(), number, label))
@@ -120,21 +120,21 @@ class ProgramSupervisor:
     def _run(self, running: RunningProgram) -> None:
         running.thread = threading.get_ident()
         outcome = run_program(running.program)
-        if running.outcome is None:  # a program that was killed leaves what it has undone
+        if running.outcome is None:  # a killed program does not clean up
             run_exit_functions()
             finish_lines()
             flush_files()
         self._end(running, outcome)
 
     def kill(self, running: RunningProgram) -> None:
-        """Have a program be over whatever it does: it ends as far as it lets itself be ended."""
+        """Count a program as ended whatever it does; its threads end as far as an interrupt ends them."""
         running.interrupt()
         self._end(running, ProgramOutcome("it was killed", failed=True, status=-signal.SIGKILL))
 
     def _end(self, running: RunningProgram, outcome: ProgramOutcome) -> None:
         with self.host.lock:
             if running.outcome is not None:
-                return  # it was killed, and its thread has ended only now
+                return  # the program was killed, and its thread has ended now
             running.outcome = outcome
             self._running.remove(running)
             now = self.host.clock.now()
@@ -147,7 +147,7 @@ class ProgramSupervisor:
         self.look()
 
     def wait_until(self, condition: Callable[[], bool]) -> None:
-        """Wait until ``condition`` holds; it is asked whenever a program has ended or ``look`` is called."""
+        """Wait until ``condition`` holds; it is checked when a program ends and when ``look`` is called."""
         while True:
             signal = self.host.clock.auto_reset_event()
             with self.host.lock:
@@ -157,32 +157,32 @@ class ProgramSupervisor:
             signal.wait(None)
 
     def look(self) -> None:
-        """Have ``wait_until`` ask again."""
+        """Have ``wait_until`` check its condition again."""
         with self.host.lock:
             waiters, self._waiters = self._waiters, []
         for waiter in waiters:
             waiter.set()
 
     def joint_outcome(self) -> ProgramOutcome:
-        """How the programs that ended did, taken together: the first failure speaks for all."""
+        """Return one outcome for all ended programs: the first failure, if any."""
         if self.failures:
             return replace(self.failures[0], status=1)
         return ProgramOutcome("every program returned", failed=False)
 
     def hold(self) -> None:
-        """Count something as running that starts programs, until ``release``."""
+        """Count one more starter of programs as running, until ``release``."""
         with self.host.lock:
             self._held += 1
 
     def release(self) -> None:
-        """End what ``hold`` began."""
+        """Undo one ``hold``."""
         with self.host.lock:
             self._held -= 1
         self.look()
 
     @property
     def any_run(self) -> bool:
-        """Whether a program runs, or something that starts programs."""
+        """Whether a program runs, or a starter of programs that ``hold`` counts."""
         return bool(self._running) or self._held > 0
 
     @property
@@ -191,21 +191,21 @@ class ProgramSupervisor:
         return [*(running.process for running in self._running), *self._only]
 
     def interrupt_all(self) -> None:
-        """Have every program that runs end as Ctrl-C would."""
+        """End every running program as Ctrl-C would."""
         for running in tuple(self._running):
             running.interrupt()
 
     def end_contexts(self) -> None:
-        """End the contexts of an only program as Ctrl-C does, which is raised in the main thread after that.
+        """End the contexts of an only program as Ctrl-C does, before it is raised in the main thread.
 
-        Several programs are interrupted one by one, in their own main threads.
+        Several programs are interrupted one by one, each in its main thread.
         """
         for process in self._only:
-            process.finish_pools.clear()  # the run is over, whatever their workers are at
+            process.finish_pools.clear()  # the run is over, whatever their workers do
             deliver_sigint(process)
 
 
 def _at_ctrl_c(process: Process, number: int, frame: FrameType | None) -> None:
-    """Do what rclpy does at a SIGINT that a program sends itself, then what Python does."""
+    """Handle a SIGINT that a program sends to itself: first as rclpy does, then as Python does."""
     deliver_sigint(process)
     signal.default_int_handler(number, frame)

@@ -1,11 +1,10 @@
-"""The ``ros2`` lines of a run: carried out by the shell model, told on the trace line by line."""
+"""The ``ros2`` lines of a run: the shell model carries them out, the trace has their output."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
-from sim.engine.programs.line_tools import LineTools
 from sim.engine.programs.starting import ProgramStarter
 from sim.engine.setup import TimedLine
 from sim.ros.middleware.host import Host
@@ -16,9 +15,9 @@ if TYPE_CHECKING:
 
 
 class Lines:
-    """Every line that was given. Its methods need the run's time (see ``Clock.call_at``).
+    """All ``ros2`` lines of a run. Call it on threads that have the run's time (see ``Clock.call_at``).
 
-    ``changed`` is called whenever a line has ended.
+    ``changed`` is called after the end of each line.
     """
 
     def __init__(
@@ -36,14 +35,14 @@ class Lines:
         self._scheduled = 0
 
     def schedule(self, lines: Sequence[TimedLine]) -> None:
-        """Have lines carried out at their moments, numbered 1, 2, … in this order."""
+        """Carry lines out at their moments, numbered 1, 2, … in this order."""
         for number, line in enumerate(lines, start=1):
             self._scheduled += 1
             self._host.clock.call_at(line.at, lambda n=number, t=line.text: self._begin_scheduled(n, t))  # type: ignore[misc]
 
     @property
     def any_left(self) -> bool:
-        """Whether a line is being carried out or has yet to be."""
+        """Whether a line is running or scheduled."""
         return self._scheduled > 0 or bool(self._running)
 
     def _begin_scheduled(self, number: LineId, text: str) -> None:
@@ -65,7 +64,7 @@ class Lines:
 
         with self._host.lock:
             self._record(LineGiven(self._host.clock.now(), number, text))
-            line = ShellLine(ModelGround(self._host), text, LineTools(self._starter, take, end))
+            line = ShellLine(ModelGround(self._host), text, self._starter, take, end)
             self._running[number] = line
         line.start()
 
@@ -75,18 +74,18 @@ class Lines:
         self._changed()
 
     def interrupt(self, number: LineId) -> None:
-        """Have a line end as Ctrl-C would; nothing happens to one that has."""
+        """End a line as Ctrl-C would; does nothing for one that has ended."""
         line = self._running.get(number)
         if line is not None:
             line.interrupt()
 
     def interrupt_all(self) -> None:
-        """Interrupt every line that is being carried out."""
+        """Interrupt every running line."""
         for line in tuple(self._running.values()):
             line.interrupt()
 
     def complete(self, number: LineId, text: str, cursor: int) -> None:
-        """Put on the trace what could stand at ``cursor``."""
+        """Record the candidates for the word at ``cursor``."""
         from sim.shell import complete, word_start
         from sim.shell.model_ground import ModelGround
 

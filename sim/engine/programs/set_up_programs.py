@@ -1,4 +1,4 @@
-"""Runs the programs that a run was set up with, from their start until all have ended."""
+"""Runs the programs of a set-up, from their start until all have ended."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +13,7 @@ from sim.engine.setup import ProgramSetup
 def run_programs(
     setup: tuple[ProgramSetup, ...], programs: ProgramSupervisor, starter: ProgramStarter, lines: Lines
 ) -> ProgramOutcome:
-    """Run all to their ends, and a run without programs to that of its lines; return how that went."""
+    """Run all programs, or without programs all lines, to their ends; return the outcome."""
     if len(setup) == 1 and not setup[0].is_launch_file:
         return programs.run_only(_script(setup[0]))
     interrupts: list[Callable[[], None]] = []
@@ -44,4 +44,4 @@ def _script(program: ProgramSetup) -> ProgramSpec:
 
 
 def _ignore_end(_end: object) -> None:
-    """Take the end of a program for which nobody waits."""
+    """Ignore the end of a program for which no line waits."""

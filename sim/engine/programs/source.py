@@ -1,4 +1,4 @@
-"""Reads a learner's file as Python does, and says what keeps it from being a program."""
+"""Reads a learner's file as Python does, and explains why it cannot be run."""
 
 import ast
 import importlib.util
@@ -10,15 +10,15 @@ from sim.files.untrusted import MAX_PROGRAM_BYTES, read_bytes
 
 
 class NothingToRunError(Exception):
-    """A file that cannot be run as a program, whatever it does; the text says why and what to do."""
+    """A file cannot be run as a program; the text says why and what to do."""
 
 
 changes: list[Callable[[ast.Module, str, str], ast.Module]] = []
-"""What a program's tree is led through as it is compiled, with its text and its file's name."""
+"""Functions that change a program's syntax tree before it is compiled; they get its text and file name."""
 
 
 def compiled(text: str, file: str) -> CodeType:
-    """The code of a program; a syntax error is raised as Python does."""
+    """Compile a program; a syntax error is raised as by Python."""
     if not changes:
         return compile(text, file, "exec", dont_inherit=True)
     tree = ast.parse(text, file)
@@ -28,10 +28,10 @@ def compiled(text: str, file: str) -> CodeType:
 
 
 def read_source(path: Path) -> str:
-    """The text of a program's file, decoded as Python does.
+    """Return the text of a program's file, decoded as by Python.
 
     Raises:
-        NothingToRunError: it cannot be read or is no text.
+        NothingToRunError: the file cannot be read or is not text.
     """
     try:
         data = read_bytes(path, MAX_PROGRAM_BYTES)

@@ -1,7 +1,6 @@
-"""Starts what ``ros2`` lines and launch files name: executables of packages, and launch files themselves.
+"""Starts executables of packages and launch files by their names, for ``ros2`` lines and launch files.
 
-What it needs for that is imported when it is first asked: most runs neither launch anything nor look for
-packages, and begin the sooner.
+Packages and launch files are imported at the first use: most runs need neither, and so start sooner.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from sim.engine.programs.program import ProgramOutcome, ProgramSpec
+from sim.engine.programs.program import program_of
 from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.setup import RunSetup
 from sim.interfaces import add_definitions, find_definition_folders
@@ -26,11 +25,11 @@ Launch: TypeAlias = "Callable[[ProgramSupervisor, ProgramStarter, Path, Sequence
 
 
 class StartError(Exception):
-    """Something that cannot be started; the text is a sentence that says why, and where."""
+    """A program or launch file cannot be started; the text is a sentence that says why, and where."""
 
 
 class ProgramStarter:
-    """Knows the packages around the run's programs, and starts what is in them. Thread-safe.
+    """Finds the packages around the programs, and starts their executables and launch files. Thread-safe.
 
     ``launch`` carries out a launch file.
     """
@@ -49,7 +48,7 @@ class ProgramStarter:
                 add_definitions(folder)
 
     def packages(self) -> Packages:
-        """The packages at hand, looked for when first asked for."""
+        """Return the packages around the programs; searched for at the first call."""
         from sim.packages import find_packages, use_packages
 
         if self._found is None:
@@ -58,7 +57,7 @@ class ProgramStarter:
         return self._found
 
     def close(self) -> None:
-        """Remove what packages put into temporary folders."""
+        """Remove the temporary folders of the packages."""
         if self._found is not None:
             self._found.close()
 
@@ -70,20 +69,11 @@ class ProgramStarter:
         Raises:
             StartError: there is no such package or executable, or it cannot be read.
         """
-        with _told():
+        with _as_start_errors():
             found = self.packages().package(package).executable(executable)
-        program = ProgramSpec(
-            path=str(found.path),
-            folder=str(found.folder),
-            arguments=tuple(arguments),
-            module=found.module,
-            function=found.function,
-        )
-
-        def ended(outcome: ProgramOutcome) -> None:
-            on_exit(outcome.status)
-
-        return self._programs.start(program, f"{executable}-{next(self._numbers)}", ended)
+        program = program_of(found, arguments)
+        label = f"{executable}-{next(self._numbers)}"
+        return self._programs.start(program, label, lambda outcome: on_exit(outcome.status))
 
     def launch(
         self, package: str | None, launch_file: str, arguments: Sequence[str], on_exit: OnExit
@@ -93,29 +83,29 @@ class ProgramStarter:
         Raises:
             StartError: there is no such file, or it cannot be carried out.
         """
-        with _told():
+        with _as_start_errors():
             path = self._launch_path(package, launch_file)
             return self._launch(self._programs, self, path, arguments, on_exit)
 
     def describe_launch(self, package: str | None, launch_file: str) -> str:
-        """What ``ros2 launch --show-args`` prints of a launch file.
+        """Return what ``ros2 launch --show-args`` prints about a launch file.
 
         Raises:
             StartError: there is no such file, or it cannot be read.
         """
         from sim.launch import describe_arguments
 
-        with _told():
+        with _as_start_errors():
             return describe_arguments(self._launch_path(package, launch_file))
 
     def _launch_path(self, package: str | None, launch_file: str) -> Path:
-        known = self.packages()  # a launch file asks for packages even when it is named by its path
+        known = self.packages()  # a launch file needs the packages even if a path names it
         return Path(launch_file) if package is None else known.package(package).launch_file(launch_file)
 
 
 @contextmanager
-def _told() -> Iterator[None]:
-    """Turn what can be wrong with packages and launch files into StartError."""
+def _as_start_errors() -> Iterator[None]:
+    """Raise errors of packages and launch files as StartError."""
     from sim.launch import LaunchError
     from sim.packages import PackageError
 

@@ -21,13 +21,13 @@ _LAUNCH = frozenset(("ament_index_python", "launch", "launch_ros", "launch_xml",
 
 
 def use_workspace(packages: Callable[[], Packages], clock: RunClock) -> None:
-    """Make the modules of ``packages`` importable, and ``launch``; have asyncio's loops live on ``clock``."""
+    """Make the modules of ``packages`` and ``launch`` importable; put asyncio's loops on ``clock``."""
     sys.meta_path[:0] = (_AsyncioFinder(clock), _LaunchFinder(packages))
     sys.meta_path.append(_WorkspaceFinder(packages))
 
 
 class _LaunchFinder:
-    """Finds the launch system, in place of a real one that is installed."""
+    """Finds the modelled launch system, before an installed real one."""
 
     def __init__(self, packages: Callable[[], Packages]) -> None:
         self._packages = packages
@@ -35,7 +35,6 @@ class _LaunchFinder:
     def find_spec(
         self, fullname: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return the spec of a top-level module of the launch system, ``None`` for any other."""
         return ModuleSpec(fullname, _loader(self._install)) if fullname in _LAUNCH else None
 
     def _install(self, _module: ModuleType) -> None:
@@ -46,7 +45,7 @@ class _LaunchFinder:
 
 
 class _WorkspaceFinder:
-    """Finds what no other finder knows: the Python packages of the workspace."""
+    """Finds the Python packages of the workspace, after all other finders."""
 
     def __init__(self, packages: Callable[[], Packages]) -> None:
         self._packages = packages
@@ -54,7 +53,6 @@ class _WorkspaceFinder:
     def find_spec(
         self, fullname: str, path: Sequence[str] | None = None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return the spec of a top-level module, ``None`` for one that is not in the workspace."""
         if path is not None:
             return None
         for package in self._packages():
@@ -65,7 +63,7 @@ class _WorkspaceFinder:
 
 
 class _AsyncioFinder:
-    """Lets asyncio be imported as ever, and then gives it loops for the programs of a run."""
+    """Lets Python import asyncio once, and then gives it event loops for the programs of a run."""
 
     def __init__(self, clock: RunClock) -> None:
         self._clock = clock
@@ -73,7 +71,6 @@ class _AsyncioFinder:
     def find_spec(
         self, fullname: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return the spec of asyncio the first time that it is imported."""
         if fullname != "asyncio":
             return None
         sys.meta_path.remove(self)
@@ -92,7 +89,7 @@ class _AsyncioFinder:
 
 
 def _loader(*steps: Callable[[ModuleType], None]) -> Loader:
-    """What fills a module by the steps given, one after another."""
+    """Return a loader that fills a module by steps, one after another."""
     return cast("Loader", _Loader(steps))
 
 
@@ -101,9 +98,8 @@ class _Loader:
         self._steps = steps
 
     def create_module(self, _spec: ModuleSpec) -> None:
-        """Leave it to Python to make the module."""
+        """Let Python create the module."""
 
     def exec_module(self, module: ModuleType) -> None:
-        """Fill it."""
         for step in self._steps:
             step(module)

@@ -1,1 +1,1 @@
-"""What programs print and read: output, terminal and file descriptors."""
+"""Output and input of programs: streams, terminal and file descriptors."""

@@ -1,7 +1,7 @@
-"""Keeps a program from the console's terminal: what it writes past Python's own streams becomes lines too.
+"""Separates programs from the console's terminal: output past Python's own streams becomes lines, too.
 
-A shell that it starts, a library in C and ``os.write(1, …)`` all write to the process's first descriptors,
-which an engine would share with the console.
+Shells, C libraries and ``os.write(1, …)`` write to the process's first descriptors, which an engine would
+share with the console.
 """
 
 import os
@@ -10,16 +10,16 @@ import sys
 import threading
 from collections.abc import Callable
 
-# Kept from before a clock puts its own in its place.
+# Kept from before a clock replaces it.
 _Thread = threading.Thread
 
 _LONGEST = 4096
-"""Bytes of a line; a longer one is cut into several."""
+"""Limit for the bytes of a line; a longer one is split."""
 _LAST_LINES = 0.1
-"""Real seconds for what was written last to be read at the end of a run."""
+"""Real seconds for reading the last output at the end of a run."""
 
 TakeLine = Callable[[str, bool], None]
-"""Gets a line, and whether it was written to standard error."""
+"""Takes a line, and whether it was written to standard error."""
 
 
 class Descriptors:
@@ -30,7 +30,7 @@ class Descriptors:
         self._readers: list[threading.Thread] = []
 
     def detach(self) -> None:
-        """Read what is written to the descriptors 1 and 2."""
+        """Start to read the output of descriptors 1 and 2."""
         for number in (1, 2):
             reading, writing = os.pipe()
             os.dup2(writing, number)
@@ -40,7 +40,7 @@ class Descriptors:
             reader.start()
 
     def finish(self) -> None:
-        """Take what was written last; what goes on to write is not waited for."""
+        """Read the last output; output that continues is dropped."""
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for number in (1, 2):
             os.dup2(nowhere, number)
@@ -59,11 +59,11 @@ def leave_terminal() -> None:
     The console starts engines with SIGINT blocked; a SIGINT that is pending by now is dropped.
     """
     os.setsid()
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # forgets what waits
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # drops pending ones
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 def print_to_descriptors() -> None:
-    """Have Python's streams write to the descriptors again, as those of any process do."""
+    """Let Python's streams write to the descriptors again."""
     sys.stdout, sys.stderr = (open(number, "w", buffering=1, closefd=False) for number in (1, 2))  # noqa: SIM115 -- streams that stay open

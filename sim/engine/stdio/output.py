@@ -1,4 +1,4 @@
-"""What programs print: every line becomes an event, so that it cannot spoil the screen."""
+"""Output of programs: every line becomes an event, so that it cannot disturb the screen."""
 
 import io
 import sys
@@ -13,40 +13,36 @@ if TYPE_CHECKING:
     from typing_extensions import Buffer  # Python has it from 3.12 on
 
 _LONGEST = 4096
-"""Characters of a line; a longer one is cut into several."""
+"""Limit for the characters of a line; a longer one is split."""
 
 
 class _TextStream(io.TextIOBase):
-    """What programs ask of a stream besides writing to it."""
+    """The interface of a text stream that programs use besides ``write``."""
 
     def writable(self) -> bool:
-        """Whether it can be written to: always."""
         return True
 
     @property
     def encoding(self) -> str:  # type: ignore[override]
-        """What a real stream would encode to."""
         return "utf-8"
 
     @cached_property
     def buffer(self) -> io.RawIOBase:
-        """What takes bytes, as a real stream's does."""
         return _ByteStream(self)
 
 
 class _ByteStream(io.RawIOBase):
-    """A stream of bytes that hands them on as text; those that are no text are spelt out."""
+    """A byte stream that passes its data on as text; bytes that are not UTF-8 become escapes."""
 
     def __init__(self, text: _TextStream) -> None:
         self._text = text
         self._decoder = getincrementaldecoder("utf-8")("backslashreplace")
 
     def writable(self) -> bool:
-        """Whether it can be written to: always."""
         return True
 
     def write(self, data: "Buffer") -> int:
-        """Take bytes; a letter that is cut in two waits for its other half."""
+        """Take bytes; an incomplete character waits for its rest."""
         taken = bytes(data)
         self._text.write(self._decoder.decode(taken))
         return len(taken)
@@ -60,7 +56,7 @@ class LineSink(_TextStream):
         self._rest = ""
 
     def write(self, text: str) -> int:
-        """Take text; complete lines are handed on."""
+        """Take text; pass complete lines on."""
         *lines, last = (self._rest + text).split("\n")
         for line in lines:
             for piece in _pieces(line.removesuffix("\r")) or [""]:
@@ -71,12 +67,12 @@ class LineSink(_TextStream):
         return len(text)
 
     def finish(self) -> None:
-        """Hand on a last line that was not ended."""
+        """Pass on a last, unfinished line."""
         if rest := self.cut():
             self._take(rest)
 
     def cut(self) -> str:
-        """Return the beginning of a line that has been written so far, and forget it."""
+        """Return and forget the unfinished part of the current line."""
         rest, self._rest = self._rest, ""
         return rest
 
@@ -86,10 +82,10 @@ def _pieces(line: str) -> list[str]:
 
 
 class ProcessStream(_TextStream):
-    """Standard output or error of whichever process writes; their lines do not mix.
+    """Standard output or error of all processes; their lines do not mix.
 
-    ``take`` gets the process that wrote a line, the line, and whether it ends there; ``after_line`` is called
-    on the writing thread once a line is whole.
+    ``take`` gets the writing process, a line, and whether the line ends there; ``after_line`` is called on
+    the writing thread after each complete line.
     """
 
     def __init__(
@@ -106,11 +102,11 @@ class ProcessStream(_TextStream):
         return length
 
     def finish(self) -> None:
-        """Hand on the last line of the calling thread's process."""
+        """Pass on the last line of the calling thread's process."""
         current_process().keep(self._sink).finish()
 
     def show_rest(self) -> None:
-        """Hand on what the calling thread's process wrote of a line so far."""
+        """Pass on the unfinished line of the calling thread's process."""
         process = current_process()
         if rest := process.keep(self._sink).cut():
             self._take(process, rest, False)
@@ -121,7 +117,7 @@ class ProcessStream(_TextStream):
 
 
 def finish_lines() -> None:
-    """Hand on the last lines of the calling thread's process, though they are not ended."""
+    """Pass on the unfinished lines of the calling thread's process."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, ProcessStream):
             stream.finish()

@@ -1,4 +1,4 @@
-"""``select.poll`` and ``select.epoll`` for programs that look at the terminal of a run with them."""
+"""``select.poll`` and ``select.epoll`` for programs that poll the terminal of a run."""
 
 import select
 from collections.abc import Callable
@@ -8,11 +8,11 @@ Wait = Callable[[Callable[[], Any], float | None], tuple[Any, bool]]
 
 
 class Polling:
-    """One of the system's objects, made by ``make``, for everything but the terminal.
+    """A polling object that handles the terminal itself, and other files by the system's object of ``make``.
 
-    ``is_terminal`` tells whether the calling thread means the terminal by a file. ``wait`` waits for keys, at
-    most some seconds or, for None, for ever; it returns what its first argument found of other files, and
-    whether there are keys. ``per_second`` is the number of timeout units in a second.
+    ``is_terminal`` returns whether a file is the terminal for the calling thread. ``wait`` waits for keys, at
+    most some seconds or, for None, without a limit; it returns the result of its first argument for other
+    files, and whether there are keys. ``per_second`` is the number of timeout units in a second.
     """
 
     def __init__(
@@ -32,7 +32,7 @@ class Polling:
         self._has_others = False
 
     def register(self, file: Any, eventmask: int = select.POLLIN | select.POLLPRI | select.POLLOUT) -> None:
-        """Look at a file, too."""
+        """Watch a file."""
         if self._is_terminal(file):
             self._ours[_descriptor(file)] = eventmask
         else:
@@ -40,19 +40,19 @@ class Polling:
             self._has_others = True
 
     def modify(self, file: Any, eventmask: int) -> None:
-        """Look for something else at a file."""
+        """Change the events that are watched for a file."""
         if _descriptor(file) in self._ours:
             self._ours[_descriptor(file)] = eventmask
         else:
             self._others.modify(file, eventmask)
 
     def unregister(self, file: Any) -> None:
-        """Look at a file no more."""
+        """Stop watching a file."""
         if self._ours.pop(_descriptor(file), None) is None:
             self._others.unregister(file)
 
     def poll(self, timeout: float | None = None, *maxevents: int) -> list[tuple[int, int]]:
-        """Wait for what is looked for; returns descriptors and events."""
+        """Wait for watched events; return descriptors and events."""
         read_from = [each for each, mask in self._ours.items() if mask & select.POLLIN]
         if not read_from:
             return list(self._others.poll(timeout, *maxevents))

@@ -14,16 +14,16 @@ import termios
 from sim.engine.commands import END_OF_INPUT, INTERRUPT
 from sim.trace.events import Reading
 
-# Kept from before a clock, or a terminal of the model's, puts its own in their place.
+# Kept from before a clock, or the model's terminal, replaces them.
 _read = os.read
 _select = select.select
 
 _ROWS, _COLUMNS = 24, 80
 _LINE = re.compile(r"[^\n]*\n|[^\n]+")
 _KEY = re.compile(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO.|.", re.DOTALL)
-"""What one press of a key sends: a character, or a sequence such as that of an arrow key."""
+"""The text of one key: a character, or a sequence such as that of an arrow key."""
 _LONGEST = 4000
-"""Characters of a line that the kernel is handed at once; it holds no more than 4,095 bytes."""
+"""Characters of a line that are sent at once; the kernel's buffer has 4,095 bytes."""
 
 
 class PseudoTerminal:
@@ -47,28 +47,27 @@ class PseudoTerminal:
         self._line_begun = False
 
     def type(self, text: str) -> str:
-        """Keep text for those who read; returns it as it is to be shown: what is secret is dots."""
+        """Queue text for readers; return it as it is shown, with dots for a password."""
         self._text = self._text[self._place :] + text
         self._place = 0
         return re.sub(r"[^\n]", "•", text) if self.mode() is Reading.SECRET else text
 
     def interrupts(self, text: str) -> bool:
-        """Whether text, typed now, would interrupt the program that has the terminal."""
+        """Return whether text, typed now, would interrupt the program that has the terminal."""
         if not self._is_terminal:
             return INTERRUPT in text
         return INTERRUPT in text and bool(termios.tcgetattr(self.near)[3] & termios.ISIG)
 
     @property
     def has_more(self) -> bool:
-        """Whether something has been typed that has not been handed on."""
+        """Whether typed text waits to be sent."""
         return self._place < len(self._text)
 
     def feed(self, *, is_last: bool) -> bool:
-        """Hand on the next key or line, unless one has yet to be read; whether there is something to be read.
+        """Send the next key or line unless one is unread; return whether there is something to read.
 
-        Keys that wait are handed on one by one, as nobody presses two at once: a program that reads one, and
-        then forgets what else it was sent, as ``tty.setraw`` does, would lose the others.
-        ``is_last``: no more will be typed.
+        Queued keys are sent one by one: a program that reads one and then drops its other input, as
+        ``tty.setraw`` does, would lose them. ``is_last``: no more will be typed.
         """
         readable = self.has_unread
         while not readable and self.has_more:
@@ -76,31 +75,31 @@ class PseudoTerminal:
             found = (_KEY if takes_keys else _LINE).match(self._text, self._place, self._place + _LONGEST)
             assert found is not None
             self._place = found.end()
-            # The system takes a moment to hand it on.
+            # The kernel takes a moment to pass it on.
             readable = not self.interrupts(found[0]) if takes_keys else found[0].endswith("\n")
             self._line_begun = not (takes_keys or readable)
             self.send(found[0])
         if self._line_begun and not readable and is_last:
             self._line_begun = False
-            if self._is_terminal:  # what lies in a pipe can be read as it is
+            if self._is_terminal:  # the content of a pipe can be read without an end
                 self.end()
             readable = self.has_unread
         return readable
 
     @property
     def has_unread(self) -> bool:
-        """Whether something has been handed on that has not been read."""
+        """Whether sent text has not been read."""
         return bool(_select([self.near], [], [], 0)[0])
 
     def is_meant_by(self, found: os.stat_result) -> bool:
-        """Whether an open file, by its status, is this terminal."""
+        """Return whether an open file, by its status, is this terminal."""
         return self._identified(found) == self._identity
 
     def _identified(self, found: os.stat_result) -> tuple[int, int]:
         return (0, found.st_rdev) if self._is_terminal else (found.st_dev, found.st_ino)
 
     def end(self) -> None:
-        """Hand on what is typed so far, or the end of the input."""
+        """Submit the unfinished line, or send the end of the input."""
         if self._is_terminal:
             self.send(END_OF_INPUT)
         elif self._far is not None:
@@ -108,13 +107,13 @@ class PseudoTerminal:
             self._far = None
 
     def send(self, text: str) -> None:
-        """Hand text on at once."""
+        """Send text at once."""
         if self._far is not None:
             os.write(self._far, text.encode(errors="replace"))
         self.drop_echo()
 
     def drop_echo(self) -> None:
-        """Keep the far end from filling up: what it echoes, the trace tells as ``Typed``."""
+        """Empty the far end's echo, which would fill its buffer; the trace has it as ``Typed``."""
         try:
             while self._is_terminal and self._far is not None and _read(self._far, _LONGEST):
                 pass
@@ -122,7 +121,7 @@ class PseudoTerminal:
             return
 
     def mode(self) -> Reading:
-        """How a program reads by the modes of the terminal."""
+        """Return how a program reads, by the modes of the terminal."""
         if not self._is_terminal:
             return Reading.LINES
         local = termios.tcgetattr(self.near)[3]

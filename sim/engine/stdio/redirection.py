@@ -1,4 +1,4 @@
-"""Records what programs write to Python's streams, each line with the program that wrote it."""
+"""Records the output of programs on Python's streams, each line with its program."""
 
 import sys
 from collections.abc import Callable
@@ -10,7 +10,7 @@ from sim.trace.events import AnyEvent, Notice, Printed, Severity
 
 
 def redirect_output(clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
-    """Replace Python's streams by such as record what each program writes."""
+    """Replace Python's streams by streams that record the output of each program."""
 
     def report_hidden_output() -> None:
         text = (
@@ -33,5 +33,5 @@ def redirect_output(clock: RunClock, record: Callable[[AnyEvent], None]) -> None
         return take
 
     sys.stdout = ProcessStream(take_from(error=False), clock.switch_point)
-    # Python's own logging writes errors while it holds a lock that does not live on the clock.
+    # Python's logging writes to stderr while it holds a lock that is not on the clock.
     sys.stderr = ProcessStream(take_from(error=True))

@@ -1,6 +1,6 @@
 """The terminal of a run's programs: a pseudo-terminal whose keys are inputs of the run.
 
-What waits for keys, waits on the run's clock.
+Waits for keys are on the run's clock.
 """
 
 import builtins
@@ -33,21 +33,21 @@ from sim.trace.events import AnyEvent, KeyboardAsked, Notice, Reading, Severity,
 if TYPE_CHECKING:
     from typing_extensions import Buffer  # Python has it from 3.12 on
 
-# Kept from before a clock, or this module, puts its own in their place.
+# Kept from before a clock, or this module, replaces them.
 _allocate_lock = threading.Lock
 _read = os.read
 
 _CONTROLLING = "/dev/tty"
-"""What a program opens to read from its terminal whatever its standard input is."""
+"""The file by which a program reads from its terminal whatever its standard input is."""
 FoundT = TypeVar("FoundT")
 _Files: TypeAlias = Iterable[Any]
 _Ready: TypeAlias = tuple[list[Any], list[Any], list[Any]]
 
 
 class Terminal:
-    """The near end is descriptor 0 and ``sys.stdin``; ``type`` is what happens at the far end. Thread-safe.
+    """The near end is descriptor 0 and ``sys.stdin``; ``type`` writes to the far end. Thread-safe.
 
-    ``scheduled`` is how often the run's set-up is going to call ``type``.
+    ``scheduled`` is the number of calls of ``type`` that the run's set-up schedules.
     """
 
     def __init__(
@@ -66,9 +66,9 @@ class Terminal:
         self._lock = _allocate_lock()
 
     def put_in_place(self) -> None:
-        """Have this process's programs read from it: ``sys.stdin``, ``os.read``, ``select``, ``/dev/tty``.
+        """Connect ``sys.stdin``, ``os.read``, ``select`` and ``/dev/tty`` of this process to the terminal.
 
-        Call it once, when a clock has put its own functions in the place of Python's.
+        Call it once, after a clock has replaced Python's functions.
         """
         sys.stdin = sys.__stdin__ = self._stream("r")  # type: ignore[misc]
         modules: Any = (os, select, selectors, io, builtins)
@@ -80,12 +80,12 @@ class Terminal:
         of_file = self._is_read_by, self._wait_with
         selects.poll = partial(Polling, *of_file, select.poll, 1e3)
         kinds.PollSelector._selector_cls = staticmethod(selects.poll)
-        if hasattr(select, "epoll"):  # Linux alone has it
+        if hasattr(select, "epoll"):  # on Linux only
             selects.epoll = partial(Polling, *of_file, select.epoll, 1.0)
             kinds.EpollSelector._selector_cls = staticmethod(selects.epoll)
 
     def type(self, text: str, *, ends: bool = False, scheduled: bool = False) -> None:
-        """Type text, at a moment of the run; ``ends``: it is the last."""
+        """Type text at the current moment of the run; ``ends``: it is the last."""
         with self._lock:
             self._scheduled -= scheduled
             if ends:
@@ -97,14 +97,14 @@ class Terminal:
             waiter.set()
 
     def interrupts(self, text: str) -> bool:
-        """Whether text, typed now, would interrupt the program that has the terminal."""
+        """Return whether text, typed now, would interrupt the program that has the terminal."""
         return self._pair.interrupts(text)
 
     @waits_for_keyboard
     def wait(self, deadline: int | None) -> bool:
-        """Wait until there is something to be read, or until the clock shows ``deadline``.
+        """Wait until there is something to read, or until the clock reaches ``deadline``.
 
-        Without a deadline that is also at the end of the input.
+        Without a deadline, the end of the input ends the wait, too.
         """
         _show_prompt()
         if deadline is not None and deadline <= self._clock.now():
@@ -134,7 +134,7 @@ class Terminal:
 
     @waits_for_keyboard
     def read(self, size: int) -> bytes | None:
-        """Read as from a terminal, waiting if its modes say so; None if there is nothing and it does not."""
+        """Read as from a terminal, and wait if its modes say so; None if there is no input and no wait."""
         while self.wait(self._deadline()):
             with self._lock:
                 if self._feed():
@@ -145,7 +145,7 @@ class Terminal:
 
     @property
     def _is_over(self) -> bool:
-        """Whether nothing more will come for the calling thread's process than what has been typed."""
+        """Whether the calling thread's process gets no more input."""
         over = self._nobody_types and not self._pair.has_more
         return over or not current_process().has_keyboard
 
@@ -154,11 +154,11 @@ class Terminal:
         return self._keyboard is Keyboard.NOBODY and not self._scheduled
 
     def _feed(self) -> bool:
-        """Hand on the next key or line; whether there is something to be read."""
+        """Send the next key or line; return whether there is something to read."""
         return current_process().has_keyboard and self._pair.feed(is_last=self._nobody_types)
 
     def _deadline(self) -> int | None:
-        """How long a read waits by the modes of the terminal."""
+        """Return until when a read waits, by the modes of the terminal; None: without a limit."""
         if not os.get_blocking(self._pair.near):
             return self._clock.now()
         if not self._pair.mode().takes_keys:
@@ -170,7 +170,7 @@ class Terminal:
         return self._clock.now() + tenths * 100_000_000
 
     def _ask(self, *, without_end: bool) -> None:
-        """Tell that the calling thread's program waits, and how, and what is wrong with that."""
+        """Record that the calling thread's program waits, in which way, and what is wrong with that."""
         process = current_process()
         if process.has_keyboard:
             self._note(self._pair.mode())
@@ -202,7 +202,7 @@ class Terminal:
 
     @contextmanager
     def _awaited(self, live: bool) -> Iterator[None]:
-        """Meanwhile a run that goes as fast as it can waits for the person who types."""
+        """Let a run without a speed wait for the person who types, within the block."""
         if isinstance(self._clock, VirtualClock) and live and self._keyboard is Keyboard.LIVE:
             self._clock.time.pace.awaited_inputs += 1
             try:
@@ -212,7 +212,7 @@ class Terminal:
         else:
             yield
 
-    # What Python reads with
+    # Replacements of Python's functions
 
     def _reading(self, read: Callable[[int, int], bytes]) -> Callable[[int, int], bytes]:
         def read_here(descriptor: int, size: int, /) -> bytes:
@@ -247,7 +247,7 @@ class Terminal:
         return select_here
 
     def _wait_with(self, look: Callable[[], FoundT], timeout: float | None) -> tuple[FoundT, bool]:
-        """Wait for keys unless ``look`` finds something; returns that, and whether there are keys."""
+        """Wait for keys unless ``look`` finds something; return its result, and whether there are keys."""
         deadline = None if timeout is None else self._clock.now() + wait_ns(timeout)
         found = look()
         typed = self.wait(self._clock.now() if found else deadline)
@@ -265,17 +265,17 @@ class Terminal:
         return buffered if "b" in mode else io.TextIOWrapper(buffered, encoding="utf-8")
 
     def _is_read_by(self, file: Any) -> bool:
-        """Whether the calling thread, which lives on the run's clock, means this terminal by ``file``."""
+        """Return whether ``file`` is this terminal, for a calling thread on the run's clock."""
         if isinstance(self._clock, VirtualClock) and not self._clock.owns_current_thread():
             return False
         try:
             return self._pair.is_meant_by(os.fstat(file if isinstance(file, int) else file.fileno()))
         except (AttributeError, OSError, ValueError):
-            return False  # Python's own function says what is wrong with it
+            return False  # Python's own function reports what is wrong
 
 
 class _Keys(io.RawIOBase):
-    """What ``sys.stdin`` reads from."""
+    """The raw stream of ``sys.stdin``."""
 
     name = "<stdin>"
     mode = "rb"
@@ -284,19 +284,15 @@ class _Keys(io.RawIOBase):
         self._terminal = terminal
 
     def readable(self) -> bool:
-        """Whether it can be read from: always."""
         return True
 
     def isatty(self) -> bool:
-        """Whether it is a terminal: always."""
         return True
 
     def fileno(self) -> int:
-        """The descriptor of the terminal's near end."""
         return 0
 
     def readinto(self, buffer: "Buffer") -> int | None:
-        """Read what has been typed; waits for it."""
         place = memoryview(buffer).cast("B")
         data = self._terminal.read(len(place))
         if data is None:
@@ -306,7 +302,7 @@ class _Keys(io.RawIOBase):
 
 
 def _show_prompt() -> None:
-    """Show what the program has written of a line."""
+    """Record the unfinished line of the program, which is a prompt."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, ProcessStream):
             stream.show_rest()

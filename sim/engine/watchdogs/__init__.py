@@ -1,1 +1,1 @@
-"""Watchdogs: they find programs that wait, hang or spin, and name the line."""
+"""Watchdogs that find programs that wait, hang or spin, and name the line."""

@@ -1,4 +1,4 @@
-"""Finds threads that wait without a timeout for what no other thread will do."""
+"""Finds threads that wait without a timeout for an action that no other thread will take."""
 
 import threading
 from collections.abc import Callable
@@ -7,22 +7,22 @@ from dataclasses import dataclass
 from sim.clock import VirtualClock
 from sim.clock.lock_cycles import cycle_of, lasts
 from sim.clock.virtual_threads import HeldResource, VirtualThread
-from sim.engine.watchdogs.wait_descriptions import deadlock_of_circle, deadlock_of_last, long_wait
+from sim.engine.watchdogs.wait_descriptions import deadlock_of_cycle, deadlock_of_last, long_wait
 from sim.ros.middleware.host import Host
 from sim.ros.middleware.process import Process, current_process, process_of
 from sim.trace.events import AnyEvent, EntityId
 
 _PATIENCE = 3_000_000_000
-"""Virtual nanoseconds after which a callback's wait is reported although something might still end it."""
+"""Virtual nanoseconds after which a callback's wait is reported although it might still end."""
 _SETTLES = 100_000_000
-"""Virtual nanoseconds that a circle of what could be signals must have lasted when the run ends."""
+"""Virtual nanoseconds that a cycle of waits, perhaps for signals, must have lasted at the run's end."""
 
 
 @dataclass(eq=False)
 class _Wait:
-    """What a thread of a program waits for without an end. ``entity``: whose callback it runs, 0: none.
+    """A thread's wait without a timeout; ``entity`` is the callback that it runs, 0 for none.
 
-    ``other`` is a thread of the program that could do something when that was last looked for.
+    ``other`` is a thread of the program that did not wait at the last check.
     """
 
     thread: VirtualThread
@@ -35,11 +35,11 @@ class _Wait:
 
 
 class EndlessWaits:
-    """Looks at what the threads of programs wait for, and says of each wait once what is wrong with it.
+    """Watches the waits of programs' threads, and reports each faulty wait once.
 
-    A deadlock is told where it is sure: where threads wait for locks in a circle that nobody opens from
-    outside, and where a thread waits and every other one of its program does so too. What a callback waits
-    for otherwise is told when that has lasted long, and circles of what could be signals as the run ends.
+    A deadlock is reported where it is certain: if threads wait for locks in a cycle that no other thread can
+    open, or if all threads of a program wait. Any other wait of a callback is reported when it has lasted
+    long, and a cycle of waits that may be for signals at the end of the run.
     """
 
     def __init__(self, clock: VirtualClock, host: Host, record: Callable[[AnyEvent], None]) -> None:
@@ -50,19 +50,19 @@ class EndlessWaits:
         self._deadlocked = False
 
     def begins(self, thread: VirtualThread) -> None:
-        """A thread begins to wait for a lock or another thread's end; the clock calls this on that thread."""
+        """Note that a thread waits for a lock or a thread's end; the clock calls this on that thread."""
         process = current_process()
         entity = (process.probe or self._host.probe).callback_here()
-        circle = cycle_of(thread)
-        if not (circle or entity or thread.is_main):
+        cycle = cycle_of(thread)
+        if not (cycle or entity or thread.is_main):
             return
         wait = _Wait(thread, thread.wants, process, entity, self._clock.now())
         self._waits[thread] = wait
-        if lasts(circle):
-            self._tell_of_deadlock(wait, circle)
+        if lasts(cycle):
+            self._tell_of_deadlock(wait, cycle)
 
     def look(self) -> None:
-        """Look at the waits; call it whenever time is about to pass."""
+        """Check the waits; call it whenever time is about to pass."""
         for wait in self._standing():
             if (wait.entity or not self._deadlocked) and self._is_last(wait):
                 self._tell_of_deadlock(wait, cycle_of(wait.thread))
@@ -73,15 +73,15 @@ class EndlessWaits:
                 )
 
     def finish(self) -> None:
-        """Look for the last time: the run is over."""
+        """Check the waits for the last time, at the end of the run."""
         self.look()
         for wait in self._standing():
-            circle = cycle_of(wait.thread)
-            if circle and wait.thread in self._waits and self._lasted(wait) >= _SETTLES:
-                self._tell_of_deadlock(wait, circle)
+            cycle = cycle_of(wait.thread)
+            if cycle and wait.thread in self._waits and self._lasted(wait) >= _SETTLES:
+                self._tell_of_deadlock(wait, cycle)
 
     def _standing(self) -> list[_Wait]:
-        """Those that have not ended, callbacks' first; the others are forgotten."""
+        """Return the waits that have not ended, those of callbacks first; forget the others."""
         waits = list(self._waits.values())
         for wait in waits:
             if wait.thread.wants is not wait.wants:
@@ -93,7 +93,7 @@ class EndlessWaits:
         return self._clock.now() - wait.since
 
     def _is_last(self, wait: _Wait) -> bool:
-        """Whether no thread of a wait's program can do anything but end."""
+        """Return whether all threads of a wait's program wait."""
         alive = self._clock.threads
         if wait.other is None or wait.other not in alive or wait.other.wants is not None:
             known = {each.ident: each for each in threading.enumerate()}
@@ -108,9 +108,9 @@ class EndlessWaits:
             )
         return wait.other is None
 
-    def _tell_of_deadlock(self, wait: _Wait, circle: list[VirtualThread]) -> None:
+    def _tell_of_deadlock(self, wait: _Wait, cycle: list[VirtualThread]) -> None:
         self._deadlocked = True
-        told = deadlock_of_circle(circle) if circle else deadlock_of_last(wait.thread)
+        told = deadlock_of_cycle(cycle) if cycle else deadlock_of_last(wait.thread)
         self._record(told.notice(self._clock.now(), wait.entity))
-        for each in circle or [wait.thread]:
+        for each in cycle or [wait.thread]:
             self._waits.pop(each, None)

@@ -1,4 +1,4 @@
-"""Finds functions of the engine that a program has replaced, which could change what the trace tells."""
+"""Finds functions of the engine that a program has replaced, which could falsify the trace."""
 
 import sys
 from collections.abc import Iterator, Mapping
@@ -6,9 +6,9 @@ from types import CodeType, FunctionType
 
 
 class FunctionIntegrity:
-    """The code of the model's functions and methods as it is now, and the callables that ``parts`` hold.
+    """Remembers the code of the model's functions and methods, and the callables of ``parts``.
 
-    ``parts`` are objects of the engine by name; a method that an object itself replaces is noticed too.
+    ``parts`` are objects of the engine by name; a method that is replaced on an object is found, too.
     """
 
     def __init__(self, parts: Mapping[str, object]) -> None:
@@ -17,7 +17,7 @@ class FunctionIntegrity:
         self._held = dict(self._callables())
 
     def replaced(self) -> tuple[str, ...]:
-        """Return the names of those that are no longer what they were."""
+        """Return the names of the functions that were replaced since."""
         code, held = dict(_functions()), dict(self._callables())
         functions = [name for name, was in self._code.items() if code.get(name) is not was]
         callables = [name for name in {**self._held, **held} if held.get(name) != self._held.get(name)]

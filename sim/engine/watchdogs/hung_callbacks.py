@@ -11,14 +11,14 @@ from sim.interpreter.function_marks import calls_the_program, waits_for_keyboard
 from sim.probes.own_code import is_own, outwards, place_of
 from sim.trace.events import AnyEvent, EntityId, Notice, NoticeKind, Severity
 
-# Kept from before a clock puts its own in their place.
+# Kept from before a clock replaces them.
 _Thread = threading.Thread
 _sleep = time.sleep
 
 _LOOK = 0.25
-"""Real seconds between two looks."""
+"""Real seconds between two samples."""
 _PATIENCE = 6
-"""Looks at which the same call was found hung before the person is told."""
+"""Samples with the same hung call before it is reported."""
 
 _PROBLEM = f"has not come back for {_LOOK * _PATIENCE:g} s"
 
@@ -26,7 +26,7 @@ _MODEL = ("sim.ros.", "sim.interfaces.")
 
 
 class HungCallbacks:
-    """Samples the stacks of all threads, and warns of each call once."""
+    """Samples the stacks of all threads, and reports each hung call once."""
 
     def __init__(
         self, clock: RunClock, record: Callable[[AnyEvent], None], callback_on: Callable[[int], EntityId]
@@ -38,7 +38,7 @@ class HungCallbacks:
         self._seen: dict[int, tuple[int, int]] = {}
 
     def start(self) -> None:
-        """Begin to look."""
+        """Start the sampling thread."""
         _Thread(target=self._watch, name="hung-callbacks", daemon=True).start()
 
     def _watch(self) -> None:
@@ -47,7 +47,7 @@ class HungCallbacks:
             self.look()
 
     def look(self) -> None:
-        """Look once."""
+        """Take one sample."""
         seen = {}
         for thread, top in sys._current_frames().items():
             call = _hung_call(top)
@@ -62,15 +62,15 @@ class HungCallbacks:
 
 
 def _hung_call(top: FrameType) -> FrameType | None:
-    """The learner's call on a thread, if it runs or waits for something other than time; else None."""
+    """Return the learner's call on a thread if it computes, or waits for something other than time."""
     inner: FrameType | None = None
     for frame in outwards(top):
         if frame in calls_the_program:
             return inner
         if inner is None and str(frame.f_globals.get("__name__")).startswith(_MODEL):
-            return None  # the model waits, which the trace tells of
+            return None  # the model waits, which the trace shows
         if frame in waits_for_keyboard:
-            return None  # the terminal tells of that itself
+            return None  # the terminal reports that itself
         if frame in waits_for_time:
             return None
         if is_own(frame):

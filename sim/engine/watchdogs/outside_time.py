@@ -1,4 +1,4 @@
-"""Finds a program that makes no progress outside virtual time, and names the line."""
+"""Finds a program whose threads do not return to virtual time, and names the line."""
 
 import sys
 import threading
@@ -14,20 +14,20 @@ _RealThread = threading.Thread
 _real_sleep = time.sleep
 
 _LOOK = 0.1
-"""Real seconds between two looks."""
+"""Real seconds between two checks."""
 _PATIENCE = 15
-"""Looks without a step after which the person is told."""
+"""Checks without a step after which the program is reported."""
 _LAST_PATIENCE = 35
-"""Looks without a step after which ``give_up`` is called."""
+"""Checks without a step after which ``give_up`` is called."""
 _PROBLEM = f"has not come back for {_LOOK * _PATIENCE:g} real seconds"
 _PATIENCE_WITH_C_CODE = 10.0
-"""Real seconds in which this thread must come to look; on a busy machine it may be late without C code."""
+"""Real seconds in which this thread must check again, unless C code blocks it; high for busy machines."""
 _PATIENCE_WITH_IMPORTS = 150
-"""The same for a thread that imports: large libraries take long, and nobody can mend that."""
+"""The same limit for a thread that imports, as large libraries take long."""
 
 
 class Watchdog:
-    """Looks from outside, on a thread of its own, whether the threads of a virtual clock still take steps."""
+    """Checks on a thread outside the clock whether the threads of a virtual clock still take steps."""
 
     def __init__(
         self,
@@ -39,7 +39,7 @@ class Watchdog:
     ) -> None:
         """``callback_on`` returns the callback that runs on a thread, by its identifier (0: none).
 
-        ``be_back_in`` is told before how many real seconds this has to go on: code in C may prevent it.
+        ``be_back_in`` gets the real seconds in which it must be called again, which C code may prevent.
         """
         self._clock = clock
         self._record = record
@@ -48,7 +48,7 @@ class Watchdog:
         self._be_back_in = be_back_in
 
     def start(self) -> None:
-        """Begin to look."""
+        """Start the checking thread."""
         _RealThread(target=self._watch, name="watchdog", daemon=True).start()
 
     def _watch(self) -> None:

@@ -1,4 +1,4 @@
-"""Warns once in a run on virtual time of what a program does that cannot be repeated exactly."""
+"""Warns once in a run on virtual time that a program's action cannot be repeated exactly."""
 
 from collections.abc import Callable
 
@@ -8,7 +8,7 @@ from sim.trace.events import AnyEvent, Notice, Severity
 
 
 class Repeatability:
-    """Whether a run can be repeated exactly, as far as is known. ``record`` takes events."""
+    """Keeps whether a run can be repeated exactly. ``record`` takes events."""
 
     def __init__(self, clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
         self._clock = clock
@@ -16,7 +16,7 @@ class Repeatability:
         self._lost = False
 
     def lose(self, what: str) -> None:
-        """The calling thread's program does something that will not be the same again, a clause says what."""
+        """Note that the calling thread's program cannot be repeated exactly; ``what`` is the reason."""
         place = place_of_caller()
         if place and not self._lost:
             self._lost = True

@@ -8,11 +8,11 @@ from sim.clock.recesses import WAITS_TO_RECESS
 from sim.engine.watchdogs.thread_positions import place_of
 from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
 
-# Kept from before sim.clock.stdlib puts the virtual one in its place.
+# Kept from before sim.clock.stdlib replaces it.
 _monotonic = time.monotonic
 
 _PATIENCE = 10
-"""Recesses after which the person is told."""
+"""Recesses after which the program is reported."""
 _LAST_PATIENCE = 3.5
 """Real seconds from then on after which ``give_up`` is called."""
 
@@ -20,8 +20,8 @@ _LAST_PATIENCE = 3.5
 class StandstillDetector:
     """Counts the recesses of a moment; warns once per run.
 
-    Threads that pass something on to each other always come to new waits, and may still come to an end: they
-    are reported only when the run is given up.
+    Threads that exchange data with each other always reach new waits, and may still end: they are reported
+    only when the run is given up.
     """
 
     def __init__(
@@ -35,7 +35,7 @@ class StandstillDetector:
         self._began = 0.0
 
     def look(self, recess: int) -> None:
-        """Take note of a recess; the clock calls this on the thread that waits."""
+        """Take a recess; the clock calls this on the waiting thread."""
         if recess == _PATIENCE:
             self._began, self._said = _monotonic(), self._sentence()
             if not self._told and self._clock.time.idles:

@@ -12,19 +12,19 @@ from sim.probes.own_code import is_own, outwards
 from sim.trace.events import EntityId, Notice, NoticeKind, Severity
 
 _AWAITS = threading.Condition.wait.__code__
-"""What every wait of Python's own comes to that is not for a lock."""
+"""The function in which every wait of Python's library ends that is not for a lock."""
 
 
 @dataclass(frozen=True, slots=True)
 class WaitProblem:
-    """What is wrong with a wait, and what to do about it. ``is_deadlock``: it can never end."""
+    """The problem of a wait, and advice on it. ``is_deadlock``: whether it can never end."""
 
     problem: str
     advice: str
     is_deadlock: bool
 
     def notice(self, t: int, entity: EntityId) -> Notice:
-        """Return the notice of it; ``entity`` is the callback that waits (0: none)."""
+        """Return the notice of the problem; ``entity`` is the callback that waits (0: none)."""
         text, fields = f"{self.problem}; {self.advice}", (self.problem, self.advice)
         if self.is_deadlock:
             text = f"deadlock: {text}"
@@ -32,12 +32,12 @@ class WaitProblem:
         return Notice(t, Severity.WARN, text, entity, False, NoticeKind.ENDLESS_WAIT, *fields)
 
 
-def deadlock_of_circle(circle: Sequence[VirtualThread]) -> WaitProblem:
+def deadlock_of_cycle(cycle: Sequence[VirtualThread]) -> WaitProblem:
     """Describe threads that wait for each other's locks or ends, or one that waits for its own lock."""
-    chain = ", and ".join(waits(each) for each in circle)
-    if any(_waits_for_end(each) for each in circle):
+    chain = ", and ".join(waits(each) for each in cycle)
+    if any(_waits_for_end(each) for each in cycle):
         advice = "let go of locks before you wait for a thread to end"
-    elif len(circle) > 1:
+    elif len(cycle) > 1:
         advice = "take locks in the same order everywhere"
     else:
         advice = "take it once, let go of it before, or use threading.RLock"
@@ -57,7 +57,7 @@ def long_wait(thread: VirtualThread, lasted: int) -> WaitProblem:
 
 
 def waits(thread: VirtualThread) -> str:
-    """Say where a thread is, and for which lock or thread it waits."""
+    """Return a clause on where a thread is, and for which lock or thread it waits."""
     return f"{thread.name} ({place_of(thread)}) {_what(thread)}"
 
 
@@ -75,7 +75,7 @@ def _what(thread: VirtualThread) -> str:
 
 
 def _signal(thread: VirtualThread) -> str:
-    """The function of Python's that waits for what another thread is to do: ``Event.wait``; "" for a lock."""
+    """Return the library function in which a thread waits for another: ``Event.wait``; "" for a lock."""
     if thread.wants is None or thread.wants.holder is not thread:
         return ""
     library = [

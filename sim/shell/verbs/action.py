@@ -1,4 +1,4 @@
-"""``ros2 action``: which actions there are, and sending goals."""
+"""``ros2 action``: lists actions and sends goals."""
 
 from __future__ import annotations
 
@@ -14,11 +14,10 @@ from sim.ros.actions.graph import (
     get_action_server_names_and_types_by_node,
 )
 from sim.ros.node.node import Node
-from sim.shell.graph import NamesAndTypes, known_topics, shown
+from sim.shell.graph import NamesAndTypes, known_topics, shown, type_of_given
 from sim.shell.messages import NO_DICTIONARY, Outgoing, action_class, given_values, prototype_word
 from sim.shell.parser import LineParser, Surroundings
 from sim.shell.session import CommandFailed, CommandInterrupted, ShellSession
-from sim.shell.verbs.interface import type_names
 from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
 
 _FEEDBACK, _FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
@@ -34,10 +33,6 @@ def _known_actions(surroundings: Surroundings) -> dict[str, list[str]]:
         for name, types in known_topics(surroundings).items()
         if name.endswith(_FEEDBACK)
     }
-
-
-def _types(surroundings: Surroundings) -> list[str]:
-    return _known_actions(surroundings).get(surroundings.given[0]) or type_names("action")
 
 
 def _goal_prototype(surroundings: Surroundings) -> list[str]:
@@ -96,7 +91,7 @@ def _info(session: ShellSession, arguments: Namespace) -> None:
 
 
 def _nodes_with(node: Node, action: str, ask: Callable[[Node, str, str], NamesAndTypes]) -> NamesAndTypes:
-    """The nodes that have a client or server of the action, with its types."""
+    """Return the nodes with a client or server of an action, and its types."""
     found = []
     for name, namespace in node.get_node_names_and_namespaces():
         types = dict(ask(node, name, namespace)).get(action)
@@ -115,7 +110,7 @@ def _add_send_goal(parser: LineParser) -> None:
     parser.argument(
         "action_type",
         help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')",
-        completer=_types,
+        completer=type_of_given(_known_actions, "action"),
     )
     parser.argument(
         "goal", help="Goal request values in YAML format (e.g. '{order: 10}')", completer=_goal_prototype
@@ -161,7 +156,7 @@ def _await_result(session: ShellSession, goal_handle: Any) -> None:
 
 
 def _cancel(session: ShellSession, goal_handle: Any) -> None:
-    """Ask for the end of the goal, as ros2 does after Ctrl-C; the answer is not waited for."""
+    """Cancel the goal, as ros2 does after Ctrl-C, without waiting for the answer."""
     session.say("Canceling goal...")
     goal_handle.cancel_goal_async()
 

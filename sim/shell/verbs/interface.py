@@ -1,4 +1,4 @@
-"""``ros2 interface``: message, service and action types, and what they are made of."""
+"""``ros2 interface``: message, service and action types, and their definitions."""
 
 from __future__ import annotations
 
@@ -14,18 +14,13 @@ from sim.interfaces import (
     names,
     packages,
 )
+from sim.shell.graph import type_names
 from sim.shell.messages import message_class, prototype_of, prototype_word, service_class
 from sim.shell.parser import LineParser, Surroundings
 from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.verb import ShellCommand, Verb
 
 _TITLES: dict[Kind, str] = {"msg": "Messages", "srv": "Services", "action": "Actions"}
-
-
-def type_names(kind: Kind, package: str | None = None) -> list[str]:
-    """The full names of every interface of a kind, of one package or of all."""
-    chosen = sorted(packages()) if package is None else [package]
-    return [f"{each}/{kind}/{name}" for each in chosen for name in names(each, kind)]
 
 
 def known_messages(_: Surroundings) -> list[str]:
@@ -47,12 +42,12 @@ def _known_interfaces(_: Surroundings) -> list[str]:
 
 
 def message_prototype(surroundings: Surroundings) -> list[str]:
-    """The message of the type that was given second, ready for a shell."""
+    """A default message of the type that was given second, quoted for a shell."""
     return [prototype_word(message_class(surroundings.ground, surroundings.given[1]))]
 
 
 def service_prototype(surroundings: Surroundings) -> list[str]:
-    """The request of the type that was given second, ready for a shell."""
+    """A default request of the type that was given second, quoted for a shell."""
     return [prototype_word(service_class(surroundings.ground, surroundings.given[1]).Request)]
 
 
@@ -88,7 +83,7 @@ def _packages(session: ShellSession, arguments: Namespace) -> None:
 
 
 def _chosen_kinds(arguments: Namespace) -> list[Kind]:
-    """The kinds that the options name, all without any."""
+    """Return the kinds that the options select; without any, all."""
     wanted = {"msg": arguments.only_msgs, "srv": arguments.only_srvs, "action": arguments.only_actions}
     return [kind for kind in _TITLES if wanted[kind]] or list(_TITLES)
 
@@ -139,7 +134,7 @@ def _proto(session: ShellSession, arguments: Namespace) -> None:
 
 
 def _first_part(name: str) -> type[Message]:
-    """The message itself, a service's request or an action's goal."""
+    """Return the class of a message, a service's request or an action's goal."""
     ending = {"srv": "_Request", "action": "_Goal"}.get(name.partition("/")[2].partition("/")[0], "")
     try:
         return message_of_type(f"{name}{ending}")

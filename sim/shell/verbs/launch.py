@@ -69,9 +69,9 @@ def _launch(session: ShellSession, arguments: Namespace) -> None:
     for each in given:
         _check(each)
     if arguments.show_args:
-        session.say(session.tools.describe_launch(owner, file))
+        session.say(session.starter.describe_launch(owner, file))
         return
-    status = wait_for(session, lambda on_exit: session.tools.launch(owner, file, given, on_exit))
+    status = wait_for(session, lambda on_exit: session.starter.launch(owner, file, given, on_exit))
     if status != 0:
         raise Ended(status)
 

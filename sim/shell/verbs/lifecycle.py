@@ -1,4 +1,4 @@
-"""``ros2 lifecycle``: the states of managed nodes, and what moves them from one to another."""
+"""``ros2 lifecycle``: the states and transitions of managed nodes."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 from sim.shell.graph import absolute, is_hidden, known_nodes
 from sim.shell.parser import LineParser, Surroundings
 from sim.shell.session import CommandFailed, ShellSession
-from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
+from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options, add_hidden_nodes_option
 
 _STATE = "lifecycle_msgs/srv/GetState"
 _NOT_FOUND = "Node not found"
@@ -36,7 +36,7 @@ def _nodes(session: ShellSession, arguments: Namespace) -> None:
 
 def _add_hidden(parser: LineParser) -> None:
     add_graph_options(parser)
-    parser.flag("--include-hidden-nodes", help="Consider hidden nodes as well")
+    add_hidden_nodes_option(parser)
 
 
 def _add_get(parser: LineParser) -> None:

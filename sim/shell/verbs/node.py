@@ -1,4 +1,4 @@
-"""``ros2 node``: which nodes there are, and what each has."""
+"""``ros2 node``: lists nodes and their topics, services and actions."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``ros2 param``: lists, reads and sets the parameters of nodes, through the services that nodes offer."""
+"""``ros2 param``: lists, reads and sets the parameters of nodes through their services."""
 
 from __future__ import annotations
 
@@ -22,21 +22,17 @@ from sim.ros.scheduling.task import Future
 from sim.shell.graph import absolute, is_hidden, known_nodes, known_parameters
 from sim.shell.parser import LineParser
 from sim.shell.session import CommandFailed, ShellSession
-from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
+from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options, add_hidden_nodes_option
 
 _SERVICES_PATIENCE = 5.0
 _REPLY_PATIENCE = 1.0
-"""Seconds that ``list`` waits for a node's services, and for its reply."""
+"""Seconds for which ``list`` waits for a node's services and for its reply."""
 
 
 def _add_node(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.argument("node_name", help="Name of the ROS node", completer=known_nodes)
-    _add_hidden(parser)
-
-
-def _add_hidden(parser: LineParser) -> None:
-    parser.flag("--include-hidden-nodes", help="Consider hidden nodes as well")
+    add_hidden_nodes_option(parser)
 
 
 def _add_parameter(parser: LineParser) -> None:
@@ -44,7 +40,7 @@ def _add_parameter(parser: LineParser) -> None:
     parser.argument("parameter_name", help="Name of the parameter", completer=known_parameters)
 
 
-# Types and their words
+# Names of types
 
 
 def _type_word(kind: int) -> str:
@@ -58,7 +54,7 @@ def _label(kind: int) -> str:
     return f"{element.capitalize()} {'values are' if array else 'value is'}:"
 
 
-# Asking
+# Requests
 
 
 def _node_names(session: ShellSession, arguments: Namespace) -> list[str]:
@@ -67,7 +63,7 @@ def _node_names(session: ShellSession, arguments: Namespace) -> list[str]:
 
 
 def _client(session: ShellSession, arguments: Namespace) -> AsyncParameterClient:
-    """A client for the node that the line names; raises CommandFailed if there is none."""
+    """Return a client for the line's node; raise CommandFailed if it does not exist."""
     name = absolute(arguments.node_name)
     if name not in _node_names(session, arguments):
         raise CommandFailed("Node not found")
@@ -93,7 +89,7 @@ def _ready_in_time(session: ShellSession, client: AsyncParameterClient) -> bool:
 def _add_list(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.argument("node_name", nargs="?", help="Name of the ROS node", completer=known_nodes)
-    _add_hidden(parser)
+    add_hidden_nodes_option(parser)
     parser.add_argument(
         "--param-prefixes", nargs="+", default=[], help="Only list parameters with the provided prefixes"
     )
@@ -123,7 +119,7 @@ def _list(session: ShellSession, arguments: Namespace) -> None:
 
 
 def _listed(session: ShellSession, client: AsyncParameterClient, prefixes: list[str]) -> list[str] | None:
-    """The names of a node's parameters; None, and said why, if it does not tell in time."""
+    """Return the names of a node's parameters; print why and return None if it does not reply in time."""
     name = client.remote_node_name
     if not _ready_in_time(session, client):
         session.complain(f"Wait for service timed out waiting for parameter services for node {name}")

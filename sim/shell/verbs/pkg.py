@@ -1,4 +1,4 @@
-"""``ros2 pkg``: which packages there are, and what they hold."""
+"""``ros2 pkg``: lists packages and their contents."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _add_package(parser: LineParser) -> None:
 
 
 def _list(session: ShellSession, _: Namespace) -> None:
-    session.say_each(session.tools.packages().names)
+    session.say_each(session.starter.packages().names)
 
 
 def _add_prefix(parser: LineParser) -> None:
@@ -52,7 +52,7 @@ def _add_executables(parser: LineParser) -> None:
 
 def _executables(session: ShellSession, arguments: Namespace) -> None:
     wanted = arguments.package_name
-    names = session.tools.packages().names if wanted is None else [wanted]
+    names = session.starter.packages().names if wanted is None else [wanted]
     for chosen in (package(session, name) for name in names):
         for executable in sorted(chosen.executables):
             path = chosen.executable(executable).path if arguments.full_path else None

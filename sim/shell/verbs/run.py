@@ -35,7 +35,9 @@ def _run(session: ShellSession, arguments: Namespace) -> None:
     executable = chosen.executable(arguments.executable_name)
     status = wait_for(
         session,
-        lambda on_exit: session.tools.start_executable(chosen.name, executable.name, arguments.argv, on_exit),
+        lambda on_exit: session.starter.start_executable(
+            chosen.name, executable.name, arguments.argv, on_exit
+        ),
     )
     if status < 0:
         session.say(f"{_SAYS} {signal.strsignal(-status)}")

@@ -1,4 +1,4 @@
-"""``ros2 service``: calls services, and tells which there are."""
+"""``ros2 service``: calls and lists services."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sim.ros.entities.client import Client
 from sim.ros.qos.qos import qos_profile_services_default
 from sim.shell.graph import known_services, shown, type_of_given, without_hidden
 from sim.shell.messages import Outgoing, given_values, service_class
-from sim.shell.parser import LineParser, Surroundings, positive_float
+from sim.shell.parser import LineParser, positive_float
 from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.interface import known_service_types, service_prototype
 from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
@@ -21,10 +21,6 @@ _EVENT_NAMES = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_R
 """The kinds of service_msgs/msg/ServiceEventInfo by their numbers."""
 
 
-def _types(surroundings: Surroundings) -> list[str]:
-    return list(type_of_given(known_services)(surroundings)) or known_service_types(surroundings)
-
-
 def _add_call(parser: LineParser) -> None:
     parser.argument(
         "service_name",
@@ -32,7 +28,9 @@ def _add_call(parser: LineParser) -> None:
         completer=known_services,
     )
     parser.argument(
-        "service_type", help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')", completer=_types
+        "service_type",
+        help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')",
+        completer=type_of_given(known_services, "srv"),
     )
     parser.argument(
         "values",
@@ -142,14 +140,14 @@ def _add_echo(parser: LineParser) -> None:
         "service_type",
         nargs="?",
         help="Type of the ROS service (e.g. 'example_interfaces/srv/AddTwoInts')",
-        completer=_types,
+        completer=type_of_given(known_services, "srv"),
     )
     parser.flag("--csv", help="Output all recursive fields separated by commas")
     parser.flag("--flow-style", help="Print collections in the block style")
 
 
 def _echo(session: ShellSession, arguments: Namespace) -> None:
-    """Print what clients and services tell of their calls, if they were configured to."""
+    """Print the service events of clients and services that are configured for introspection."""
     topic = f"{session.node.resolve_service_name(arguments.service_name)}{_EVENTS}"
     if arguments.service_type is None:
         (kind, *_) = _types_of(session, arguments.service_name)

@@ -1,4 +1,4 @@
-"""``ros2 topic``: its verbs, and those that only look at the graph."""
+"""``ros2 topic``: the list of its verbs, and those that only read the graph."""
 
 from __future__ import annotations
 

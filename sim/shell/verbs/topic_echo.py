@@ -13,7 +13,7 @@ from sim.shell.filters import add_filter_option, compiled_filter
 from sim.shell.graph import full_topic_name, known_topics, topic_type, type_of_given
 from sim.shell.messages import message_class
 from sim.shell.parser import LineParser, positive_float, unsigned_int
-from sim.shell.qos_options import add_qos_options, fitting_qos
+from sim.shell.qos_options import add_qos_options, matching_qos
 from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.verb import Verb, add_graph_options
 
@@ -75,7 +75,7 @@ def _echo(session: ShellSession, arguments: Namespace) -> None:
         session.say(f"WARNING: topic [{arguments.topic_name}] does not appear to be published yet")
         raise CommandFailed("Could not determine the type for the passed topic")
     cls = message_class(session.ground, kind)
-    qos = fitting_qos(session, full_topic_name(session, arguments.topic_name), arguments)
+    qos = matching_qos(session, full_topic_name(session, arguments.topic_name), arguments)
     first: Future[None] = Future()
     listener = _Listener(session, arguments, first)
     session.node.create_subscription(cls, arguments.topic_name, listener.hear, qos, raw=arguments.raw)
@@ -83,7 +83,7 @@ def _echo(session: ShellSession, arguments: Namespace) -> None:
 
 
 class _Listener:
-    """Prints each message as the options want it; ``first`` is done with the first if one is enough."""
+    """Prints each message as the options say; ``first`` is done with the first message if one is enough."""
 
     def __init__(self, session: ShellSession, arguments: Namespace, first: Future[None]) -> None:
         self._shorter: dict[str, Any] = {

@@ -1,4 +1,4 @@
-"""``ros2 topic pub``: publishes a message once, some times or for ever."""
+"""``ros2 topic pub``: publishes a message once, several times or without end."""
 
 from __future__ import annotations
 
@@ -8,27 +8,27 @@ from sim.ros.entities.publisher import Publisher
 from sim.ros.scheduling.task import Future
 from sim.shell.graph import known_topics, type_of_given
 from sim.shell.messages import NO_DICTIONARY, Outgoing, given_values, message_class
-from sim.shell.parser import LineParser, Surroundings, nonnegative_int, positive_float
+from sim.shell.parser import LineParser, nonnegative_int, positive_float
 from sim.shell.qos_options import add_qos_options, chosen_qos
 from sim.shell.session import CommandFailed, ShellSession
-from sim.shell.verbs.interface import known_messages, message_prototype
+from sim.shell.verbs.interface import message_prototype
 from sim.shell.verbs.verb import Verb, add_graph_options
 
 _MATCH_POLL = 0.1
 _POLLS_A_REPORT = 10
 _SHORTEST_PERIOD = 1e-9
-"""Seconds; with none between two messages, time would stand still on the virtual clock."""
-
-
-def _types(surroundings: Surroundings) -> list[str]:
-    return list(type_of_given(known_topics)(surroundings)) or known_messages(surroundings)
+"""Seconds; without a pause between messages, virtual time would stand still."""
 
 
 def _add_arguments(parser: LineParser) -> None:
     parser.argument(
         "topic_name", help="Name of the ROS topic to publish to (e.g. '/chatter')", completer=known_topics
     )
-    parser.argument("message_type", help="Type of the ROS message (e.g. 'std_msgs/String')", completer=_types)
+    parser.argument(
+        "message_type",
+        help="Type of the ROS message (e.g. 'std_msgs/String')",
+        completer=type_of_given(known_topics, "msg"),
+    )
     parser.argument(
         "values",
         nargs="?",
@@ -107,7 +107,7 @@ def _wait_for_subscriptions(session: ShellSession, publisher: Publisher, wanted:
 
 
 class _Loop:
-    """Publishes at once and then each period, ``times`` times (0: for ever)."""
+    """Publishes at once and then each period, ``times`` times (0: without end)."""
 
     def __init__(
         self, session: ShellSession, publisher: Publisher, outgoing: Outgoing, every: int, times: int

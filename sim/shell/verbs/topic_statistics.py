@@ -1,4 +1,4 @@
-"""``ros2 topic hz``, ``bw`` and ``delay``: how often, how much and how late messages come."""
+"""``ros2 topic hz``, ``bw`` and ``delay``: the rate, bandwidth and delay of messages."""
 
 from __future__ import annotations
 
@@ -25,11 +25,18 @@ _KILO, _MEGA = 1_000, 1_000_000
 
 
 def spread(values: Iterable[float]) -> tuple[float, float, float, float, int]:
-    """Mean, least, greatest, standard deviation (of the whole) and number of one or more values."""
+    """Return mean, minimum, maximum, population standard deviation and number of one or more values."""
     every = list(values)
     mean = math.fsum(every) / len(every)
     deviation = math.sqrt(math.fsum((each - mean) ** 2 for each in every) / len(every))
     return mean, min(every), max(every), deviation, len(every)
+
+
+def _spread_text(lengths: Iterable[int]) -> tuple[float, str]:
+    """Return the mean of nanoseconds, in seconds, and a line with the rest of their spread."""
+    mean, least, greatest, deviation, count = spread(length / SECOND for length in lengths)
+    text = f"\tmin: {least:.3f}s max: {greatest:.3f}s std dev: {deviation:.5f}s window: {count}"
+    return mean, text
 
 
 class RateMeter:
@@ -41,13 +48,13 @@ class RateMeter:
         self._reported: int | None = None
 
     def message(self, now: int) -> None:
-        """A message came."""
+        """Add a message."""
         if self._last is not None:
             self._gaps.append(now - self._last)
         self._last = now
 
     def report(self) -> str | None:
-        """What to print after a message: something once a second, from the second second on."""
+        """Return the text to print after a message, once a second, from the second second on; else None."""
         if self._last is None or not self._gaps:
             return None
         if self._reported is None:
@@ -56,11 +63,8 @@ class RateMeter:
         if self._last < self._reported + SECOND:
             return None
         self._reported = self._last
-        mean, least, greatest, deviation, count = spread(gap / SECOND for gap in self._gaps)
-        return (
-            f"average rate: {1.0 / mean if mean > 0 else 0.0:.3f}\n"
-            f"\tmin: {least:.3f}s max: {greatest:.3f}s std dev: {deviation:.5f}s window: {count}"
-        )
+        mean, text = _spread_text(self._gaps)
+        return f"average rate: {1.0 / mean if mean > 0 else 0.0:.3f}\n{text}"
 
 
 class Bandwidth:
@@ -70,11 +74,11 @@ class Bandwidth:
         self._came: deque[tuple[int, int]] = deque(maxlen=window)
 
     def message(self, now: int, size: int) -> None:
-        """A message came."""
+        """Add a message."""
         self._came.append((now, size))
 
     def report(self, now: int) -> str | None:
-        """What to print once a second."""
+        """Return the text to print once a second; None for fewer than two messages."""
         if len(self._came) < 2 or now <= self._came[0][0]:
             return None
         sizes = [size for _, size in self._came]
@@ -87,31 +91,28 @@ class Bandwidth:
 
 
 class Delay:
-    """How long ago the last ``window`` messages were stamped. Times are nanoseconds."""
+    """The ages of the last ``window`` messages by their stamps. Times are nanoseconds."""
 
     def __init__(self, window: int) -> None:
         self._delays: deque[int] = deque(maxlen=window)
         self._reported = 0
 
     def message(self, now: int, stamp: int) -> None:
-        """A message came."""
+        """Add a message."""
         self._delays.append(now - stamp)
         self._last = now
 
     def report(self) -> str | None:
-        """What to print once a second, if a message came since."""
+        """Return the text to print once a second; None if no message came since."""
         if not self._delays or self._last == self._reported:
             return None
         self._reported = self._last
-        mean, least, greatest, deviation, count = spread(delay / SECOND for delay in self._delays)
-        return (
-            f"average delay: {mean:.3f}\n"
-            f"\tmin: {least:.3f}s max: {greatest:.3f}s std dev: {deviation:.5f}s window: {count}"
-        )
+        mean, text = _spread_text(self._delays)
+        return f"average delay: {mean:.3f}\n{text}"
 
 
 def as_bytes(size: float) -> str:
-    """A size as ``ros2 topic bw`` writes it."""
+    """Return a size as ``ros2 topic bw`` writes it."""
     if size < _KILO:
         return f"{size:.0f} B"
     return f"{size / _KILO:.2f} KB" if size < _MEGA else f"{size / _MEGA:.2f} MB"

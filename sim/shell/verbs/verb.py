@@ -1,4 +1,4 @@
-"""A verb: what stands after ``ros2 topic`` and the like."""
+"""Verbs: the words after ``ros2 topic`` and the other commands."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Action: TypeAlias = Callable[[ShellSession, Namespace], None]
 
 @dataclass(frozen=True, slots=True)
 class Verb:
-    """What it is called, which arguments it takes, and what it does.
+    """A verb: its name, its arguments and its action.
 
-    ``carry_out`` raises for any end but a good one: Failed, Ended, Interrupted, or an error that says
-    what is wrong (NotImplementedError, PackageError, DefinitionError).
+    ``carry_out`` raises for every end but success: CommandFailed, Ended, CommandInterrupted, or an error
+    whose text is a sentence (NotImplementedError, PackageError, DefinitionError).
     """
 
     name: str
@@ -29,7 +29,7 @@ class Verb:
 
 @dataclass(frozen=True, slots=True)
 class ShellCommand:
-    """A command with verbs, or one that is a verb itself."""
+    """A command with verbs, or one that is itself a verb."""
 
     name: str
     help: str
@@ -37,12 +37,17 @@ class ShellCommand:
     itself: Verb | None = None
 
 
+def add_hidden_nodes_option(parser: LineParser) -> None:
+    """Add ``--include-hidden-nodes``."""
+    parser.flag("--include-hidden-nodes", help="Consider hidden nodes as well")
+
+
 def no_arguments(parser: LineParser) -> None:
     """Add none."""
 
 
 def add_graph_options(parser: LineParser) -> None:
-    """The options of verbs that look at the graph, which is known here at once and without a daemon."""
+    """Add the options of verbs that read the graph, which have no effect: it is known without a daemon."""
     parser.add_argument(
         "--spin-time",
         type=float,

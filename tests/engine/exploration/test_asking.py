@@ -124,3 +124,27 @@ def test_up_to_a_moment_a_run_is_as_usual_and_asks_from_there_on(tmp_path: Path)
     questions = [event for event in events if isinstance(event, ChoiceAsked)]
     assert questions[0].number == 0
     assert questions[0].t == 1_000_000_000
+
+
+POOL = """
+from concurrent.futures import ThreadPoolExecutor
+
+def add(number):
+    return number + 1
+
+def main():
+    with ThreadPoolExecutor(2) as pool:
+        print(*pool.map(add, range(2)))
+"""
+
+
+def test_workers_of_a_pool_are_told_from_other_threads(tmp_path: Path) -> None:
+    events = asked(tmp_path, lambda _: Choose(1), program=POOL)
+    questions = [event for event in events if isinstance(event, ChoiceAsked)]
+    for each in questions:
+        workers = [place for place, thread in enumerate(each.threads) if "ThreadPoolExecutor" in thread]
+        assert list(each.pooled) == workers
+    assert any(each.pooled for each in questions)
+    assert not any(
+        event.pooled for event in asked(tmp_path, lambda _: Choose(0)) if isinstance(event, ChoiceAsked)
+    )

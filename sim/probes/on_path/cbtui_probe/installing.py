@@ -72,7 +72,7 @@ def _watch_end(recorder: Recorder) -> None:
 
     def report_known(kind: Any, error: Any, _trace: Any) -> None:
         if not issubclass(kind, KeyboardInterrupt):
-            recorder.put("uncaught", now(), *raised_at(error))
+            recorder.put("uncaught", now(), *raised_at(error), type(error).__name__)
         leave_out_probe(error)
         report(kind, error, error.__traceback__)
 

@@ -1,4 +1,4 @@
-"""What a line needs from whoever carries it out: a place for its output, packages, and programs to start."""
+"""What a line needs of the run around it: packages, and programs to start."""
 
 from __future__ import annotations
 
@@ -15,25 +15,19 @@ class Running(Protocol):
     """Programs that a line started."""
 
     def interrupt(self) -> None:
-        """End them as Ctrl-C would. Any thread may call it, as often as wanted; it does not wait."""
+        """End them as Ctrl-C would. Does not wait; any thread may call it, more than once."""
 
 
-class Tools(Protocol):
-    """What is called for a line, on the line's own thread."""
-
-    def say(self, text: str, error: bool) -> None:
-        """Take a line of output; ``error``: it belongs on stderr."""
-
-    def ended(self, status: int) -> None:
-        """Take the exit status, once, after all else; a line that the end of the run cuts off has none."""
+class Starter(Protocol):
+    """Starts programs for a line; called on the line's own thread. Its errors are sentences."""
 
     def packages(self) -> Packages:
-        """The packages at hand."""
+        """Return the packages of the workspace."""
 
     def start_executable(
         self, package: str, executable: str, arguments: Sequence[str], on_exit: OnExit
     ) -> Running:
-        """Start a program that the packages know, as a node's process of its own."""
+        """Start a program of a package, as a process of its own."""
 
     def launch(
         self, package: str | None, launch_file: str, arguments: Sequence[str], on_exit: OnExit
@@ -41,4 +35,4 @@ class Tools(Protocol):
         """Start a launch file, of a package or (None) by its path, with ``name:=value`` arguments."""
 
     def describe_launch(self, package: str | None, launch_file: str) -> str:
-        """What ``ros2 launch --show-args`` prints of a launch file."""
+        """Return what ``ros2 launch --show-args`` prints about a launch file."""
