@@ -1,4 +1,4 @@
-"""What can be wrong with a launch file, in one sentence with its name and line."""
+"""Errors of launch files, each in one sentence with the file's name and line."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _HERE = str(Path(__file__).parent)
 
 
 class LaunchError(Exception):
-    """A launch file that cannot be read or carried out; the text says where and why."""
+    """A launch file cannot be read or carried out; the text says where and why."""
 
 
 Place = tuple[str, int]
@@ -21,7 +21,7 @@ Place = tuple[str, int]
 
 
 def place_of_caller() -> Place | None:
-    """The nearest line on the stack that is not this package's own: where a launch file makes an action."""
+    """Return the nearest line on the stack outside this package: where a launch file creates an action."""
     frame: FrameType | None = sys._getframe(1)
     while frame is not None:
         name = frame.f_code.co_filename
@@ -32,7 +32,7 @@ def place_of_caller() -> Place | None:
 
 
 def explained(error: BaseException, file: Path, place: Place | None = None) -> LaunchError:
-    """``error`` as a sentence on the line of ``file`` it came from, else on ``place``."""
+    """Return ``error`` as a sentence on the line of ``file`` that raised it, else on ``place``."""
     if isinstance(error, LaunchError):
         return error
     if isinstance(error, SyntaxError) and error.filename == str(file):
@@ -51,15 +51,15 @@ def _text(error: BaseException) -> str:
     return f"{type(error).__name__}: {text}" if text else type(error).__name__
 
 
-class LaunchFailure(RuntimeError):  # noqa: N818 -- base of exceptions whose names launch gives
-    """An action or substitution that cannot do what it is asked; the text is a sentence of its own."""
+class LaunchFailure(RuntimeError):  # noqa: N818 -- base of exceptions that launch names
+    """An action or substitution failed; the text is a sentence."""
 
 
 COMPILED = ": components are compiled from C++"
 
 
 def unsupported(name: str, why: str) -> type:
-    """A class by that name of which nobody can make one: NotImplementedError tells why."""
+    """Return a class by that name whose constructor raises NotImplementedError with the reason."""
 
     def refuse(*_: object, **__: object) -> None:
         raise NotImplementedError(f"{name} is not supported{why}")

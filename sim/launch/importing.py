@@ -1,4 +1,4 @@
-"""Makes ``import launch``, ``launch_ros``, ``ament_index_python`` and their kin mean this model."""
+"""Makes ``launch``, ``launch_ros``, ``ament_index_python`` and related packages import this model."""
 
 import importlib
 import sys
@@ -35,6 +35,6 @@ _MODULES = (
 
 
 def install() -> None:
-    """Put the model in these packages' place; twice does no harm."""
+    """Replace these packages by the model; idempotent."""
     for name in _MODULES:
         sys.modules[name] = importlib.import_module(f"sim.launch.{name}")

@@ -16,12 +16,10 @@ _GENERATE = "generate_launch_description"
 
 
 def load_description(path: Path) -> LaunchDescription:
-    """Run the launch file in this process and return what it describes.
-
-    The file is a program: it may do anything.
+    """Run a launch file, which is a program, in this process, and return its description.
 
     Raises:
-        LaunchError: it cannot be read, raises, or describes no launch.
+        LaunchError: the file cannot be read, raises an error, or returns no description.
     """
     from sim.launch.importing import install
     from sim.launch.launch.launch_description import LaunchDescription

@@ -1,4 +1,4 @@
-"""What a launch needs of whoever runs programs: the interface between launch files and the engine."""
+"""The interface between launches and the engine, which runs programs and keeps time."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Protocol
 OnExit = Callable[[int], None]
 """Takes the exit status of a process, once."""
 OnOutput = Callable[[str, bool], None]
-"""Takes a line that a process prints or logs, and whether to stderr. Called on any thread; never waits."""
+"""Takes a line that a process prints or logs, and whether to stderr. Called on any thread; must not wait."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +18,7 @@ class ProcessSpec:
     """A program to start as a process of its own.
 
     ``path`` is run as a script, or ``function`` of the module ``module`` in it is called; ``folder`` is where
-    imports look first. ``arguments`` are those behind the program's own name. ``label`` names the process in
+    imports look first. ``arguments`` follow the program's own name. ``label`` names the process in
     the log, such as ``exercise51-1``. ``package`` and ``executable`` are empty for a plain file.
     """
 
@@ -35,36 +35,36 @@ class ProcessSpec:
     output: str = "log"
     """``screen`` and ``both`` show all output; ``log`` shows, as launch does, only stderr."""
     working_folder: Path | None = None
-    """None: the folder that the launch was started in."""
+    """None: the folder in which the launch was started."""
 
     @property
     def command(self) -> str:
-        """The command line, as launch tells it of a process that died."""
+        """The command line, as launch reports it for a process that died."""
         return " ".join((str(self.path), *self.arguments))
 
 
 class RunningProcess(Protocol):
-    """A process that was started. Every method does nothing once it has ended; none of them waits."""
+    """A started process. Its methods do not wait, and do nothing once it has ended."""
 
     @property
     def number(self) -> int:
-        """What stands for its process id."""
+        """The number that represents its process id."""
 
     def interrupt(self) -> None:
-        """Have it end as Ctrl-C would."""
+        """End the process as Ctrl-C would."""
 
     def terminate(self) -> None:
-        """Have it end as SIGTERM would."""
+        """End the process as SIGTERM would."""
 
     def kill(self) -> None:
-        """End it whatever it does, as SIGKILL would."""
+        """End the process as SIGKILL would."""
 
 
 class Machine(Protocol):
     """Runs processes, keeps time and shows the log.
 
-    What it calls (``on_exit``, timed actions) it calls on the thread or under the lock that the launch was
-    started with, never two at once; ``on_exit`` may be called from inside ``start_process``.
+    ``on_exit`` and timed actions are called on the thread, or under the lock, with which the launch was
+    started, never two at once; ``on_exit`` may be called inside ``start_process``.
     """
 
     def start_process(self, spec: ProcessSpec, on_exit: OnExit, on_output: OnOutput) -> RunningProcess:

@@ -1,4 +1,4 @@
-"""Carries out a launch file: from its description to the processes, and what happens to them."""
+"""Carries out a launch file: its description, its processes, and their events."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from sim.packages import Packages, find_packages, use_packages
 class LaunchRun:
     """One run of a launch file with ``name:=value`` arguments.
 
-    ``packages`` None stands for those that lie around the file; they become the process's known packages.
-    ``on_finish`` is called once, with the exit status, when nothing runs and nothing is to come.
+    ``packages`` become the process's known packages; None: those around the file. ``on_finish`` is called
+    once, with the exit status, when no process or timer is left.
 
-    Not thread-safe: ``start``, ``interrupt`` and what the machine calls must come on one thread or under one
-    lock. The machine may call back from inside of its own methods.
+    Not thread-safe: ``start``, ``interrupt`` and the machine's calls must come on one thread or under one
+    lock. The machine may call back inside its own methods.
     """
 
     def __init__(
@@ -47,18 +47,18 @@ class LaunchRun:
         self._busy = False
         self.finished = False
         self.error: LaunchError | None = None
-        """What went wrong after the start, if anything did."""
+        """The error after the start, if there was one."""
 
     @property
     def status(self) -> int:
-        """The exit status: 1 if the launch itself failed, whatever became of its processes."""
+        """The exit status: 1 if the launch itself failed, whatever its processes returned."""
         return 0 if self.error is None else 1
 
     def start(self) -> None:
-        """Run the launch file and start what it starts.
+        """Run the launch file and carry out its description.
 
         Raises:
-            LaunchError: the file, or an argument, cannot be read or carried out; nothing was started then.
+            LaunchError: the file or an argument is wrong; no process has been started then.
         """
         self._context.launch_configurations.update(read_arguments(self._arguments))
         use_packages(self._packages)
@@ -68,13 +68,13 @@ class LaunchRun:
         self._wake(lambda: None)
 
     def interrupt(self) -> None:
-        """Do what Ctrl-C does: end every process; a second one is told but changes nothing."""
+        """Do what Ctrl-C does: end every process; a second one is logged and has no effect."""
         self._context.say("user interrupted with ctrl-c (SIGINT)", "WARNING")
         event = Shutdown(reason="ctrl-c (SIGINT)", due_to_sigint=True)
         self._wake(lambda: self._happen(event))
 
     def _wake(self, deed: Callable[[], None]) -> None:
-        """Do something and all that follows from it, after what is being done now."""
+        """Run an action and all actions that it queues, after the running one."""
         queue = self._context.queue
         queue.append(deed)
         if self._busy:
@@ -93,13 +93,13 @@ class LaunchRun:
     def _do(self, deed: Callable[[], None]) -> None:
         try:
             deed()
-        except Exception as error:  # noqa: BLE001 -- whatever a launch file raises ends the launch, not the engine
+        except Exception as error:  # noqa: BLE001 -- an error of a launch file ends the launch, not the engine
             self.error = explained(error, self._path)
             self._context.say(f"Caught exception in launch: {self.error}", "ERROR")
             self._happen(Shutdown(reason=str(self.error)))
 
     def _happen(self, event: Event) -> None:
-        """Have the handlers of an event asked, and do what the launch itself does about it."""
+        """Do what the launch itself does about an event, and call its handlers."""
         if isinstance(event, Shutdown):
             if self._context.is_shutdown:
                 return
@@ -119,10 +119,10 @@ class LaunchRun:
                     self._context.event = None
 
     def _visit(self, entity: LaunchDescriptionEntity) -> None:
-        """Visit an entity and all that it gives, in order.
+        """Visit an entity and the entities that it returns, in order.
 
         Raises:
-            LaunchError: one of them fails; the text names the line that made it.
+            LaunchError: an entity fails; the text names the line that created it.
         """
         try:
             found = entity.visit(self._context)

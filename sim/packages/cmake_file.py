@@ -1,4 +1,4 @@
-"""Reads what the ``install()`` commands of a ``CMakeLists.txt`` install: scripts and data files."""
+"""Reads the ``install()`` commands of a ``CMakeLists.txt``: scripts and data files."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _ENDS = frozenset(("RENAME", "PATTERN", "PERMISSIONS", "USE_SOURCE_PERMISSIONS",
 def read_cmake(root: Path) -> Installed:
     """Read ``install(PROGRAMS …)``, ``install(FILES …)`` and ``install(DIRECTORY …)``.
 
-    Everything else in a CMake file, such as compiling, is left out: an interpreter does not need it.
+    Everything else in a CMake file, such as compiling, is ignored.
 
     Raises:
         PackageError: the file cannot be read.
@@ -67,7 +67,7 @@ def _install(kind: str, words: list[str], root: Path, installed: Installed) -> N
 
 
 def _files_below(source: str, root: Path) -> Iterator[tuple[PurePosixPath, Path]]:
-    """The files of a folder, named with the folder's own name unless it ends in a slash, as CMake does."""
+    """Yield the files of a folder, with the folder's name unless it ends in a slash, as CMake does."""
     folder = root / source
     base = folder if source.endswith("/") else folder.parent
     for path in sorted(folder.rglob("*")):

@@ -1,8 +1,8 @@
-"""What can be wrong with a package, each in one sentence for the learner."""
+"""Errors of packages, each with a sentence for the learner."""
 
 
 class PackageError(Exception):
-    """A package that cannot be read or lacks what was asked for; the text says what and where."""
+    """A package cannot be read, or does not have the requested item; the text says what and where."""
 
 
 class UnknownPackageError(PackageError, LookupError):
@@ -14,5 +14,5 @@ class UnknownExecutableError(PackageError, LookupError):
 
 
 def listing(what: str, names: list[str]) -> str:
-    """``known packages: a, b``, or that there are none."""
+    """Return an enumeration such as ``known packages: a, b``, or ``no known packages``."""
     return f"{what}: {', '.join(names)}" if names else f"no {what}"

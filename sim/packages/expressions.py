@@ -14,16 +14,16 @@ from typing import Any
 from sim.packages.errors import PackageError
 
 _LONGEST = 100_000
-"""Characters or items of a value: a few lines can double one until no memory holds it."""
+"""Limit for the characters or items of a value, which a few lines can double again and again."""
 _WIDE = re.compile(r"[%{][^%{}]*(\d{4}|\*)|\{[^{}]*\{")
-"""A place to fill in that asks for thousands of columns, or for as many as something else says."""
+"""A format field of thousands of columns, or with a computed width."""
 
 
 @dataclass(slots=True)
 class Expressions:
-    """The names of a file of Python, and what they stand for as far as that can be told.
+    """The names of a Python file, with their values as far as these can be evaluated.
 
-    ``path`` is the file; what globs and listings give is relative to its folder.
+    ``path`` is the file; globs and listings are relative to its folder.
     """
 
     path: Path
@@ -32,10 +32,10 @@ class Expressions:
     _unreadable: dict[str, PackageError] = field(default_factory=dict)
 
     def value(self, node: ast.expr) -> Any:
-        """What the expression gives.
+        """Return the value of an expression.
 
         Raises:
-            PackageError: it is more than constants, names, joins, globs and loops over these.
+            PackageError: the expression has more than constants, names, joins, globs and loops over these.
         """
         read = _READERS.get(type(node))
         if read is None:
@@ -51,7 +51,7 @@ class Expressions:
         return value
 
     def carry_out(self, statement: ast.stmt) -> None:
-        """Take note of an import, an assignment or an addition to a list; nothing else has an effect."""
+        """Evaluate an import, an assignment or an addition to a list; ignore any other statement."""
         match statement:
             case ast.Import(names=aliases):
                 for alias in aliases:
@@ -89,7 +89,7 @@ class Expressions:
             self._unreadable[name] = error
 
     def name(self, node: ast.Name) -> Any:
-        """What a name stands for."""
+        """Return the value of a name."""
         if node.id in self._unreadable:
             raise self._unreadable[node.id]
         if node.id not in self.names:
@@ -97,14 +97,14 @@ class Expressions:
         return self.names[node.id]
 
     def full_name(self, node: ast.expr) -> str:
-        """``os.path.join`` for whatever the file calls it; empty if it is nothing imported."""
+        """Return an imported function's full name, such as ``os.path.join``; empty if it is not imported."""
         if isinstance(node, ast.Attribute):
             owner = self.full_name(node.value)
             return f"{owner}.{node.attr}" if owner else ""
         return self._imported.get(node.id, "") if isinstance(node, ast.Name) else ""
 
     def call(self, node: ast.Call) -> Any:
-        """What one of the known functions gives."""
+        """Return the value of a call of a known function."""
         function = _FUNCTIONS.get(self.full_name(node.func))
         if function is None and isinstance(node.func, ast.Name) and node.func.id in _BUILT_IN:
             function = _BUILT_IN[node.func.id]
@@ -118,7 +118,7 @@ class Expressions:
         raise self.trouble(node)
 
     def items(self, nodes: list[ast.expr]) -> list[Any]:
-        """The items of a list, with ``*others`` unpacked."""
+        """Return the items of a list, with ``*others`` unpacked."""
         found: list[Any] = []
         for each in nodes:
             if isinstance(each, ast.Starred):
@@ -128,14 +128,14 @@ class Expressions:
         return found
 
     def mapping(self, node: ast.Dict) -> dict[Any, Any]:
-        """A dictionary, with ``**others`` unpacked."""
+        """Return a dictionary, with ``**others`` unpacked."""
         found: dict[Any, Any] = {}
         for key, value in zip(node.keys, node.values, strict=True):
             found.update(self.value(value) if key is None else {self.value(key): self.value(value)})
         return found
 
     def comprehension(self, node: ast.ListComp) -> list[Any]:
-        """A list made by one loop over one name."""
+        """Return the list of a comprehension with one loop over one name."""
         loop, *others = node.generators
         if others or not isinstance(loop.target, ast.Name) or loop.ifs:
             raise self.trouble(node)
@@ -146,7 +146,7 @@ class Expressions:
         return found
 
     def binary(self, node: ast.BinOp) -> Any:
-        """A sum, or a text filled in with ``%``."""
+        """Return a sum, or a text formatted by ``%``."""
         if isinstance(node.op, ast.Add):
             return self.value(node.left) + self.value(node.right)
         if isinstance(node.op, ast.Mod):
@@ -156,18 +156,18 @@ class Expressions:
         raise self.trouble(node)
 
     def text(self, node: ast.JoinedStr) -> str:
-        """An f-string."""
+        """Return the value of an f-string."""
         return "".join(
             str(self.value(each.value if isinstance(each, ast.FormattedValue) else each))
             for each in node.values
         )
 
     def place(self, node: ast.expr) -> str:
-        """The file and line of an expression."""
+        """Return the file and line of an expression."""
         return f"{self.path}:{node.lineno}"
 
     def trouble(self, node: ast.expr) -> PackageError:
-        """What to tell about an expression that is too much."""
+        """Return the error for an expression that cannot be evaluated."""
         return PackageError(
             f"{self.place(node)}: {_written(node)} cannot be read without running the file; "
             "write it as constants, names, os.path.join and glob"
@@ -197,7 +197,7 @@ _READERS: Mapping[type[ast.expr], Callable[[Expressions, Any], Any]] = {
 def _glob(root: Path, pattern: str, *, recursive: bool = False) -> list[str]:
     if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
         raise ValueError("it looks outside of the package")
-    return sorted(glob(pattern, root_dir=root, recursive=recursive))  # noqa: PTH207 -- it is that function
+    return sorted(glob(pattern, root_dir=root, recursive=recursive))  # noqa: PTH207 -- this is glob.glob itself
 
 
 def _listing(root: Path, folder: str = ".") -> list[str]:
@@ -207,8 +207,8 @@ def _listing(root: Path, folder: str = ".") -> list[str]:
 _FUNCTIONS: Mapping[str, Callable[..., Any]] = {
     "glob.glob": _glob,
     "os.listdir": _listing,
-    "os.path.basename": lambda _, path: os.path.basename(path),  # noqa: PTH119 -- it is that function
-    "os.path.join": lambda _, *parts: os.path.join(*parts),  # noqa: PTH118 -- it is that function
+    "os.path.basename": lambda _, path: os.path.basename(path),  # noqa: PTH119 -- this is os.path.basename itself
+    "os.path.join": lambda _, *parts: os.path.join(*parts),  # noqa: PTH118 -- this is os.path.join itself
 }
 _BUILT_IN: Mapping[str, Callable[..., Any]] = {
     "list": lambda _, items=(): list(items),

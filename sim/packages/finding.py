@@ -1,4 +1,4 @@
-"""Looks for packages around a file or in a workspace, as far as is reasonable."""
+"""Searches for packages around a file or in a workspace, within limits."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from sim.packages.manifest import MANIFEST, read_name
 from sim.packages.package import Package
 
 _MOST_FOLDERS = 2000
-"""Folders looked into for one start, so that a start in a home folder ends soon."""
+"""Folders searched for one start, so that a search in a home folder ends soon."""
 _DEPTH = 3
-"""How far below a start or a workspace's ``src`` a package may lie."""
+"""Levels below a start or a workspace's ``src`` that are searched."""
 _LEVELS_UP = 6
 _NO_SOURCES = frozenset(("build", "install", "log", "node_modules", "__pycache__"))
 _IGNORE_FILES = ("COLCON_IGNORE", "AMENT_IGNORE")
@@ -23,7 +23,7 @@ _IGNORE_FILES = ("COLCON_IGNORE", "AMENT_IGNORE")
 
 @dataclass(slots=True)
 class Packages:
-    """The packages that were found, by name. ``notes`` are sentences on what was left out and why."""
+    """The found packages, by name. ``notes`` are sentences on packages that were left out, and why."""
 
     by_name: dict[str, Package] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
@@ -40,10 +40,10 @@ class Packages:
         return sorted(self.by_name)
 
     def package(self, name: str) -> Package:
-        """The package of that name.
+        """Return a package by name.
 
         Raises:
-            UnknownPackageError: there is none.
+            UnknownPackageError: there is no such package.
         """
         if name not in self.by_name:
             notes = "".join(f" ({note})" for note in self.notes)
@@ -52,7 +52,7 @@ class Packages:
         return self.by_name[name]
 
     def close(self) -> None:
-        """Remove the folders that packages made for themselves."""
+        """Remove the temporary folders of the packages."""
         for package in self:
             package.close()
 
@@ -60,9 +60,9 @@ class Packages:
 def find_packages(start: Path | Iterable[Path]) -> Packages:
     """Find the packages around each start: a launch file, a node's file, a package or a workspace.
 
-    Looked at are the start's folder and what is below it, the package that the start is in and those
-    beside it, and the ``src`` of the workspace that it is in. Of two packages of one name the first found
-    counts. A manifest that cannot be read is told in ``notes``.
+    Searched are the start's folder and those below it, the package around the start and those beside it,
+    and the ``src`` of the workspace around it. Of two packages of one name the first counts. A manifest
+    that cannot be read is reported in ``notes``.
     """
     found = Packages()
     seen: set[Path] = set()
@@ -91,7 +91,7 @@ def _add(root: Path, found: Packages) -> None:
 
 
 def _places(folder: Path) -> Iterator[tuple[Path, int]]:
-    """The folders to search, and how deep each."""
+    """Yield the folders to search, and the depth of each search."""
     around = [folder, *folder.parents][: _LEVELS_UP + 1]
     own = next((each for each in around if (each / MANIFEST).is_file()), None)
     if own is not None:
@@ -108,14 +108,14 @@ def _places(folder: Path) -> Iterator[tuple[Path, int]]:
 
 
 def _roots(top: Path, depth: int, budget: Iterator[int]) -> Iterator[Path]:
-    """The package folders from ``top`` down, nearest first; a package holds no others."""
+    """Yield the package folders below ``top``, nearest first; packages are not searched for others."""
     waiting = deque([(top, depth)])
     while waiting and next(budget, None) is not None:
         folder, left = waiting.popleft()
         try:
             ignored = any(mode_of(folder / name) for name in _IGNORE_FILES)
             is_package = (folder / MANIFEST).is_file()
-        except OSError:  # it is somebody else's alone, as some in /tmp are
+        except OSError:  # not readable, as some folders in /tmp
             continue
         if ignored:
             continue

@@ -11,18 +11,19 @@ from sim.packages.errors import PackageError
 
 MANIFEST = "package.xml"
 _NAME = re.compile(r"\w[\w-]*", re.ASCII)
-"""Folders are called like that, so there is no path in it."""
+"""Folders have this name, so that it must not contain a path."""
 
 
 def read_name(folder: Path) -> str:
-    """The name that the ``package.xml`` in ``folder`` gives the package.
+    """Return the package's name in the ``package.xml`` of ``folder``.
 
     Raises:
-        PackageError: it cannot be read, is no package manifest, or declares XML entities.
+        PackageError: the file cannot be read, is not a package manifest, or declares XML entities.
     """
     path = folder / MANIFEST
     try:
-        root = ElementTree.fromstring(read_bytes(path), parser=_parser(path))
+        parser = ElementTree.XMLParser(target=_NoEntities(path))
+        root = ElementTree.fromstring(read_bytes(path), parser=parser)
     except ElementTree.ParseError as error:
         line, _ = error.position
         raise PackageError(f"{path}:{line}: this is not XML: {str(error).split(':', 1)[0]}") from None
@@ -36,12 +37,8 @@ def read_name(folder: Path) -> str:
     return name
 
 
-def _parser(path: Path) -> ElementTree.XMLParser:
-    return ElementTree.XMLParser(target=_NoEntities(path))
-
-
 class _NoEntities(ElementTree.TreeBuilder):
-    """Builds a tree, but refuses entities: a few lines of them can grow without bound."""
+    """Builds a tree, but refuses entities, which a few lines can expand without limit."""
 
     def __init__(self, path: Path) -> None:
         super().__init__()

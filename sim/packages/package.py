@@ -1,4 +1,4 @@
-"""One package: its programs, its launch files and its share folder."""
+"""A package: its programs, its launch files and its share folder."""
 
 from __future__ import annotations
 
@@ -10,10 +10,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 
-from sim.files.untrusted import read_text
 from sim.packages.cmake_file import CMAKE_FILE, read_cmake
 from sim.packages.errors import PackageError, UnknownExecutableError, listing
-from sim.packages.manifest import MANIFEST
 from sim.packages.setup_file import EntryPoint, Installed, read_setup
 
 _LAUNCH_ENDINGS = ("launch.py", "launch.xml", "launch.yaml", "launch.yml")
@@ -35,7 +33,7 @@ class Executable:
 
 @dataclass(frozen=True, eq=False)
 class Package:
-    """A package in the folder ``root``. Its files are read when first asked for; not thread-safe then."""
+    """A package in the folder ``root``. Its files are read at first use, which is not thread-safe."""
 
     name: str
     root: Path
@@ -52,13 +50,8 @@ class Package:
         return read_setup(self.root)
 
     @property
-    def manifest(self) -> str:
-        """The text of its ``package.xml``."""
-        return read_text(self.root / MANIFEST, errors="replace")
-
-    @property
     def module_folder(self) -> Path:
-        """The folder that its Python packages lie in; its own where the build files do not tell."""
+        """The folder of its Python packages; ``root`` if the build files cannot be read."""
         try:
             return self.root / self._installed.source_folder
         except PackageError:
@@ -66,7 +59,7 @@ class Package:
 
     @property
     def executables(self) -> Mapping[str, EntryPoint | Path]:
-        """The programs by name: entry points, and scripts by their paths.
+        """The programs by name: entry points, and paths of scripts.
 
         Raises:
             PackageError: the package's build file cannot be read.
@@ -74,11 +67,11 @@ class Package:
         return {**self._installed.scripts, **self._installed.entry_points}
 
     def executable(self, name: str) -> Executable:
-        """The program of that name.
+        """Return a program by name.
 
         Raises:
-            UnknownExecutableError: the package has none of that name.
-            PackageError: its build file cannot be read, or names a file that does not exist.
+            UnknownExecutableError: the package has no such program.
+            PackageError: the build file cannot be read, or names a file that does not exist.
         """
         found = self.executables.get(name)
         if found is None:
@@ -105,7 +98,7 @@ class Package:
 
     @property
     def share_files(self) -> Mapping[PurePosixPath, Path]:
-        """The files that are installed in the share folder, by their places in it.
+        """The files that are installed in the share folder, by their paths in it.
 
         Raises:
             PackageError: the package's build file cannot be read.
@@ -118,10 +111,10 @@ class Package:
         }
 
     def launch_file(self, name: str) -> Path:
-        """The source of an installed launch file, found by its name anywhere in the share folder.
+        """Return the source of an installed launch file, found by its name anywhere in the share folder.
 
         Raises:
-            PackageError: none is installed; if one lies in the sources all the same, the text says so.
+            PackageError: the file is not installed; the text says whether the sources have it.
         """
         for place, path in self.share_files.items():
             if place.name == name and path.is_file():
@@ -148,8 +141,12 @@ class Package:
         return sorted(place.name for place in self.share_files if place.name.endswith(_LAUNCH_ENDINGS))
 
     @cached_property
-    def _prefix(self) -> Path:
-        """An install folder made of links to the sources."""
+    def prefix(self) -> Path:
+        """The folder that the package is installed in, with links to the sources.
+
+        Raises:
+            PackageError: the package's build file cannot be read.
+        """
         links = [(Path("share") / self.name / place, path) for place, path in self.share_files.items()]
         prefix = Path(tempfile.mkdtemp(prefix=f"{self.name}-"))
         weakref.finalize(self, shutil.rmtree, prefix, ignore_errors=True)
@@ -159,22 +156,13 @@ class Package:
             try:
                 link.parent.mkdir(parents=True, exist_ok=True)
                 link.symlink_to(path.resolve())
-            except (OSError, ValueError):  # a file where another one needs a folder, or an invalid name
+            except (OSError, ValueError):  # a file in the place of a folder, or an invalid name
                 raise PackageError(f"package {self.name!r} cannot install {path} as {place}") from None
         return prefix
 
     @property
-    def prefix(self) -> Path:
-        """The folder that the package is installed in.
-
-        Raises:
-            PackageError: the package's build file cannot be read.
-        """
-        return self._prefix
-
-    @property
     def share(self) -> Path:
-        """The share folder: what the package installs there and nothing else, as links to the sources.
+        """The share folder, with links to the installed sources only.
 
         Raises:
             PackageError: the package's build file cannot be read.
@@ -182,8 +170,8 @@ class Package:
         return self.prefix / "share" / self.name
 
     def close(self) -> None:
-        """Remove the folder of links, if there is one; it goes when the process exits at the latest."""
-        prefix = vars(self).pop("_prefix", None)
+        """Remove the folder of links, if there is one; otherwise it is removed at the process's exit."""
+        prefix = vars(self).pop("prefix", None)
         if prefix is not None:
             shutil.rmtree(prefix, ignore_errors=True)
 

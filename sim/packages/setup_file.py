@@ -1,4 +1,4 @@
-"""Reads what a ``setup.py`` with its ``setup.cfg`` installs, without running it."""
+"""Reads what a ``setup.py`` and its ``setup.cfg`` install, without running them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _READ_KEYS = frozenset(("name", "entry_points", "data_files", "scripts", "packag
 
 @dataclass(frozen=True, slots=True)
 class EntryPoint:
-    """A function of a module that is a program; ``origin`` is the file and line that says so."""
+    """A function of a module that is a program; ``origin`` is the file and line of its declaration."""
 
     module: str
     function: str
@@ -32,20 +32,20 @@ class EntryPoint:
 
 @dataclass(slots=True)
 class Installed:
-    """What a package installs: programs, and by their place below the install folder, its data files."""
+    """What a package installs: programs, and data files by their paths in the install folder."""
 
     entry_points: dict[str, EntryPoint] = field(default_factory=dict)
     scripts: dict[str, Path] = field(default_factory=dict)
     data_files: dict[PurePosixPath, Path] = field(default_factory=dict)
     source_folder: str = ""
-    """Where in the package's folder its modules lie."""
+    """The folder of its modules inside the package."""
 
 
 def read_setup(root: Path) -> Installed:
     """Read the ``setup.py`` and ``setup.cfg`` in ``root``; either may be missing.
 
     Raises:
-        PackageError: what one of them installs cannot be told without running it.
+        PackageError: a file cannot be evaluated without running it.
     """
     installed = Installed()
     if (root / "setup.cfg").is_file():
@@ -62,7 +62,7 @@ def _read_py(path: Path, installed: Installed) -> None:
         raise PackageError(f"{path}:{error.lineno}: {error.msg}") from None
     except OSError as error:
         raise PackageError(f"{path}: {error.strerror}") from None
-    except (ValueError, RecursionError, MemoryError):  # of the parser's own: its stack has an end
+    except (ValueError, RecursionError, MemoryError):  # the parser's own limits
         raise PackageError(f"{path}: it is no Python that can be read") from None
     names = Expressions(path)
     for statement in _statements(tree.body):
@@ -75,7 +75,7 @@ def _read_py(path: Path, installed: Installed) -> None:
 
 
 def _statements(body: Iterable[ast.stmt]) -> Iterator[ast.stmt]:
-    """The statements in order, those inside ``if`` and ``with`` too."""
+    """Yield the statements in order, those inside ``if`` and ``with`` too."""
     for each in body:
         if isinstance(each, (ast.If, ast.With)):
             yield from _statements(each.body)
@@ -97,7 +97,7 @@ class _Keyword:
     value: Any
     origin: str
     lines: Mapping[str, int]
-    """The line of each text written out in it."""
+    """The line of each text in the value's source."""
 
 
 def _keywords(call: ast.Call, names: Expressions) -> dict[str, _Keyword]:
@@ -187,7 +187,7 @@ def _read_cfg(path: Path, installed: Installed) -> None:
 
 
 def _matching(pattern: str, path: Path) -> list[str]:
-    """The files that a pattern in a ``setup.cfg`` stands for."""
+    """Return the files that match a pattern of a ``setup.cfg``."""
     if not pattern:
         return []
     if Path(pattern).is_absolute() or ".." in Path(pattern).parts:

@@ -4,7 +4,9 @@ from pathlib import Path, PurePosixPath
 
 import pytest
 
-from sim.packages import EntryPoint, PackageError, UnknownExecutableError, UnknownPackageError, find_packages
+from sim.packages import PackageError, UnknownPackageError, find_packages
+from sim.packages.errors import UnknownExecutableError
+from sim.packages.setup_file import EntryPoint
 from tests.launch.fakes import make_package
 from tests.support.nobody import close
 

@@ -1,4 +1,4 @@
-"""``ament_index_python.packages``: where packages lie."""
+"""``ament_index_python.packages``: the folders of packages."""
 
 from __future__ import annotations
 
@@ -32,11 +32,11 @@ def _package(name: str) -> Package:
 
 
 def get_package_prefix(package_name: str) -> str:
-    """The folder that a package is installed in.
+    """Return the folder that a package is installed in.
 
     Raises:
         PackageNotFoundError: there is no such package.
-        ValueError: no package can have that name.
+        ValueError: the name is not valid for a package.
     """
     if re.fullmatch(r"[A-Za-z0-9][A-Za-z0-9_-]+", package_name) is None:
         raise ValueError(f"'{package_name}' is not a valid package name")
@@ -44,16 +44,16 @@ def get_package_prefix(package_name: str) -> str:
 
 
 def get_package_share_directory(package_name: str) -> str:
-    """The share folder of a package. Raises as `get_package_prefix`."""
+    """Return the share folder of a package. Raises as `get_package_prefix`."""
     return str(get_package_share_path(package_name))
 
 
 def get_package_share_path(package_name: str) -> Path:
-    """The share folder of a package, as a path. Raises as `get_package_prefix`."""
+    """Return the share folder of a package, as a path. Raises as `get_package_prefix`."""
     get_package_prefix(package_name)
     return _package(package_name).share
 
 
 def get_packages_with_prefixes() -> dict[str, str]:
-    """The folders that the known packages are installed in, by their names."""
+    """Return the install folder of each known package, by name."""
     return {package.name: str(package.prefix) for package in known_packages()}

@@ -1,4 +1,4 @@
-"""Launch files in XML and YAML: their elements are the actions that files in Python make."""
+"""Launch files in XML and YAML: their elements become the actions that files in Python create."""
 
 from sim.launch.frontend.actions import actions_in
 

@@ -1,4 +1,4 @@
-"""Makes launch's actions of the elements of a file in XML or YAML."""
+"""Turns the elements of a launch file in XML or YAML into launch's actions."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ _TYPES = {"bool": bool, "float": float, "int": int, "str": str}
 
 
 def actions_in(file: Path, source: bytes) -> list[Action]:
-    """The actions of a launch file in XML or YAML, with the lines that they stand on.
+    """Return the actions of a launch file in XML or YAML, each with its line.
 
     Raises:
-        LaunchError: it cannot be read, or an element is wrong; the text names the line.
+        LaunchError: the file cannot be read, or an element is wrong; the text names the line.
     """
     return list(_inside(read_elements(file, source), file))
 
@@ -68,7 +68,7 @@ def _text(element: LaunchElement, *names: str) -> Any:
 
 
 def _given(**arguments: Any) -> dict[str, Any]:
-    """The arguments that are not None."""
+    """Return the arguments that are not None."""
     return {name: value for name, value in arguments.items() if value is not None}
 
 
@@ -78,16 +78,12 @@ def _arg(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Acti
     return launch.DeclareLaunchArgument(element.need("name"), choices=choices or None, **given, **condition)
 
 
-def _let(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
-    return launch.SetLaunchConfiguration(*_name_and_value(element), **condition)
-
-
-def _set_env(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
-    return launch.SetEnvironmentVariable(*_name_and_value(element), **condition)
-
-
 def _name_and_value(element: LaunchElement) -> tuple[Any, Any]:
     return substitutions(element.need("name")), substitutions(element.need("value"))
+
+
+def _remapping(element: LaunchElement) -> tuple[Any, Any]:
+    return substitutions(element.need("from")), substitutions(element.need("to"))
 
 
 def _node(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
@@ -95,9 +91,7 @@ def _node(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Act
     for each in element.all("param"):
         source = _text(each, "from")
         parameters.append(_parameter(each) if source is None else source)
-    remappings = [
-        (substitutions(each.need("from")), substitutions(each.need("to"))) for each in element.all("remap")
-    ]
+    remappings = [_remapping(each) for each in element.all("remap")]
     return ros.Node(
         package=substitutions(element.need("pkg")),
         executable=substitutions(element.need("exec")),
@@ -123,7 +117,7 @@ def _executable(element: LaunchElement, condition: dict[str, Any], _file: Path) 
 
 
 def _process(element: LaunchElement) -> dict[str, Any]:
-    """What nodes and other processes have in common."""
+    """Return the arguments that nodes and other processes have in common."""
     environment = {name[0].text: value for name, value in map(_name_and_value, element.all("env"))}
     delay = element.get("respawn_delay")
     for without_effect in ("emulate_tty", "launch-prefix", "sigterm_timeout", "sigkill_timeout"):
@@ -138,21 +132,21 @@ def _process(element: LaunchElement) -> dict[str, Any]:
 
 
 def _words(text: str | None) -> list[Any] | None:
-    """The words of a command line, each with its substitutions; None for no line."""
+    """Return the words of a command line, each with its substitutions; None for no line."""
     if text is None:
         return None
     lexer = shlex.shlex(text, posix=True, punctuation_chars=False)
     lexer.whitespace_split, lexer.commenters = True, ""
     words: list[str] = []
     for word in lexer:
-        # A substitution may hold spaces.
+        # A substitution may have spaces in it.
         is_inside = bool(words) and words[-1].count("$(") > words[-1].count(")")
         words[-1:] = [f"{words[-1]} {word}"] if is_inside else [*words[-1:], word]
     return [substitutions(word) for word in words]
 
 
 def _parameter(element: LaunchElement) -> dict[str, Any]:
-    """A parameter by name, or several in one that is nested."""
+    """Return a parameter, or nested parameters, by name."""
     name = element.need("name")
     inside = element.all("param")
     if inside:
@@ -161,7 +155,7 @@ def _parameter(element: LaunchElement) -> dict[str, Any]:
 
 
 def _value(element: LaunchElement) -> Any:
-    """A parameter's value: of the type asked for, or what YAML reads in it once it is known."""
+    """Return a parameter's value, of the given type, or of the type that YAML sees in its text."""
     parts = substitutions(element.need("value"))
     wanted = _TYPES.get(element.get("type") or "")
     texts = [each.text for each in parts if isinstance(each, TextSubstitution)]
@@ -203,10 +197,6 @@ def _set_parameter(element: LaunchElement, condition: dict[str, Any], _file: Pat
     return ros.SetParameter(substitutions(element.need("name")), _value(element), **condition)
 
 
-def _set_remap(element: LaunchElement, condition: dict[str, Any], _file: Path) -> Action:
-    return ros.SetRemap(substitutions(element.need("from")), substitutions(element.need("to")), **condition)
-
-
 def _container(_element: LaunchElement, _condition: dict[str, Any], _file: Path) -> Action:
     ros.ComposableNodeContainer()
     raise AssertionError
@@ -217,15 +207,15 @@ _ACTIONS: Mapping[str, Callable[[LaunchElement, dict[str, Any], Path], Action]] 
     "executable": _executable,
     "group": _group,
     "include": _include,
-    "let": _let,
+    "let": lambda each, condition, _: launch.SetLaunchConfiguration(*_name_and_value(each), **condition),
     "load_composable_node": _container,
     "log": _log,
     "node": _node,
     "node_container": _container,
     "push_ros_namespace": _namespace,
-    "set_env": _set_env,
+    "set_env": lambda each, condition, _: launch.SetEnvironmentVariable(*_name_and_value(each), **condition),
     "set_parameter": _set_parameter,
-    "set_remap": _set_remap,
+    "set_remap": lambda each, condition, _: ros.SetRemap(*_remapping(each), **condition),
     "shutdown": _shutdown,
     "timer": _timer,
 }

@@ -22,18 +22,18 @@ class LaunchElement:
     attributes: dict[str, str] = field(default_factory=dict)
     inside: list[LaunchElement] = field(default_factory=list)
     taken: set[str] = field(default_factory=set)
-    """The attributes that somebody has asked for."""
+    """The attributes that ``get`` was called for."""
 
     def get(self, *names: str) -> str | None:
-        """The attribute of the first of these names that it has."""
+        """Return the first of these attributes that the element has; None if it has none."""
         self.taken.update(names)
         return next((self.attributes[name] for name in names if name in self.attributes), None)
 
     def need(self, *names: str) -> str:
-        """As `get`, for one that it must have.
+        """Return a required attribute, as `get`.
 
         Raises:
-            LaunchFailure: it has none.
+            LaunchFailure: the element has none of them.
         """
         found = self.get(*names)
         if found is None:
@@ -41,15 +41,15 @@ class LaunchElement:
         return found
 
     def all(self, *tags: str) -> list[LaunchElement]:
-        """The elements inside that have one of these tags."""
+        """Return the elements inside with one of these tags."""
         return [each for each in self.inside if each.tag in tags]
 
 
 def read_elements(file: Path, source: bytes) -> LaunchElement:
-    """The root of a launch file.
+    """Return the root element of a launch file.
 
     Raises:
-        LaunchError: it is not well-formed, or its root is no ``launch``.
+        LaunchError: the file is not well-formed, or its root is not ``launch``.
     """
     read: Callable[[bytes], LaunchElement] = _xml if file.suffix == ".xml" else _yaml
     try:
@@ -90,7 +90,7 @@ def _yaml(source: bytes) -> LaunchElement:
 
 
 def _element(tag: Any, content: Any) -> LaunchElement:
-    """An element of YAML: its attributes and elements by name, or a list of the elements inside."""
+    """Return an element of YAML, whose content maps names to attributes and elements, or lists elements."""
     made = LaunchElement(str(tag.value), tag.start_mark.line + 1)
     if isinstance(content, yaml.SequenceNode):
         for each in content.value:

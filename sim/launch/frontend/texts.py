@@ -40,10 +40,10 @@ _KNOWN: Mapping[str, Callable[..., Any]] = {
 
 
 def substitutions(text: str) -> Parts:
-    """A text with its substitutions.
+    """Split a text into plain parts and substitutions.
 
     Raises:
-        LaunchFailure: one is unknown, lacks its closing bracket, or has a wrong number of arguments.
+        LaunchFailure: a substitution is unknown, is not closed, or has a wrong number of arguments.
     """
     return _TextScanner(text).parts("")
 
@@ -56,7 +56,7 @@ class _TextScanner:
         self._at = 0
 
     def parts(self, ends: str) -> Parts:
-        """What stands before the next of the characters of ``ends``, or before the end of the text."""
+        """Read the parts before one of the characters of ``ends``, or before the end of the text."""
         parts: Parts = []
         plain = ""
         while self._at < len(self._text) and self._text[self._at] not in ends:
@@ -106,6 +106,6 @@ def _made(name: str, arguments: list[Parts]) -> Substitution:
 
 
 def _joined(arguments: list[Parts]) -> Parts:
-    """Several arguments as one, with spaces between."""
+    """Join several arguments by spaces."""
     space = TextSubstitution(text=" ")
     return [part for argument in arguments for part in (space, *argument)][1:]

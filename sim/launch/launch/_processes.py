@@ -1,4 +1,4 @@
-"""The processes and timers of a launch: starting, restarting and ending them, and telling of it."""
+"""Starts, restarts and ends the processes and timers of a launch, and logs and emits their events."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from sim.launch.machine import Machine, OnExit, OnOutput, ProcessSpec, RunningPr
 
 Visit = Callable[[LaunchDescriptionEntity], None]
 Wake = Callable[[Callable[[], None]], None]
-"""Does something later and all that follows from it, now if nothing is being done."""
+"""Runs an action, and all that it queues, after the running action; at once if none is running."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,13 +33,13 @@ class LaunchLine:
 
     @property
     def command(self) -> str:
-        """The line."""
+        """The line's text."""
         return " ".join(self.words)
 
 
 @dataclass(frozen=True, slots=True)
 class Upkeep:
-    """What becomes of a process once it ends or has to; times in seconds."""
+    """How a process is restarted and ended; times in seconds."""
 
     respawn: bool = False
     respawn_delay: float = 0.0
@@ -59,7 +59,7 @@ class _Managed:
 
 
 class Processes:
-    """Keeps the processes and timers of one launch. Used under the launch's lock or on its thread."""
+    """The processes and timers of one launch. Used under the launch's lock or on its thread."""
 
     def __init__(self, context: LaunchContext, visit: Visit, wake: Wake) -> None:
         self._context = context
@@ -72,16 +72,16 @@ class Processes:
 
     @property
     def any_left(self) -> bool:
-        """Whether something runs or will."""
+        """Whether a process runs or a process or timer is due."""
         return bool(self._managed) or (self._timers > 0 and not self._context.is_shutdown)
 
     def label(self, stem: str) -> str:
-        """The next process's label: its program's name and a number that counts over the whole launch."""
+        """Return the next process's label: its program's name and a number that is unique in the launch."""
         self._labels += 1
         return f"{stem}-{self._labels}"
 
     def start(self, action: Action, what: ProcessSpec | LaunchLine, upkeep: Upkeep) -> None:
-        """Start a process once all that is being visited has been."""
+        """Start a process after the current visit."""
         managed = _Managed(action, what, upkeep)
         self._managed.append(managed)
         self._context.later(lambda: self._start(managed))
@@ -101,7 +101,7 @@ class Processes:
         return lambda status: self._wake(lambda: self._exited(managed, status))
 
     def _on_output(self, managed: _Managed) -> OnOutput:
-        """What keeps a process's lines until the launch has time for them, if a handler may want them."""
+        """Return a function that queues a process's lines for the launch, if a handler may match them."""
 
         def hear(text: str, error: bool) -> None:
             if not any(each.may_match(ProcessIO) for each in self._context.handlers):
@@ -116,7 +116,7 @@ class Processes:
             self._unheard.popleft()()
 
     def _heard(self, managed: _Managed, text: str, error: bool) -> None:
-        if managed.running is not None:  # what was killed may go on printing
+        if managed.running is not None:  # a killed process may still print
             kind = ProcessStderr if error else ProcessStdout
             self._context.emit_event(kind(text=f"{text}\n".encode(), **_about(managed)))
 
@@ -137,7 +137,7 @@ class Processes:
         self._context.later(lambda: self._follow(managed))
 
     def _follow(self, managed: _Managed) -> None:
-        """Start it again if it is to be, once the handlers of its end have been asked."""
+        """Restart a process if its upkeep says so, after the handlers of its end."""
         upkeep = managed.upkeep
         may = upkeep.most_respawns < 0 or managed.respawns < upkeep.most_respawns
         if upkeep.respawn and may and not self._context.is_shutdown:
@@ -153,7 +153,7 @@ class Processes:
         self._context.emit_event(ExecutionComplete(action=managed.action))
 
     def _forget(self, managed: _Managed) -> None:
-        if managed in self._managed:  # a shutdown may have come first
+        if managed in self._managed:  # a shutdown may have removed it
             self._managed.remove(managed)
 
     def _restart(self, managed: _Managed) -> None:
@@ -163,7 +163,7 @@ class Processes:
     def after(
         self, seconds: float, action: Action, give: Callable[[], Iterable[LaunchDescriptionEntity]]
     ) -> None:
-        """Visit what ``give`` gives in so many seconds, unless the launch is to end before that."""
+        """Visit the entities of ``give`` in some seconds, unless the launch shuts down before."""
         self._timers += 1
 
         def fire() -> None:
@@ -177,7 +177,7 @@ class Processes:
         self._context.machine.call_at(seconds, lambda: self._wake(fire))
 
     def end_all(self, event: Shutdown) -> None:
-        """Have every process end; after a Ctrl-C, which reaches them anyway, without a word."""
+        """End every process; after a Ctrl-C, which reaches them directly, without a log line."""
         for managed in tuple(self._managed):
             if managed.running is None:
                 self._forget(managed)
@@ -185,7 +185,7 @@ class Processes:
                 self._end(managed, told=event.due_to_sigint)
 
     def end_of(self, matches: Callable[[Any], bool]) -> None:
-        """Have the processes of some actions end."""
+        """End the processes of matching actions."""
         for managed in tuple(self._managed):
             if managed.running is not None and matches(managed.action):
                 managed.upkeep = Upkeep(
@@ -235,7 +235,7 @@ def _begin(
 
 
 def _about(managed: _Managed) -> dict[str, Any]:
-    """What the events of a process tell about it."""
+    """Return the arguments of the events of a process."""
     what = managed.what
     assert managed.running is not None
     about = {"action": managed.action, "name": what.label, "pid": managed.running.number}

@@ -1,4 +1,4 @@
-"""What decides whether an action is carried out."""
+"""The base of conditions, which decide whether an action is carried out."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ if TYPE_CHECKING:
 
 
 class Condition:
-    """A question asked when an action is reached; ``predicate`` answers it."""
+    """A condition that is evaluated when an action is reached, by ``predicate``."""
 
     def __init__(self, *, predicate: Callable[[LaunchContext], bool] | None = None) -> None:
         self._predicate = predicate
 
     def evaluate(self, context: LaunchContext) -> bool:
-        """Whether it holds."""
+        """Return whether the condition holds."""
         return self._predicate is None or self._predicate(context)

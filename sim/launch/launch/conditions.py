@@ -29,7 +29,7 @@ def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bo
     """Read a text as true or false, as ``IfCondition`` does.
 
     Raises:
-        InvalidConditionExpressionError: it is neither ``true``, ``1``, ``false`` nor ``0``.
+        InvalidConditionExpressionError: the text is not ``true``, ``1``, ``false`` or ``0``.
     """
     text = performed(context, expression)
     truth = _TRUTHS.get(text.strip().lower())
@@ -41,7 +41,7 @@ def evaluate_condition_expression(context: LaunchContext, expression: Any) -> bo
 
 
 def is_true(context: LaunchContext, value: Any) -> bool:
-    """A truth value, given as one or as a text that reads as one."""
+    """Return a truth value that is given as a bool or as a text."""
     return value if isinstance(value, bool) else evaluate_condition_expression(context, value)
 
 

@@ -1,7 +1,7 @@
-"""Something that happened in a launch."""
+"""The base of a launch's events."""
 
 
 class Event:
-    """Something that happened; event handlers match on its class."""
+    """The base of events; event handlers match their classes."""
 
     name = "launch.Event"

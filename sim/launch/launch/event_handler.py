@@ -12,11 +12,11 @@ if TYPE_CHECKING:
     from sim.launch.launch.launch_context import LaunchContext
 
 Reaction = Any
-"""An entity, entities, or a callable of event and context that gives them or None."""
+"""An entity, entities, or a callable of event and context that returns them or None."""
 
 
 class EventHandler:
-    """Gives the entities to visit when an event that it matches happens."""
+    """Returns the entities to visit when a matching event happens."""
 
     def __init__(
         self, *, matcher: Callable[[Event], bool], entities: Reaction = None, handle_once: bool = False
@@ -26,25 +26,25 @@ class EventHandler:
         self.handle_once = handle_once
 
     def matches(self, event: Event) -> bool:
-        """Whether it has to do with the event."""
+        """Return whether the handler matches an event."""
         return self._matcher(event)
 
     def may_match(self, kind: type[Event]) -> bool:
-        """Whether events of that class are worth making for it: only a matcher of its own could tell."""
+        """Return whether the handler may match events of a class; True, as a matcher may be any function."""
         return True
 
     def handle(self, event: Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-        """What to visit because of the event."""
+        """Return the entities to visit because of an event."""
         if self.handle_once:
             context.unregister_event_handler(self)
         return entities_of(self._entities, event, context)
 
 
 def entities_of(reaction: Reaction, event: Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:
-    """The entities that a reaction to an event consists of.
+    """Return the entities of a reaction to an event.
 
     Raises:
-        TypeError: it is, or gives, something else.
+        TypeError: the reaction is, or returns, something else.
     """
     given = reaction(event, context) if callable(reaction) else reaction
     if given is None:

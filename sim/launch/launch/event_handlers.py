@@ -15,7 +15,7 @@ __all__ = ["OnExecutionComplete", "OnProcessExit", "OnProcessIO", "OnProcessStar
 
 
 class _OnActionEvent(EventHandler):
-    """Matches the events of one class, of every action, of one, or of those that a callable picks."""
+    """Matches events of one class: of every action, of one, or of those that a callable selects."""
 
     event_class: ClassVar[type[Event]]
 
@@ -62,7 +62,7 @@ class OnProcessExit(_OnActionEvent):
 
 
 class OnProcessIO(_OnActionEvent):
-    """Reacts to each line that a process prints or logs; each callable gets the event and gives a reaction.
+    """Reacts to each line that a process prints or logs; each callable gets the event and returns a reaction.
 
     Loggers write to standard error, as ``[INFO] [1.5] [node]: text``.
     """
@@ -87,7 +87,7 @@ class OnProcessIO(_OnActionEvent):
 
 
 class OnExecutionComplete(_OnActionEvent):
-    """Reacts when an action has done all it does."""
+    """Reacts when an action is complete."""
 
     event_class = ExecutionComplete
 
@@ -98,7 +98,7 @@ class OnExecutionComplete(_OnActionEvent):
 
 
 class OnShutdown(EventHandler):
-    """Reacts when the launch is to end."""
+    """Reacts when the launch shuts down."""
 
     def __init__(self, *, on_shutdown: Reaction, handle_once: bool = False) -> None:
         super().__init__(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from copy import copy
 from pathlib import Path
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -18,20 +18,15 @@ if TYPE_CHECKING:
     from sim.launch.machine import Machine
 
 
-@dataclass(frozen=True, slots=True)
-class _Scope:
-    launch_configurations: dict[str, str]
-    environment: dict[str, str]
-    namespace: str
-    global_remaps: list[tuple[str, str]]
-    global_parameters: list[list[str]]
+_SCOPED = ("launch_configurations", "environment", "namespace", "global_remaps", "global_parameters")
+"""The settings that a scope restores at its end."""
 
 
 class LaunchContext:
-    """Configurations, environment and event handlers of one launch, and the queue of what is to happen.
+    """Configurations, environment and event handlers of one launch, and its queue of actions.
 
-    ``carry_out`` does what is to be done about an event. Not thread-safe: everything comes on one thread
-    or under one lock, as ``Machine`` promises.
+    ``carry_out`` handles an event. Not thread-safe: all calls come on one thread or under one lock, as
+    ``Machine`` guarantees.
     """
 
     def __init__(
@@ -47,39 +42,25 @@ class LaunchContext:
         self.global_remaps: list[tuple[str, str]] = []
         self.global_parameters: list[list[str]] = []
         """Arguments for every node that set parameters."""
-        self._scopes: list[_Scope] = []
+        self._scopes: list[dict[str, Any]] = []
         self.argv: tuple[str, ...] = ()
         self.locals = SimpleNamespace()
         self.event: Event | None = None
         self.is_shutdown = False
-        self.timers = 0
         self.processes: Processes
         self.queue: list[Callable[[], None]] = []
         self._handlers: list[EventHandler] = []
 
     def open_scope(self) -> None:
-        """Remember all settings, for ``close_scope`` to bring back."""
-        self._scopes.append(
-            _Scope(
-                dict(self.launch_configurations),
-                dict(self.environment),
-                self.namespace,
-                list(self.global_remaps),
-                list(self.global_parameters),
-            )
-        )
+        """Save the settings for ``close_scope``."""
+        self._scopes.append({name: copy(getattr(self, name)) for name in _SCOPED})
 
     def close_scope(self) -> None:
-        """Bring back the settings of when the last scope was opened."""
-        scope = self._scopes.pop()
-        self.launch_configurations = scope.launch_configurations
-        self.environment = scope.environment
-        self.namespace = scope.namespace
-        self.global_remaps = scope.global_remaps
-        self.global_parameters = scope.global_parameters
+        """Restore the settings that the latest open scope saved."""
+        vars(self).update(self._scopes.pop())
 
     def perform_substitution(self, sub: Any) -> str:
-        """The text of a substitution."""
+        """Return the text of a substitution."""
         return str(sub.perform(self))
 
     def say(self, text: str, severity: str = "INFO", logger: str = "launch") -> None:
@@ -87,19 +68,19 @@ class LaunchContext:
         self.machine.say(text, severity, logger)
 
     def later(self, deed: Callable[[], None]) -> None:
-        """Have something done once all that is being visited has been."""
+        """Queue an action for after the current visit."""
         self.queue.append(deed)
 
     def emit_event(self, event: Event) -> None:
-        """Let an event happen, after those that are waiting."""
+        """Queue an event behind the waiting ones."""
         self.later(lambda: self.carry_out(event))
 
     def register_event_handler(self, event_handler: EventHandler) -> None:
-        """Have a handler asked from now on, before those that are registered."""
+        """Add a handler, before those that are registered."""
         self._handlers.insert(0, event_handler)
 
     def unregister_event_handler(self, event_handler: EventHandler) -> None:
-        """Ask a handler no more."""
+        """Remove a handler."""
         self._handlers.remove(event_handler)
 
     @property
@@ -109,5 +90,5 @@ class LaunchContext:
 
     @property
     def changed_environment(self) -> dict[str, str]:
-        """The variables that the launch has set to something else than they are outside of it."""
+        """The variables whose values in the launch differ from those of this process."""
         return {name: value for name, value in self.environment.items() if os.environ.get(name) != value}

@@ -1,7 +1,5 @@
 """``launch.LaunchDescription``: what a launch file returns."""
 
-# ruff: noqa: D102 -- what a method does that overrides another stands with that one
-
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
@@ -29,22 +27,22 @@ class LaunchDescription(LaunchDescriptionEntity):
             self.add_entity(entity)
 
     def add_entity(self, entity: LaunchDescriptionEntity) -> None:
-        """Add one at the end.
+        """Append an entity.
 
         Raises:
-            TypeError: it is no entity.
+            TypeError: ``entity`` is not an entity.
         """
         if not isinstance(entity, LaunchDescriptionEntity):
             raise TypeError(f"a LaunchDescription holds actions, not {entity!r}")
         self._entities.append(entity)
 
     def add_action(self, action: LaunchDescriptionEntity) -> None:
-        """Add an action at the end."""
+        """Append an action."""
         self.add_entity(action)
 
     @property
     def entities(self) -> list[LaunchDescriptionEntity]:
-        """Its entities."""
+        """The entities."""
         return self._entities
 
     @property
@@ -58,7 +56,7 @@ class LaunchDescription(LaunchDescriptionEntity):
         return self._deprecated_reason
 
     def get_launch_arguments(self) -> list[DeclareLaunchArgument]:
-        """The arguments that are declared in it and in what it includes, as far as can be told now."""
+        """Return the arguments declared here and in included files that are known before the launch."""
         from sim.launch.launch.actions.arguments import DeclareLaunchArgument
 
         return [each for each in _all_inside(self) if isinstance(each, DeclareLaunchArgument)]

@@ -23,17 +23,17 @@ class LaunchDescriptionSource:
     """A launch file at a path that may be a substitution."""
 
     read: ClassVar[Callable[[Path], LaunchDescription]]
-    """Reads a launch file of any kind; set by what loads them, since a file may include others."""
+    """Reads a launch file of any kind; set by the loader, since a file may include others."""
 
     def __init__(self, launch_file_path: Any) -> None:
         self._location = normalize_to_list_of_substitutions(launch_file_path)
 
     def load(self, context: LaunchContext) -> tuple[LaunchDescription, Path]:
-        """The description and its file.
+        """Return the description and its file.
 
         Raises:
-            LaunchFailure: there is no such file.
-            LaunchError: it cannot be read.
+            LaunchFailure: the file does not exist.
+            LaunchError: the file cannot be read.
         """
         path = Path(performed(context, self._location))
         if not path.is_file():
@@ -41,7 +41,7 @@ class LaunchDescriptionSource:
         return type(self).read(path), path.absolute()
 
     def known_description(self) -> LaunchDescription | None:
-        """The description if its place is known before the launch runs and it can be read."""
+        """Return the description if its path is known before the launch and readable; else None."""
         if not all(isinstance(each, TextSubstitution) for each in self._location):
             return None
         path = Path("".join(each.text for each in self._location if isinstance(each, TextSubstitution)))
@@ -56,7 +56,7 @@ class PythonLaunchDescriptionSource(LaunchDescriptionSource):
 
 
 class AnyLaunchDescriptionSource(LaunchDescriptionSource):
-    """A launch file of whatever kind: in Python, XML or YAML."""
+    """A launch file of any kind: in Python, XML or YAML."""
 
 
 class FrontendLaunchDescriptionSource(LaunchDescriptionSource):

@@ -1,6 +1,4 @@
-"""Texts that are known only when the launch runs, and joining them."""
-
-# ruff: noqa: D102 -- what a method does that overrides another stands with that one
+"""Texts that are known only when the launch runs, and functions that join them."""
 
 from __future__ import annotations
 
@@ -14,23 +12,23 @@ if TYPE_CHECKING:
 
 
 class SubstitutionFailure(LaunchFailure):
-    """A substitution has nothing to give."""
+    """A substitution has no value."""
 
 
 class Substitution:
-    """Something that becomes a text when the launch runs."""
+    """A text that is known when the launch runs."""
 
     def perform(self, context: LaunchContext) -> str:
-        """The text."""
+        """Return the text."""
         raise NotImplementedError(f"{type(self).__name__} does not implement perform()")
 
     def describe(self) -> str:
-        """How it is shown to people."""
+        """Return the substitution as shown to people."""
         return f"{type(self).__name__}()"
 
 
 class TextSubstitution(Substitution):
-    """A text that is known already."""
+    """A text that is known before the launch."""
 
     def __init__(self, *, text: str) -> None:
         if not isinstance(text, str):
@@ -48,10 +46,10 @@ SomeSubstitutionsType: TypeAlias = "str | Substitution | Iterable[str | Substitu
 
 
 def normalize_to_list_of_substitutions(subs: Any) -> list[Substitution]:
-    """A text, a substitution or several of either, as a list of substitutions.
+    """Return a text, a substitution or several of either as a list of substitutions.
 
     Raises:
-        TypeError: it is or holds something else.
+        TypeError: ``subs`` is something else.
     """
     if isinstance(subs, str):
         return [TextSubstitution(text=subs)]
@@ -65,10 +63,10 @@ def normalize_to_list_of_substitutions(subs: Any) -> list[Substitution]:
 
 
 def perform_substitutions(context: LaunchContext, subs: Sequence[Substitution]) -> str:
-    """The joined texts of all of them."""
+    """Return the joined texts of substitutions."""
     return "".join(each.perform(context) for each in subs)
 
 
 def performed(context: LaunchContext, subs: Any) -> str:
-    """The text of anything that ``normalize_to_list_of_substitutions`` takes."""
+    """Return the text of any value that ``normalize_to_list_of_substitutions`` takes."""
     return perform_substitutions(context, normalize_to_list_of_substitutions(subs))

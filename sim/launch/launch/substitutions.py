@@ -1,7 +1,5 @@
 """``launch.substitutions``."""
 
-# ruff: noqa: D102 -- what a method does that overrides another stands with that one
-
 from __future__ import annotations
 
 import importlib
@@ -72,7 +70,7 @@ class LaunchConfiguration(Substitution):
 
 
 def _text_of(context: LaunchContext, value: Any) -> str:
-    """A default's text; numbers and truth values are written out."""
+    """Return a default's text; numbers and truth values are converted."""
     if isinstance(value, (bool, int, float)):
         return str(value)
     return performed(context, value)
@@ -140,7 +138,7 @@ class FindExecutable(Substitution):
 
 
 class PythonExpression(Substitution):
-    """The text of what a Python expression gives; the names of ``python_modules`` can be used in it."""
+    """The text of a Python expression's value; the expression can use the modules of ``python_modules``."""
 
     def __init__(self, expression: Any, python_modules: Iterable[Any] = ("math",)) -> None:
         self.expression = normalize_to_list_of_substitutions(expression)
@@ -214,7 +212,7 @@ class LocalSubstitution(Substitution):
 
 
 class _Comparison(Substitution):
-    """Two values, compared as numbers or truth values if both are such, else as texts."""
+    """Compares two values as truth values or numbers if both are such, else as texts."""
 
     equal: ClassVar[bool]
 
@@ -268,7 +266,7 @@ class NotSubstitution(Substitution):
 
 
 class _Junction(Substitution):
-    """Several truth values taken together."""
+    """Combines several truth values."""
 
     join: ClassVar[Callable[[Iterable[object]], bool]]
 

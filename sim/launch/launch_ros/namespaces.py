@@ -1,4 +1,4 @@
-"""Joining the namespaces that groups and nodes give."""
+"""Joins the namespaces of groups and nodes."""
 
 import re
 
@@ -8,10 +8,10 @@ _NAMESPACE = re.compile(r"/?([A-Za-z_]\w*(/[A-Za-z_]\w*)*)?")
 
 
 def joined(base: str, namespace: str) -> str:
-    """``namespace`` inside of ``base``; one that begins with a slash stands alone.
+    """Return ``namespace`` inside ``base``, or alone if it begins with a slash.
 
     Raises:
-        LaunchFailure: it is no namespace.
+        LaunchFailure: ``namespace`` is not valid.
     """
     namespace = namespace.rstrip("/") if len(namespace) > 1 else namespace
     if not _NAMESPACE.fullmatch(namespace):

@@ -1,4 +1,4 @@
-"""``launch_ros.parameter_descriptions``: parameters whose type or place is told."""
+"""``launch_ros.parameter_descriptions``: parameters with a type, a name or a file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ __all__ = ["Parameter", "ParameterFile", "ParameterValue"]
 
 
 class ParameterValue:
-    """A value of which the type is told instead of guessed from its text."""
+    """A value with a type, which is not inferred from its text."""
 
     def __init__(self, value: Any, *, value_type: Any = None) -> None:
         self.value = value

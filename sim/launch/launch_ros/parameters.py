@@ -1,6 +1,6 @@
-"""What launch files give as parameters, as arguments that set them.
+"""Turns the parameters of launch files into command-line arguments.
 
-A text without a told type gets the type that YAML 1.1 sees in it, as in launch_ros.
+A text without a type gets the type that YAML 1.1 sees in it, as in launch_ros.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ _SCALARS = (bool, int, float, str)
 
 
 def parameter_arguments(context: LaunchContext, parameters: Iterable[Any]) -> list[str]:
-    """The ``-p name:=value`` and ``--params-file path`` for a node's ``parameters``.
+    """Return the ``-p name:=value`` and ``--params-file path`` for a node's ``parameters``.
 
     Raises:
-        LaunchFailure: a file does not exist, or a value is none that a parameter can have.
+        LaunchFailure: a file does not exist, or a parameter cannot have the value.
     """
     found: list[str] = []
     for each in parameters:
@@ -42,7 +42,7 @@ def parameter_arguments(context: LaunchContext, parameters: Iterable[Any]) -> li
 
 
 def file_arguments(context: LaunchContext, file: Any) -> list[str]:
-    """The ``--params-file path`` for a file, given as a path, substitutions or a ParameterFile."""
+    """Return the ``--params-file path`` for a file, given as a path, substitutions or a ParameterFile."""
     if isinstance(file, ParameterFile):
         file = file.param_file
     path = Path(str(file) if isinstance(file, Path) else performed(context, file))
@@ -52,7 +52,7 @@ def file_arguments(context: LaunchContext, file: Any) -> list[str]:
 
 
 def _flat(context: LaunchContext, values: Mapping[Any, Any], prefix: str) -> Iterator[tuple[str, Any]]:
-    """The values of nested dictionaries by their dotted names."""
+    """Yield the values of nested dictionaries by their dotted names."""
     for key, value in values.items():
         name = prefix + performed(context, key)
         if isinstance(value, Mapping):
@@ -68,20 +68,20 @@ def _set(name: str, value: Any) -> list[str]:
 
 
 def typed_value(context: LaunchContext, value: Any) -> Any:
-    """The value of what a launch file gives for a parameter."""
+    """Return the value of a parameter of a launch file."""
     if isinstance(value, ParameterValue):
-        return _told(context, value)
+        return _with_type(context, value)
     if isinstance(value, (bool, int, float)):
         return value
     if isinstance(value, (str, Substitution)) or _is_text_in_parts(value):
-        return _guessed(performed(context, value))
+        return _inferred(performed(context, value))
     if isinstance(value, Iterable):
         return [_item(context, each) for each in value]
     return value
 
 
 def _is_text_in_parts(value: Any) -> bool:
-    """Whether a list is one text: launch_ros joins lists that begin with a substitution or hold one."""
+    """Return whether a list is one text: launch_ros joins lists of texts with a substitution."""
     return (
         isinstance(value, Sequence)
         and not isinstance(value, (str, bytes))
@@ -92,13 +92,13 @@ def _is_text_in_parts(value: Any) -> bool:
 
 
 def _item(context: LaunchContext, item: Any) -> Any:
-    """An item of a list: a text in it stays one."""
+    """Return an item of a list; a text stays a text."""
     if isinstance(item, str):
         return item
     return typed_value(context, item)
 
 
-def _told(context: LaunchContext, value: ParameterValue) -> Any:
+def _with_type(context: LaunchContext, value: ParameterValue) -> Any:
     wanted, given = value.value_type, value.value
     if wanted is None:
         return typed_value(context, given)
@@ -123,7 +123,7 @@ def _converted(value: Any, wanted: type) -> Any:
     return value
 
 
-def _guessed(text: str) -> Any:
+def _inferred(text: str) -> Any:
     try:
         found = plain_yaml.load(text)
     except YamlError as error:
@@ -142,10 +142,10 @@ def _guessed(text: str) -> Any:
 
 
 def yaml_text(name: str, value: Any) -> str:
-    """A value as the YAML that keeps its type.
+    """Return a value as YAML that keeps its type.
 
     Raises:
-        LaunchFailure: no parameter can have it.
+        LaunchFailure: a parameter cannot have the value.
     """
     if isinstance(value, bool):
         return str(value).lower()

@@ -1,7 +1,5 @@
 """``launch_ros.substitutions``."""
 
-# ruff: noqa: D102 -- what a method does that overrides another stands with that one
-
 from __future__ import annotations
 
 from typing import Any
@@ -14,7 +12,7 @@ __all__ = ["ExecutableInPackage", "FindPackage", "FindPackagePrefix", "FindPacka
 
 
 class FindPackage(Substitution):
-    """The base of those that find a package."""
+    """The base of substitutions that find a package."""
 
     def __init__(self, package: Any) -> None:
         self.package = normalize_to_list_of_substitutions(package)

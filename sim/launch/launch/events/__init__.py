@@ -10,7 +10,7 @@ __all__ = ["ExecutionComplete", "Shutdown", "TimerEvent"]
 
 
 class Shutdown(Event):
-    """The launch is to end, for ``reason``."""
+    """The launch shuts down, for ``reason``."""
 
     name = "launch.events.Shutdown"
 
@@ -20,7 +20,7 @@ class Shutdown(Event):
 
 
 class ExecutionComplete(Event):
-    """An action has done all it does."""
+    """An action is complete."""
 
     name = "launch.events.ExecutionComplete"
 
@@ -29,7 +29,7 @@ class ExecutionComplete(Event):
 
 
 class TimerEvent(Event):
-    """A timer's time has come."""
+    """A timer is due."""
 
     name = "launch.events.TimerEvent"
 

@@ -22,7 +22,7 @@ __all__ = [
 
 
 class RunningProcessEvent(Event):
-    """Something that happened to a process: its action, label, command, folder, environment and id."""
+    """An event of a process, with its action, label, command, folder, environment and id."""
 
     def __init__(
         self,
@@ -43,7 +43,7 @@ class RunningProcessEvent(Event):
 
 
 class ProcessStarted(RunningProcessEvent):
-    """A process runs."""
+    """A process has started."""
 
     name = "launch.events.process.ProcessStarted"
 
@@ -70,7 +70,7 @@ class ProcessIO(RunningProcessEvent):
 
 
 class ProcessStdin(ProcessIO):
-    """Text for a process's standard input; the base of what nothing sends, here or in launch."""
+    """Text for a process's standard input; neither launch nor this model sends any."""
 
     name = "launch.events.process.ProcessStdin"
 
@@ -97,7 +97,7 @@ class ProcessStderr(ProcessIO):
 
 
 class ShutdownProcess(Event):
-    """A process is to end; ``process_matcher`` picks it among the actions."""
+    """A request to end processes; ``process_matcher`` selects their actions."""
 
     name = "launch.events.process.ShutdownProcess"
 

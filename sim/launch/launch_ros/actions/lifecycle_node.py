@@ -8,9 +8,9 @@ from sim.launch.launch_ros.actions.node import Node
 
 
 class LifecycleNode(Node):
-    """Starts a managed node; as in launch_ros, its name and namespace have to be given.
+    """Starts a managed node; as in launch_ros, its name and namespace are required.
 
-    It stays unconfigured until somebody asks for a transition, as ``ros2 lifecycle set`` does.
+    It stays unconfigured until a transition is requested, as by ``ros2 lifecycle set``.
     """
 
     def __init__(self, *, name: Any, namespace: Any, autostart: bool = False, **kwargs: Any) -> None:

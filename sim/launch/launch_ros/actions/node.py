@@ -1,7 +1,5 @@
 """``launch_ros.actions.Node``: starts a program of a package as a node."""
 
-# ruff: noqa: D102 -- what a method does that overrides another stands with that one
-
 from __future__ import annotations
 
 from collections.abc import Iterable

@@ -1,6 +1,4 @@
-"""Actions that settle something for all nodes after them in their group."""
-
-# ruff: noqa: D102 -- what a method does that overrides another stands with that one
+"""Actions with settings for all later nodes in their group."""
 
 from __future__ import annotations
 
@@ -14,7 +12,7 @@ from sim.launch.launch_ros.parameters import file_arguments, parameter_arguments
 
 
 class PushROSNamespace(Action):
-    """Puts the nodes into a namespace, inside of the present one."""
+    """Puts the nodes into a namespace inside the current one."""
 
     def __init__(self, namespace: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -37,7 +35,7 @@ class SetRemap(Action):
 
 
 class SetParameter(Action):
-    """Gives the nodes a parameter; their own ones count more."""
+    """Gives the nodes a parameter; their own parameters take precedence."""
 
     def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
         super().__init__(**kwargs)
@@ -50,14 +48,14 @@ class SetParameter(Action):
 
 
 class SetUseSimTime(SetParameter):
-    """Tells the nodes whether to take the time from the clock topic."""
+    """Sets whether the nodes take the time from the clock topic."""
 
     def __init__(self, value: Any, **kwargs: Any) -> None:
         super().__init__("use_sim_time", value, **kwargs)
 
 
 class SetParametersFromFile(Action):
-    """Gives the nodes the parameters of a file; their own ones count more."""
+    """Gives the nodes the parameters of a file; their own parameters take precedence."""
 
     def __init__(self, filename: Any, *, node_name: Any = None, **kwargs: Any) -> None:
         super().__init__(**kwargs)

@@ -1,4 +1,4 @@
-"""Actions that are not supported: each says so when a launch file makes one."""
+"""Actions that are not supported; creating one raises an error."""
 
 from sim.launch.errors import COMPILED, unsupported
 
