@@ -1,4 +1,4 @@
-"""Pictures of the robot's world: drawn by a process of their own, from what a trace tells."""
+"""Pictures of the robot's world: drawn from a trace by a process of their own."""
 
 from sim.camera.camera import Camera
 from sim.camera.wire import Picture, Shot

@@ -1,4 +1,4 @@
-"""A camera: the process that takes pictures, asked for one at a time, the newest first."""
+"""A camera: a process that takes one picture at a time, of the newest request."""
 
 import multiprocessing
 import sys
@@ -15,14 +15,14 @@ from sim.camera.wire import NoCamera, Picture, Shot
 from sim.interpreter.safe_path import without_current_folder
 
 _GRACE = 0.4
-"""Seconds that the process gets to end by itself before it is killed."""
+"""Seconds in which the process may end by itself before it is killed."""
 
 
 class Camera:
     """Takes pictures in a process of its own, which starts with the first shot.
 
-    ``deliver`` gets every picture; ``lost`` is called once if there will be no more, with the sentence that
-    says why. Both are called on the camera's reader thread; everything else belongs to one thread.
+    ``deliver`` gets every picture; ``lost`` is called once, with a sentence, if no more can come. Both are
+    called on the camera's reader thread; all methods belong to one other thread.
     """
 
     def __init__(
@@ -42,7 +42,7 @@ class Camera:
         """The process; None before the first shot."""
 
     def want(self, shot: Shot) -> None:
-        """Ask for a picture; of several that are asked for during another, only the newest is taken."""
+        """Request a picture; of several requests during another picture only the newest is taken."""
         if self._stopping:
             return
         if self.process is None:
@@ -55,7 +55,7 @@ class Camera:
         self._send(shot)
 
     def stop(self) -> None:
-        """End the process, by force if it must be. Safe to call twice."""
+        """End the process, by force if necessary. Idempotent."""
         if self._stopping:
             return
         self._stopping = True
@@ -74,7 +74,7 @@ class Camera:
         self._pipe, far_end = context.Pipe()
         self.process = context.Process(target=self._target, args=(far_end,), name="cbtui-camera", daemon=True)
         self._reader = threading.Thread(target=self._read, name="camera-reader", daemon=True)
-        # Starting a process hands on standard error, and Textual's stand-in for it has no descriptor.
+        # A new process inherits standard error, and Textual's replacement of it has no descriptor.
         with redirect_stderr(sys.__stderr__), without_current_folder():
             self.process.start()
         far_end.close()
@@ -84,7 +84,7 @@ class Camera:
         try:
             self._pipe.send_bytes(msgspec.msgpack.encode(shot))
         except OSError:
-            return  # the reader tells that the process is gone
+            return  # the reader reports that the process is gone
 
     def _read(self) -> None:
         decoder = msgspec.msgpack.Decoder(Picture | NoCamera)

@@ -1,4 +1,4 @@
-"""The process that takes pictures: one request, one answer, until nobody asks any more."""
+"""The process that takes pictures: one answer for each request, until the pipe is closed."""
 
 import os
 import signal
@@ -10,22 +10,22 @@ from sim.camera.wire import NoCamera, Picture, Shot
 
 
 def serve(pipe: Connection) -> None:
-    """Answer every shot with a picture; the first that cannot be taken with the reason, and end.
+    """Answer every shot with a picture; answer the first that fails with the reason, and return.
 
-    It ends, too, when the other end of the pipe is closed, whatever has become of who held it.
+    Returns, too, when the other end of the pipe is closed.
     """
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # ctrl+c is the console's to hear
-    os.environ["OPENBLAS_NUM_THREADS"] = "1"  # read as numpy is imported
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # ctrl+c is for the console
+    os.environ["OPENBLAS_NUM_THREADS"] = "1"  # read when numpy is imported
     from sim.robot.bullet import WorldUnavailable, silence
 
-    with silence():  # the terminal is the console's
+    with silence():  # the terminal belongs to the console
         try:
             _answer_all(pipe)
         except (EOFError, OSError):
             return
         except WorldUnavailable as error:
             _refuse(pipe, str(error))
-        except Exception as error:  # noqa: BLE001 -- a trace may tell of any world
+        except Exception as error:  # noqa: BLE001 -- a trace may describe any world
             _refuse(pipe, f"The camera cannot draw this world ({type(error).__name__}: {error}).")
 
 

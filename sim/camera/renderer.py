@@ -14,18 +14,18 @@ Pixels = NDArray[np.uint8]
 _Point = tuple[float, float, float]
 
 _BEHIND, _ABOVE, _AHEAD, _AT_HEIGHT = 0.60, 0.42, 0.30, 0.13
-"""Where the camera hangs relative to the robot, and what it looks at, in metres."""
+"""The camera's position relative to the robot, and the point that it looks at, in metres."""
 _HIGH, _NARROWEST, _WIDEST = math.radians(52), math.radians(66), math.radians(100)
-"""The angle of view from bottom to top; other in a picture that would see less or more than these across."""
+"""The vertical angle of view, changed where the horizontal one would be outside these limits."""
 _NEAR, _FAR = 0.03, 60.0
 _EMPTY = 0.9999
-"""The depth from which on there is nothing to be seen."""
+"""The depth from which on a pixel shows nothing."""
 _WALL_GAP = 0.8
-"""How far towards a wall behind it the camera may go, as a part of the way."""
+"""The camera's position before a wall behind it, as a part of the distance to the wall."""
 
 _FLOOR = (0.25, 0.38, 0.50, 1.0)
 _WALLS = ((1.00, 0.52, 0.40, 1.0), (0.40, 0.82, 0.76, 1.0))
-"""Neighbouring walls differ, so that corners show and turning does."""
+"""Neighbouring walls differ, so that corners and turns are visible."""
 _SPHERE = (1.0, 0.86, 0.16, 1.0)
 _BODY = (0.95, 0.95, 0.95, 1.0)
 _SHADE = (0.05, 0.07, 0.12, 1.0)
@@ -33,7 +33,7 @@ _SKY = (36.0, 36.0, 73.0)
 _LIGHT: _Point = (-0.5, 0.7, 1.6)
 
 _SMOOTH_UP_TO = 8000
-"""Pixels up to which a picture is drawn twice as large and made smaller, which smooths its edges."""
+"""Pixels up to which a picture is drawn twice as large and reduced, for smooth edges."""
 
 
 class Renderer:
@@ -64,7 +64,7 @@ class Renderer:
         return rounded
 
     def close(self) -> None:
-        """Give PyBullet's client back."""
+        """Release PyBullet's client."""
         self._client.close()
 
     def _paint(self) -> None:
@@ -76,7 +76,7 @@ class Renderer:
         colour(self._scene.robot, -1, rgbaColor=_BODY)
 
     def _shade(self, radius: float, x: float, y: float) -> int:
-        """Lay a dark disc on the floor, in place of a shadow, which the renderer draws with specks."""
+        """Add a dark disc on the floor in place of a shadow, which the renderer draws with artefacts."""
         disc = self._client.createVisualShape(
             self._client.GEOM_CYLINDER, radius=radius, length=0.002, rgbaColor=_SHADE
         )
@@ -112,7 +112,7 @@ class Renderer:
         return np.where(empty, _SKY, np.reshape(colours, (height, width, 4))[:, :, :3])
 
     def _aim(self, shot: Shot) -> tuple[_Point, _Point]:
-        """Return where the camera hangs, and what it looks at: all nearer if a wall is in the way."""
+        """Return the camera's position and target, both nearer to the robot if a wall is in the way."""
         cos, sin = math.cos(shot.yaw), math.sin(shot.yaw)
         behind = (shot.x - _BEHIND * cos, shot.y - _BEHIND * sin, _ABOVE)
         body, _, way, *_ = self._client.rayTest((shot.x, shot.y, _ABOVE), behind)[0]

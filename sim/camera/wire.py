@@ -1,12 +1,12 @@
-"""What goes to the process that draws pictures, and what comes back from it."""
+"""The messages to and from the process that draws pictures."""
 
 import msgspec
 
 
 class Shot(msgspec.Struct, frozen=True, array_like=True):
-    """A picture to be taken: of which arena, where the robot stands in it, and how many pixels.
+    """A request for a picture: the arena, the robot's pose, and the size in pixels.
 
-    Metres and radians; walls and sphere as ``ArenaShown`` has them. A pixel is as high as wide.
+    Metres and radians; walls and sphere as in ``ArenaShown``. Pixels are square.
     """
 
     walls: tuple[tuple[float, float, float, float], ...]
@@ -27,6 +27,6 @@ class Picture(msgspec.Struct, frozen=True, array_like=True, tag=True):
 
 
 class NoCamera(msgspec.Struct, frozen=True, array_like=True, tag=True):
-    """There are no pictures on this machine; ``why`` is a sentence for a person."""
+    """No pictures can be drawn on this machine; ``why`` is a sentence for a person."""
 
     why: str

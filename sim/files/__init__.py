@@ -1,1 +1,1 @@
-"""Reads and writes files with care: whole or not at all, limited in size, without code in them."""
+"""Writes files atomically, and reads untrusted files, TOML and YAML within limits."""

@@ -1,4 +1,4 @@
-"""Reads TOML that anybody may have written, in time and memory that grow with the text only."""
+"""Reads untrusted TOML, in time and memory that grow with the text only."""
 
 import re
 import tomllib

@@ -76,7 +76,7 @@ def _untyped_loader() -> Any:
     loader_class = _loader()
 
     class UntypedLoader(loader_class):  # type: ignore[misc, valid-type]
-        """Gives scalars no type of their own: the caller tells numbers and booleans from texts."""
+        """Leaves scalars without a type: the caller distinguishes numbers and booleans from texts."""
 
         def resolve(self, kind: type[Node], value: str | None, implicit: object) -> str:
             return ""

@@ -1,4 +1,4 @@
-"""Reads files that anybody may have written: regular files only, up to a limit of bytes."""
+"""Reads untrusted files: regular files only, up to a limit of bytes."""
 
 import errno
 import os

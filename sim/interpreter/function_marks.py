@@ -12,7 +12,7 @@ FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 
 
 class FunctionMark:
-    """A set of functions of one kind; ``frame in mark`` tells whether a frame runs one of them."""
+    """A set of functions of one kind; ``frame in mark`` is true if a frame runs one of them."""
 
     def __init__(self) -> None:
         self._codes: set[CodeType] = set()

@@ -35,7 +35,7 @@ class BackgroundRecorder:
         self._room = room
         self._gap = 0
         self._waiting: SimpleQueue[_Batch | None] = SimpleQueue()
-        # Two counters, each with a thread of its own that sets it.
+        # Two counters, as each is written by one thread.
         self._taken = 0
         self._written = 0
         self._closed = False

@@ -34,8 +34,8 @@ class ChunkError(Exception):
     """The chunk is damaged or cannot be unpacked."""
 
 
-def unpack_chunk(chunk: bytes, most: int = _MOST) -> bytes:
-    """Unpack a chunk record to at most ``most`` bytes.
+def unpack_chunk(chunk: bytes) -> bytes:
+    """Unpack a chunk record.
 
     Raises:
         ChunkError: it is damaged, too large, or compressed in an unknown way.
@@ -49,7 +49,7 @@ def unpack_chunk(chunk: bytes, most: int = _MOST) -> bytes:
     except struct.error:
         raise ChunkError("it is too short") from None
     packed = chunk[start + _COMPRESSED_LENGTH.size :]
-    if length != len(packed) or size > min(most, _MOST):
+    if length != len(packed) or size > _MOST:
         raise ChunkError("its size is wrong")
     unpacked = _decompress(compression, packed, size)
     if len(unpacked) != size or (checksum and zlib.crc32(unpacked) != checksum):

@@ -86,6 +86,9 @@ class RunSnapshot:
         handle = _HANDLERS.get(event.__class__)
         if handle is not None:
             handle(self, event)
+        elif event.__class__ in _ENDS:
+            kind, field = _ENDS[event.__class__]
+            self._latest.pop((kind, getattr(event, field)), None)
         elif event.__class__ in _KEYS:
             kind, field = _KEYS[event.__class__]
             self._latest[kind, getattr(event, field) if field else 0] = (self._place, event)
@@ -98,17 +101,8 @@ class RunSnapshot:
         self._waits.pop(event.entity, None)
         self._latest.pop(("entity", event.entity), None)
 
-    def _take_reply(self, event: ev.ServiceReplied) -> None:
-        self._latest.pop(("call", event.call), None)
-
-    def _take_unblocked(self, event: ev.CallUnblocked) -> None:
-        self._latest.pop(("block", event.call), None)
-
     def _take_input(self, event: ev.InputGiven) -> None:
         self._latest["input", self._place] = (self._place, event)
-
-    def _take_line_end(self, event: ev.LineEnded) -> None:
-        self._latest.pop(("line", event.line), None)
 
     def _take_start(self, event: ev.CallbackStarted) -> None:
         self._running[event.entity].append(_Call((self._place, event), event.thread))
@@ -212,11 +206,14 @@ _HANDLERS: dict[type, Callable[[RunSnapshot, Any], None]] = {
     ev.WaitEnded: RunSnapshot._take_wait,
     ev.Published: RunSnapshot._take_published,
     ev.EntityGone: RunSnapshot._take_gone,
-    ev.ServiceReplied: RunSnapshot._take_reply,
-    ev.CallUnblocked: RunSnapshot._take_unblocked,
     ev.InputGiven: RunSnapshot._take_input,
-    ev.LineEnded: RunSnapshot._take_line_end,
 }
+_ENDS: dict[type, tuple[str, str]] = {
+    ev.ServiceReplied: ("call", "call"),
+    ev.CallUnblocked: ("block", "call"),
+    ev.LineEnded: ("line", "line"),
+}
+"""Events that end an event of ``_KEYS``: the kind of its subject, and the field with the subject's id."""
 _KEYS: dict[type, tuple[str, str]] = {
     ev.RunStarted: ("run", ""),
     ev.ProcessAppeared: ("process", "process"),

@@ -6,7 +6,7 @@ DISTROS = {"humble": "3.3.22", "jazzy": "7.1.12", "kilted": "9.1.2", "lyrical": 
 """The distributions, each with the patch that its name alone stands for; Lyrical's patches are not known."""
 
 COMPARED_DISTROS = ("jazzy", "kilted")
-"""Those whose real rclpy was run beside the model."""
+"""The distributions whose real rclpy was compared with the model."""
 
 
 class UnknownProfileError(ValueError):

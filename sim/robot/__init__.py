@@ -1,1 +1,1 @@
-"""The robot: a PyBullet world, and the driver node that puts it on topics and services."""
+"""The robot: its physics, and the driver node that offers its topics and services."""

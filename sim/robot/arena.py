@@ -1,7 +1,7 @@
-"""What stands where: the room, the sphere and the robot's outline, as plain data.
+"""The robot's surroundings as plain data: the room, the sphere and the robot's outline.
 
-Metres; x points straight ahead of the robot at the start, y to its left. The world builds its
-bodies from this data, the lidar measures it and the console draws it; reading it needs no PyBullet.
+In metres; x points straight ahead of the robot at the start, y to its left. The world builds its bodies
+from this data, the lidar measures it and the console draws it, without PyBullet.
 """
 
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ LIDAR_HEIGHT = 0.18
 
 @dataclass(frozen=True, slots=True)
 class Pose:
-    """Where the robot's base is (metres) and where it heads (radians in -pi … pi, 0 along x)."""
+    """Position of the robot's base (metres) and its heading (radians in -pi … pi, 0 along x)."""
 
     x: float
     y: float
@@ -28,7 +28,7 @@ START = Pose(0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class Segment:
-    """A straight wall's face, from (x0, y0) to (x1, y1), with the room on the left of that way."""
+    """The face of a straight wall, from (x0, y0) to (x1, y1), with the room on its left."""
 
     x0: float
     y0: float
@@ -38,7 +38,7 @@ class Segment:
 
 @dataclass(frozen=True, slots=True)
 class Circle:
-    """A sphere as the lidar's plane cuts it; the sphere's centre lies in that plane."""
+    """The section of a sphere in the lidar's plane, which has the sphere's centre."""
 
     x: float
     y: float
@@ -62,11 +62,11 @@ _SPHERE_RADIUS = 0.18
 _SPHERE_GAP = 0.75
 
 ARENA = Arena(
-    # One corner is cut out, and the start is off the middle: a map shows at once which way is ahead.
+    # One corner is cut out, and the start is not in the middle, so that a map shows which way is ahead.
     walls=outline((-7.0, -8.0), (9.0, -8.0), (9.0, 3.0), (6.5, 3.0), (6.5, 6.5), (-7.0, 6.5)),
     sphere=Circle(START.x + _SPHERE_GAP + _SPHERE_RADIUS, START.y, _SPHERE_RADIUS),
 )
-"""The lessons' arena: a sphere 0.75 m ahead of the lidar, every wall 6.5 m off or more.
+"""The lessons' arena: a sphere 0.75 m ahead of the lidar; walls are at least 6.5 m away.
 
-In 60 s at the lessons' 0.08 m/s the robot covers less than 5 m, so that the sphere is all it meets.
+In 60 s at the lessons' 0.08 m/s the robot drives less than 5 m, so that it meets only the sphere.
 """

@@ -1,4 +1,4 @@
-"""PyBullet, brought in only when a world is built, kept silent, one client per world."""
+"""PyBullet: imported when the first world is built, without output, one client per world."""
 
 import ctypes
 import importlib
@@ -10,18 +10,18 @@ from functools import partial
 from typing import Any
 
 
-class WorldUnavailable(Exception):  # noqa: N818  (said to a person as it is)
-    """There can be no robot world on this machine; the text says what to do about it."""
+class WorldUnavailable(Exception):  # noqa: N818  (shown to a person)
+    """No robot world can be built on this machine; the text says what to do."""
 
 
 class BulletClient:
-    """PyBullet's functions, each already bound to one DIRECT client of its own.
+    """PyBullet's functions, bound to a DIRECT client of their own.
 
     Not thread-safe: one thread at a time. Two clients share nothing.
     """
 
     def __init__(self) -> None:
-        """Import PyBullet and connect, in silence.
+        """Import PyBullet and connect, without output.
 
         Raises:
             WorldUnavailable: PyBullet is missing, broken, or has no client left.
@@ -33,7 +33,7 @@ class BulletClient:
             raise WorldUnavailable("PyBullet refused one more world: close the others, or start afresh.")
 
     def __getattr__(self, name: str) -> Any:
-        """Return the constant or the bound function of that name, and keep it for the next time."""
+        """Return and cache a constant or a bound function by name."""
         found = getattr(self._bullet, name)
         bound = partial(found, physicsClientId=self._id) if callable(found) else found
         setattr(self, name, bound)
@@ -45,7 +45,7 @@ class BulletClient:
             return
         with silence():
             self._bullet.disconnect(self._id)
-        # PyBullet gives the number to the next client, which must not hear from this one.
+        # The next client gets this number, and must not get calls of this one.
         bullet = self._bullet
         vars(self).clear()
         self._bullet, self._id = bullet, -1
@@ -63,14 +63,14 @@ def _import_bullet() -> Any:
 
 @contextmanager
 def silence() -> Iterator[None]:
-    """Send the process's standard output and error nowhere, C code's included, for the block.
+    """Discard the process's standard output and error in the block, those of C code included.
 
-    The whole process is silent meanwhile: what other threads print is lost, too.
+    Output of other threads is lost, too.
     """
     _flush()
     kept = {}
     for stream in (1, 2):
-        with suppress(OSError):  # a stream that is closed says nothing anyway
+        with suppress(OSError):  # a closed stream has no output
             kept[stream] = os.dup(stream)
     nowhere = os.open(os.devnull, os.O_WRONLY)
     try:
@@ -90,5 +90,5 @@ def _flush() -> None:
         if stream is not None:
             with suppress(OSError, ValueError):
                 stream.flush()
-    # C's own buffers too: text left in them would come out after the silence.
+    # C's buffers, too: their text would be written after the block.
     ctypes.CDLL("msvcrt" if sys.platform == "win32" else None).fflush(None)

@@ -10,14 +10,14 @@ from .scene import build
 _GRAVITY = 9.81
 
 _SOFTNESS = 1e-9
-"""A trace of give in every constraint; without it the direct solver meets singular matrices and gives up."""
+"""Compliance of every constraint; without it the direct solver fails on singular matrices."""
 
 
 class BulletPhysics:
-    """A room, a sphere and a robot, in a PyBullet client of their own. See `Physics`."""
+    """`Physics` in a PyBullet client of its own."""
 
     def __init__(self, arena: Arena) -> None:
-        """Build them, in silence.
+        """Build the arena and the robot, without output.
 
         Raises:
             WorldUnavailable: PyBullet cannot be used here; the text says what to do.
@@ -41,11 +41,9 @@ class BulletPhysics:
             self._start: int = client.saveState()
 
     def step(self) -> None:
-        """Go on by a step."""
         self._client.stepSimulation()
 
     def turn_wheels(self, speeds: WheelPair, torque: float) -> None:
-        """Have each wheel aim at a speed with so much torque at most."""
         self._client.setJointMotorControlArray(
             self._scene.robot,
             self._scene.wheels,
@@ -55,32 +53,26 @@ class BulletPhysics:
         )
 
     def pose(self) -> Pose:
-        """Return where the robot's base is and where it heads."""
         client = self._client
         inertial = client.getBasePositionAndOrientation(self._scene.robot)
         (x, y, _), orientation = client.multiplyTransforms(*inertial, *self._base_in_inertial)
         return Pose(x, y, client.getEulerFromQuaternion(orientation)[2])
 
     def velocity(self) -> Velocity:
-        """Return the velocity of the body: along its heading, and about its axis."""
         (x, y, _), (_, _, angular) = self._client.getBaseVelocity(self._scene.robot)
         yaw = self.pose().yaw
         return Velocity(x * math.cos(yaw) + y * math.sin(yaw), angular)
 
     def wheel_angles(self) -> WheelPair:
-        """Return how far each wheel has turned."""
         left, right = self._client.getJointStates(self._scene.robot, self._scene.wheels)
         return WheelPair(left[0], right[0])
 
     def touching(self) -> bool:
-        """Tell whether the robot touched anything but the floor at the last step."""
         contacts = self._client.getContactPoints(bodyA=self._scene.robot)
         return any(contact[2] != self._scene.floor for contact in contacts)
 
     def reset(self) -> None:
-        """Put the robot back to the start, at rest."""
         self._client.restoreState(self._start)
 
     def close(self) -> None:
-        """Give PyBullet's client back."""
         self._client.close()

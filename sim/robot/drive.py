@@ -1,4 +1,4 @@
-"""Differential drive: what a body velocity asks of two wheels, and the robot's limits."""
+"""Differential drive: the wheel speeds of a body velocity, and the robot's limits."""
 
 import math
 from typing import NamedTuple
@@ -37,18 +37,18 @@ class WheelPair(NamedTuple):
 
 
 def is_drivable(wanted: Velocity) -> bool:
-    """Tell whether a velocity is made of numbers: neither NaN nor infinite."""
+    """Return whether a velocity is finite."""
     return math.isfinite(wanted.linear) and math.isfinite(wanted.angular)
 
 
 def clamped(wanted: Velocity) -> Velocity:
-    """Return the nearest velocity within the robot's limits, each component for itself."""
+    """Clamp each component of a velocity to the robot's limits."""
     return Velocity(
         max(-MAX_LINEAR, min(MAX_LINEAR, wanted.linear)), max(-MAX_ANGULAR, min(MAX_ANGULAR, wanted.angular))
     )
 
 
 def wheel_speeds(body: Velocity) -> WheelPair:
-    """Return the wheel speeds, in rad/s, that move the body so while no wheel slips."""
+    """Return the wheel speeds, in rad/s, for a velocity of the body without slip."""
     lag = body.angular * WHEEL_SEPARATION / 2
     return WheelPair((body.linear - lag) / WHEEL_RADIUS, (body.linear + lag) / WHEEL_RADIUS)

@@ -1,7 +1,6 @@
-"""The robot's driver: a node of its own that puts the PyBullet world on topics and services.
+"""The robot's driver: a node of its own that offers the robot's world on topics and services.
 
-It runs like the driver process of a real robot: its callbacks are not the learner's and do not show on the
-lanes. What it publishes does.
+It runs like the driver process of a real robot: its callbacks are not on the lanes, its messages are.
 """
 
 import array
@@ -21,11 +20,11 @@ SENSOR_RATE = 20.0
 """Measurements a second of each sensor, unless a run wants others."""
 
 _LATENCY = 3_000_000
-"""Nanoseconds from a tick to the odometry, and from there to the scan: reading a sensor takes time."""
+"""Nanoseconds from a tick to the odometry, and from that to the scan, as reading a sensor takes time."""
 
 
 class Port(Protocol):
-    """What a driver needs of rclpy: the model's, or the real one's."""
+    """The interface of a driver to rclpy, modelled or real."""
 
     @property
     def node(self) -> Any:
@@ -38,13 +37,13 @@ class Port(Protocol):
         """Wait for a number of nanoseconds of the run's time."""
 
     def message(self, package: str, name: str) -> Any:
-        """A message class."""
+        """Return a message class."""
 
     def service(self, package: str, name: str) -> Any:
-        """A service class."""
+        """Return a service class."""
 
     def sensor_publisher(self, message: Any, topic: str) -> Any:
-        """A publisher that sends without making sure, and keeps five messages."""
+        """Create a best-effort publisher that keeps five messages."""
 
     def hear_velocities(self, message: Any, callback: Callable[[Any], None]) -> None:
         """Subscribe to ``cmd_vel``."""
@@ -53,11 +52,11 @@ class Port(Protocol):
         """Publish a message; returns its id on the trace."""
 
     def record(self, event: AnyEvent) -> None:
-        """Put something that the trace is to know of the robot on it."""
+        """Record an event of the robot."""
 
 
 class Driver:
-    """Drives a robot. ``rate`` (Hz) is that of odometry and scans, None the usual one."""
+    """Drives a robot. ``rate`` (Hz) is that of odometry and scans; None: the usual one."""
 
     def __init__(self, port: Port, rate: float | None = None) -> None:
         self._tick = 1 / (rate or SENSOR_RATE)
@@ -69,7 +68,7 @@ class Driver:
         self._warned = False
 
     def offer(self) -> None:
-        """Offer the topics and services, and show what stands around the robot."""
+        """Offer the topics and services, and record the robot's surroundings."""
         node, port = self._node, self._port
         self._odom = node.create_publisher(self._odometry, "odom", 10)
         self._scan = port.sensor_publisher(self._laser_scan, "scan")
@@ -86,7 +85,7 @@ class Driver:
         )
 
     def begin(self, world: World) -> None:
-        """Measure from now on, as soon as the node is spun."""
+        """Start the sensors, which measure while the node is spun."""
         self._world = world
         self._port.sleep(_LATENCY)
         self._node.create_timer(self._tick, self._publish_odometry)
@@ -171,5 +170,5 @@ class Driver:
 
 
 def _packed(ranges: NDArray[np.float32]) -> bytes:
-    """Ranges as the trace keeps them: little-endian uint16 millimetres, 0 for nothing in range."""
+    """Encode ranges as the trace has them: little-endian uint16 millimetres, 0 for nothing in range."""
     return np.where(np.isfinite(ranges), np.rint(ranges * 1000), 0).astype("<u2").tobytes()

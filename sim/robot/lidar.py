@@ -1,7 +1,7 @@
 """The lidar: exact distances from a point to the walls and the sphere, over a full turn.
 
-The rays are cut with the arena's own data and not sent through PyBullet: 720 of them take PyBullet
-about 1.5 ms a scan, this some 0.07 ms, and the robot's own body cannot get in the way.
+Rays are intersected with the arena's data instead of in PyBullet: a scan of 720 rays takes PyBullet about
+1.5 ms, and this some 0.07 ms; the robot's own body cannot block a ray.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ RANGE_MIN = 0.12
 RANGE_MAX = 20.0
 
 _CORNER_SLACK = 1e-9
-"""How far past a wall's end, as a part of its length, it still counts: no ray slips through a corner."""
+"""Tolerance past a wall's end, as a part of its length, so that no ray passes through a corner."""
 
 
 class Lidar:
@@ -33,8 +33,8 @@ class Lidar:
     def scan(self, pose: Pose) -> NDArray[np.float32]:
         """Return the distance each beam measures from the pose, in metres, shape (720,), a new array.
 
-        Counter-clockwise, `[360]` straight ahead. Beyond 20 m a beam reads infinity; what is nearer
-        than 0.12 m reads 0.12, so that a robot pressed against something still sees it there.
+        Counter-clockwise, `[360]` straight ahead. Beyond 20 m a beam reads infinity, below 0.12 m it
+        reads 0.12, so that a robot that touches an obstacle still sees it.
         """
         cos, sin = np.cos(pose.yaw), np.sin(pose.yaw)
         ray_x = self._cos * cos - self._sin * sin

@@ -19,7 +19,7 @@ _SENSOR_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class ModelPort:
-    """What the driver needs of the model. ``record`` takes what the trace is to know of the robot."""
+    """`Port` on the model; ``record`` takes events of the robot."""
 
     message = staticmethod(message)
     service = staticmethod(service)
@@ -33,25 +33,22 @@ class ModelPort:
         self.node = Node("robot_driver", context=self.context)
 
     def sensor_publisher(self, message: Any, topic: str) -> Any:
-        """A publisher that sends without making sure, and keeps five messages."""
         return self.node.create_publisher(message, topic, _SENSOR_QOS)
 
     def hear_velocities(self, message: Any, callback: Callable[[Any], None]) -> None:
-        """Subscribe to ``cmd_vel``."""
         VelocityCommands(self.node, message, callback, self.record).listen()
 
     def publish(self, publisher: Any, message: Any) -> int:
-        """Publish a message; returns its id on the trace."""
         return int(publisher.send(message))
 
 
 def start_robot(
     host: Host, record: Callable[[AnyEvent], None], world: Callable[[], World], rate: float | None = None
 ) -> None:
-    """Have a robot driven until the host's time ends.
+    """Start a robot, which is driven until the host's time ends.
 
-    ``world`` builds the robot's world once the driver runs, on its thread: that takes a while. ``rate`` (Hz)
-    is that of odometry and scans, None the usual one.
+    ``world`` builds the robot's world on the driver's thread, as that takes a while. ``rate`` (Hz) is that of
+    odometry and scans; None: the usual one.
     """
     port = ModelPort(host, record)
     driver = Driver(port, rate)

@@ -1,4 +1,4 @@
-"""What the robot is known by on the network."""
+"""The robot's names on the network."""
 
 NAMES = ("/odom", "/scan", "/cmd_vel", "/reset_world", "/motor_power")
 """The robot's topics and services."""

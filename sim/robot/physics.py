@@ -1,4 +1,4 @@
-"""What moves the robot's body: PyBullet, or the planar model in numpy where PyBullet has no wheel."""
+"""The physics of the robot: PyBullet, or a planar model in numpy where PyBullet has no wheel."""
 
 from enum import StrEnum
 from importlib.util import find_spec
@@ -9,7 +9,7 @@ from .drive import Velocity, WheelPair
 
 
 class PhysicsChoice(StrEnum):
-    """Which physics."""
+    """The kind of physics."""
 
     PYBULLET = "pybullet"
     NUMPY = "numpy"
@@ -19,13 +19,13 @@ class Physics(Protocol):
     """An arena with a robot in it, at the start and at rest. Not thread-safe: one thread at a time."""
 
     def step(self) -> None:
-        """Go on by a step."""
+        """Simulate one step."""
 
     def turn_wheels(self, speeds: WheelPair, torque: float) -> None:
-        """Have each wheel aim at a speed (rad/s) with so much torque at most (newton metres)."""
+        """Set each wheel's target speed (rad/s), and the highest torque of both (newton metres)."""
 
     def pose(self) -> Pose:
-        """Return where the robot's base is and where it heads."""
+        """Return the pose of the robot's base."""
 
     def velocity(self) -> Velocity:
         """Return the velocity of the body: along its heading, and about its axis."""
@@ -34,22 +34,22 @@ class Physics(Protocol):
         """Return how far each wheel has turned since the start or the last reset, in rad."""
 
     def touching(self) -> bool:
-        """Tell whether the robot touched anything but the floor at the last step."""
+        """Return whether the robot touched anything but the floor at the last step."""
 
     def reset(self) -> None:
         """Put the robot back to the start, at rest."""
 
     def close(self) -> None:
-        """Give back what it holds; idempotent."""
+        """Release its resources; idempotent."""
 
 
 def usual() -> PhysicsChoice:
-    """Return the physics of a run that asks for none: PyBullet if it is installed, else numpy."""
+    """Return the physics of a run without a choice: PyBullet if it is installed, else numpy."""
     return PhysicsChoice.NUMPY if find_spec("pybullet") is None else PhysicsChoice.PYBULLET
 
 
 def build(arena: Arena, choice: PhysicsChoice | None = None) -> Physics:
-    """Build an arena, None in the usual physics.
+    """Build an arena; ``choice`` None: the usual physics.
 
     Raises:
         WorldUnavailable: PyBullet cannot be used here; the text says what to do.

@@ -1,9 +1,9 @@
 """The robot's physics without PyBullet: a rigid body on two driven wheels, in the plane.
 
 Masses and sizes are those of ``burger.urdf``. Motors, the wheels' grip and obstacles are constraints with
-limits on their impulses, solved all at once in each step. As in PyBullet, obstacles have no friction. A
-robot that goes on pushing against one stays as it stands, within half a degree; PyBullet's turns slowly, by
-40° in half a minute head-on at a wall, and drives on along a wall that it met at an angle.
+limits on their impulses, solved together in each step. As in PyBullet, obstacles have no friction. A robot
+that pushes against one keeps its heading, within half a degree; PyBullet's turns slowly, by 40° in half a
+minute head-on at a wall, and drives along a wall that it met at an angle.
 """
 
 import math
@@ -21,13 +21,13 @@ _STEP = 1 / STEP_RATE
 _GRAVITY = 9.81
 _HALF = WHEEL_SEPARATION / 2
 _NEAR = 0.002
-"""Metres from an obstacle at which it is reckoned with; no step is as long."""
+"""Metres from an obstacle at which it is a constraint; no step is as long."""
 _TOUCH = 1e-4
 """Metres from an obstacle at which the robot touches it."""
 _RECOVERY = 0.2
 """The share of a penetration that one step removes."""
 _SOFTNESS = 1e-9
-"""A trace of give in every constraint, which keeps their matrix regular."""
+"""Compliance of every constraint, which keeps their matrix regular."""
 _ATTEMPTS = 100
 
 _Array = NDArray[np.float64]
@@ -46,7 +46,7 @@ _WHEEL_ROWS = np.array(
 
 
 class PlanarPhysics:
-    """A room, a sphere and a robot. See `Physics`."""
+    """`Physics` in numpy."""
 
     def __init__(self, arena: Arena) -> None:
         self._arena = arena
@@ -70,38 +70,31 @@ class PlanarPhysics:
         self.turn_wheels(WheelPair(0.0, 0.0), 0.0)
 
     def reset(self) -> None:
-        """Put the robot back to the start, at rest."""
         self._x, self._y, self._yaw = START.x, START.y, START.yaw
         self._angles = np.zeros(2)
         self._motion = np.zeros(5)
         self._touching = False
 
     def turn_wheels(self, speeds: WheelPair, torque: float) -> None:
-        """Have each wheel aim at a speed with so much torque at most."""
         self._wanted = np.array([*speeds, 0.0, 0.0, 0.0])
         self._limits = np.array([torque * _STEP] * 2 + [self._grip, self._grip, 2 * self._grip])
 
     def pose(self) -> Pose:
-        """Return where the robot's base is and where it heads."""
         return Pose(self._x, self._y, math.remainder(self._yaw, math.tau))
 
     def velocity(self) -> Velocity:
-        """Return the velocity of the body: along its heading, and about its axis."""
         return Velocity(float(self._motion[0]), float(self._motion[2]))
 
     def wheel_angles(self) -> WheelPair:
-        """Return how far each wheel has turned."""
         return WheelPair(*self._angles.tolist())
 
     def touching(self) -> bool:
-        """Tell whether the robot touched anything at the last step."""
         return self._touching
 
     def close(self) -> None:
-        """Do nothing: there is nothing to give back."""
+        pass
 
     def step(self) -> None:
-        """Go on by a step."""
         contacts = list(self._contacts())
         self._touching = any(gap < _TOUCH for gap, _, _ in contacts)
         rows, wanted = _WHEEL_ROWS, self._wanted
@@ -143,7 +136,7 @@ class PlanarPhysics:
             changed = beyond | back
             if not changed.any():
                 break
-            if attempt > _ATTEMPTS // 10:  # one at a time cannot go round in circles
+            if attempt > _ATTEMPTS // 10:  # one change at a time cannot cycle
                 changed &= np.arange(len(rows)) == changed.argmax()
             yielding ^= changed
             impulses[yielding] = np.clip(impulses, low, high)[yielding]
@@ -157,7 +150,7 @@ class PlanarPhysics:
         self._y += (forward * sin + sideways * cos) * _STEP
         self._yaw += turn
         self._angles += (left * _STEP, right * _STEP)
-        # The centre of mass goes on as it was, in the frame that has turned meanwhile.
+        # The centre of mass keeps its velocity, in a frame that has turned.
         swing = sideways + self._lever * turning
         cos, sin = math.cos(turn), math.sin(turn)
         ahead, aside = cos * forward + sin * swing, cos * swing - sin * forward

@@ -1,6 +1,6 @@
-"""``python -m sim.robot.probe`` builds the robot's world, and ends with 0 if that is possible here.
+"""``python -m sim.robot.probe`` builds the robot's world, and exits with 0 if that is possible.
 
-A process of its own for those who want to know: PyBullet is C code, and a broken one may crash.
+The check is a process of its own because a broken PyBullet, which is C code, may crash.
 """
 
 import sys
@@ -10,7 +10,7 @@ from sim.robot.world import World
 
 
 def main() -> int:
-    """Build a world; returns the exit code, and says in one line what is wrong."""
+    """Build a world; print one line on a failure, and return the exit code."""
     try:
         World().close()
     except WorldUnavailable as error:

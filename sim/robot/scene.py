@@ -13,8 +13,8 @@ _WALL_THICKNESS = 0.1
 _WHEEL_FRICTION = 1.0
 _BODY_FRICTION = 0.3
 
-# Collision groups, one bit each; PyBullet's rays are of group 1. A wheel touches the floor alone: the
-# disc of the body is wider than the wheels, so that nothing else can reach them.
+# Collision groups, one bit each; PyBullet's rays are in group 1. A wheel touches only the floor, as the disc
+# of the body is wider than the wheels.
 _RAY, _FLOOR, _OBSTACLE, _BODY, _WHEEL = 1, 2, 4, 8, 16
 _TOUCHES = {_FLOOR: _BODY | _WHEEL, _OBSTACLE: _BODY | _RAY, _BODY: _FLOOR | _OBSTACLE, _WHEEL: _FLOOR}
 
@@ -23,7 +23,7 @@ _BASE = -1
 
 @dataclass(frozen=True, slots=True)
 class BulletScene:
-    """PyBullet's numbers of what was built: bodies, and the joints of the wheels."""
+    """PyBullet's numbers of the bodies, and of the wheels' joints."""
 
     floor: int
     walls: tuple[int, ...]
@@ -33,7 +33,7 @@ class BulletScene:
 
 
 def build(client: BulletClient, arena: Arena) -> BulletScene:
-    """Put the arena and a robot at the start, at rest, into an empty client."""
+    """Build the arena and a robot, at rest at the start, in an empty client."""
     floor = client.createMultiBody(0, client.createCollisionShape(client.GEOM_PLANE))
     client.changeDynamics(floor, _BASE, lateralFriction=1.0)
     _collide_as(client, floor, _BASE, _FLOOR)

@@ -1,4 +1,4 @@
-"""What programs send to the robot's ``cmd_vel``, looked at as it is sent: there its line is known."""
+"""Checks the velocities sent to the robot's ``cmd_vel`` on the sender's thread, where its line is known."""
 
 from collections.abc import Callable
 from typing import Any
@@ -13,9 +13,9 @@ from sim.trace.events import AnyEvent, Notice, Severity
 
 
 class VelocityCommands(Subscription):
-    """The driver's subscription; ``record`` takes a notice of the first velocity that is no number.
+    """The driver's subscription; ``record`` takes a notice of the first velocity that is not finite.
 
-    The driver itself, like a real robot's, does not know who sent what it gets.
+    The driver itself, like a real robot's, does not know the sender.
     """
 
     def __init__(
@@ -27,13 +27,13 @@ class VelocityCommands(Subscription):
         self._told = False
 
     def listen(self) -> None:
-        """Get messages from now on."""
+        """Start to receive messages."""
         with self.node.context.host.lock:
             self.node._agenda.add(self)
             self.node.context.network.join_subscription(self)
 
     def deliver(self, delivery: Delivery) -> None:
-        """A velocity arrived, on the thread that sends it. With the host's lock held."""
+        """Take a velocity, on the sender's thread, with the host's lock held."""
         sent = delivery.data
         if not self._told and not is_drivable(Velocity(sent.linear.x, sent.angular.z)):
             self._told = True

@@ -1,4 +1,4 @@
-"""The headless robot world: physics stepped at 240 Hz on somebody else's clock."""
+"""The headless robot world: physics in steps of 1/240 s, advanced by the caller's clock."""
 
 import math
 
@@ -13,24 +13,24 @@ from .lidar import Lidar
 from .physics import PhysicsChoice, build
 
 _GEAR_DRAG = 0.01
-"""Newton metres with which the gear of a motor without power holds its wheel back."""
+"""Newton metres with which the gear of a motor without power brakes its wheel."""
 
 _STEPS_PER_SAMPLE = 12
-"""Steps between two looks at the pose for the counters; fixed, so that nobody's asking changes them."""
+"""Steps between two samples of the pose for the counters; fixed, so that queries do not change them."""
 
 
 class World:
     """A room, a sphere and a robot.
 
-    The robot is driven by its wheels' motors and the friction under them, never put anywhere but by
-    `reset`. The same calls at the same times give the same bits. Times are integer nanoseconds since
-    the world was built. Not thread-safe: one thread at a time.
+    Only the motors of its wheels and friction move the robot, except for `reset`. The same calls at the same
+    times give the same bits. Times are integer nanoseconds since the world was built. Not thread-safe: one
+    thread at a time.
 
-    ``commanded`` is the body velocity that the motors aim at: clamped, and zero while they are off.
+    ``commanded`` is the target velocity of the body: clamped, and zero while the motors are off.
     """
 
     def __init__(self, arena: Arena = ARENA, physics: PhysicsChoice | None = None) -> None:
-        """Build the world, in silence, the robot at the start and at rest; ``physics`` None is the usual one.
+        """Build the world, with the robot at rest at the start; ``physics`` None: the usual one.
 
         Raises:
             WorldUnavailable: PyBullet cannot be used here; the text says what to do.
@@ -59,10 +59,10 @@ class World:
         return self._travelled + _distance_between(self._sampled, self.pose())
 
     def command(self, linear: float, angular: float) -> bool:
-        """Aim at a body velocity (m/s, rad/s) until the next command; tell whether it was a velocity at all.
+        """Set the target velocity of the body (m/s, rad/s), clamped to the robot's limits.
 
-        Beyond the robot's limits it is clamped. NaN or infinity changes nothing and gives False. While
-        the motors are off a command is lost, as on a robot whose motor driver sleeps.
+        Returns False for NaN and infinity, which are ignored. A command is lost while the motors are off,
+        as on a robot whose motor driver is off.
         """
         wanted = Velocity(linear, angular)
         if not is_drivable(wanted):
@@ -72,10 +72,10 @@ class World:
         return True
 
     def set_motors(self, on: bool) -> None:
-        """Give the motors power or cut it.
+        """Switch the motors on or off.
 
-        Without power the gears alone brake the wheels, within some tenths of a second. Power that
-        comes back moves nothing: the robot stands until the next command.
+        When off, the gears brake the wheels within some tenths of a second. When on again, the robot stands
+        until the next command.
         """
         if on == self.motors_on:
             return
@@ -83,7 +83,7 @@ class World:
         self._turn_wheels(STANDSTILL)
 
     def advance_to(self, time_ns: int) -> None:
-        """Run every step whose time has come; a time already passed runs none.
+        """Run every step that is due at a time; none for an earlier time.
 
         Step k is due at k / 240 s, rounded to the nanosecond.
         """
@@ -99,18 +99,18 @@ class World:
                 self._sample()
 
     def scan(self) -> NDArray[np.float32]:
-        """Return what the lidar measures now, in metres, shape (720,); see `Lidar.scan`."""
+        """Return the lidar's current scan, in metres, shape (720,); see `Lidar.scan`."""
         return self._lidar.scan(self.pose())
 
     def reset(self) -> None:
-        """Put the robot back to the start, at rest and without a command; time and counters go on."""
+        """Put the robot back to the start, at rest and without a command; time and counters continue."""
         self._sample()
         self._physics.reset()
         self._sampled = self.pose()
         self._turn_wheels(STANDSTILL)
 
     def close(self) -> None:
-        """Give back what the physics holds; the world is of no use afterwards. Closing again does nothing."""
+        """Release the physics; idempotent. The world cannot be used afterwards."""
         self._physics.close()
 
     def _turn_wheels(self, body: Velocity) -> None:
