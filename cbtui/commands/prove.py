@@ -6,7 +6,7 @@ from threading import Event
 from typing import TYPE_CHECKING
 
 from cbtui.commands.options import changes, inputs, more_lessons
-from cbtui.commands.options.targets import refuse, targets_of
+from cbtui.commands.options.targets import RunTargets, refuse, targets_of
 from cbtui.text.output import say
 from sim.quantities.durations import timestamp
 
@@ -48,7 +48,8 @@ def prove(options: argparse.Namespace) -> int:
     from cbtui.runs.judged.proving import GROUNDS, differences
     from cbtui.terminal.progress_line import ProgressLine
 
-    request = _request(options)
+    program = targets_of(options.targets)
+    request = _request(program, options)
     assert request.seconds is not None
     inputs.check(options, request.seconds)
     ground = changes.chosen_ros(options.python)
@@ -64,16 +65,17 @@ def prove(options: argparse.Namespace) -> int:
         refuse(str(error))
     found = differences(pair.first.timeline, pair.second.timeline, pair.window)
     say(_told(pair, found))
+    if found and program.lesson is not None and program.lesson.setup.not_on_ros2:
+        say(f"  On real ROS 2 this lesson cannot be judged: {program.lesson.setup.not_on_ros2}.\n")
     return 1 if found else 0
 
 
-def _request(options: argparse.Namespace) -> "RunRequest":
+def _request(program: RunTargets, options: argparse.Namespace) -> "RunRequest":
     """The run on the model."""
     from dataclasses import replace
 
     from cbtui.runs.setup.lesson_setup import RunRequest, request_to_judge
 
-    program = targets_of(options.targets)
     changed = changes.changes_of(options)
     if program.lesson is None:
         return RunRequest(

@@ -198,3 +198,13 @@ def test_a_program_is_proved_on_both_grounds(tmp_path: Path, capsys: pytest.Capt
     file.write_text(DIFFERS.replace("0.2", "0.5"))
     assert cli.main(["prove", str(file), "--for", "3.3", "--no-robot"]) == 0
     assert "✓ the same on both for 3.3 s: 6 calls on the model, 6 on real rclpy" in capsys.readouterr().out
+
+
+@needs_ros
+@pytest.mark.slow
+def test_a_lesson_that_real_ros_cannot_show_says_why(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["prove", "one-queue-for-all", "--for", "3", "--no-robot"]) == 1
+    said = capsys.readouterr().out
+    assert (
+        "On real ROS 2 this lesson cannot be judged: spin() of the EventsExecutor runs no callbacks" in said
+    )

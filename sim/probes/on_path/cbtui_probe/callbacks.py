@@ -26,10 +26,14 @@ _WITH_INFO = inspect.Signature(
 """By this rclpy sees that a subscription's callback wants to know about its messages, too."""
 
 
+_OTHERS = {"rclpy", "cbtui_probe", *sys.stdlib_module_names}
+"""Modules that are not the program's own."""
+
+
 def is_own(frame: FrameType) -> bool:
     """Whether a frame runs the program's code: not rclpy's, this package's or Python's."""
     root = str(frame.f_globals.get("__name__", "")).partition(".")[0]
-    return root == "__main__" or root not in {"rclpy", "cbtui_probe", *sys.stdlib_module_names}
+    return root == "__main__" or root not in _OTHERS
 
 
 def written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int]:

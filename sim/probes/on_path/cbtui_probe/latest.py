@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from typing import Any
+from operator import itemgetter
+from typing import TYPE_CHECKING, Any
 
 from .consoles import lines
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 Event = tuple[Any, ...]
 
@@ -13,11 +17,6 @@ _LATEST = 20_000
 """The number of events that are kept."""
 _CALLS = 1000
 """The most service calls without a reply that are kept."""
-_LASTING = {"node", "group", "entity", "executor", "thread", "qos_mismatch"}
-_RUNNING = {"callback_start", "taken", "callback_end", "callback_suspend", "callback_resume", "at"}
-_WAITING = {"ready", "wait_start", "wait_end", "entity_gone"}
-_CALLING = {"called", "service_reply", "request_lost", "blocked", "unblocked"}
-_FOLLOWED = _LASTING | _RUNNING | _WAITING | _CALLING
 
 
 class Latest:
@@ -30,7 +29,8 @@ class Latest:
 
     def add(self, events: list[Event], told: bytes) -> None:
         """Keep events, whose lines are ``told``, and give up the oldest ones."""
-        self._batches.append(([event for event in events if event[0] in _FOLLOWED], len(events), told))
+        wanted = self._ongoing.followed
+        self._batches.append(([event for event in events if event[0] in wanted], len(events), told))
         self._count += len(events)
         while self._count > _LATEST and len(self._batches) > 1:
             given_up, count, _ = self._batches.popleft()
@@ -49,64 +49,93 @@ class _Ongoing:
 
     def __init__(self) -> None:
         self._lasting: dict[Any, Event] = {}
-        self._waits: defaultdict[int, dict[str, Event]] = defaultdict(dict)
+        self._ready: dict[int, Event] = {}
+        self._waits: dict[int, Event] = {}
         self._calls: dict[int, Event] = {}
         self._blocked: dict[int, Event] = {}
-        self._runs: dict[tuple[int, int], dict[str, Event]] = {}
-        """The events of a running callback by their tags, by its entity and thread."""
-        self._suspended: defaultdict[int, list[dict[str, Event]]] = defaultdict(list)
+        self._runs: dict[tuple[int, int], list[Event]] = {}
+        """The start, suspension and resumption of running callbacks, by entity and thread."""
+        self._positions: dict[tuple[int, int], Event] = {}
+        self._suspended: defaultdict[int, list[list[Event]]] = defaultdict(list)
+        self._followed: dict[str, Callable[[Event], object]] = {
+            **dict.fromkeys(("node", "group", "entity", "executor", "thread"), _kept_in(self._lasting)),
+            "entity_gone": self._gone,
+            "qos_mismatch": self._mismatch,
+            "ready": _kept_in(self._ready),
+            "wait_start": _kept_in(self._waits),
+            "wait_end": self._wait_ended,
+            "called": self._called,
+            **dict.fromkeys(("service_reply", "request_lost"), _taken_from(self._calls)),
+            "blocked": _kept_in(self._blocked),
+            "unblocked": _taken_from(self._blocked),
+            **dict.fromkeys(("callback_start", "taken"), self._started),
+            "at": self._at,
+            "callback_end": self._left,
+            "callback_suspend": self._was_suspended,
+            "callback_resume": self._resumed,
+        }
+        self.followed = self._followed.keys()
+        """The tags of the events to follow."""
 
     def follow(self, event: Event) -> None:
-        """Follow one event."""
-        tag, _, subject = event[:3]
-        if tag in _RUNNING:
-            self._follow_callback(tag, event)
-        elif tag in _CALLING:
-            self._follow_call(tag, event)
-        elif tag in _LASTING:
-            self._lasting[event[2:5] if tag == "qos_mismatch" else subject] = event
-        elif tag in ("ready", "wait_start"):
-            self._waits[subject][tag] = event
-        else:
-            self._waits.pop(subject, None)
-            if tag == "entity_gone":
-                self._lasting.pop(subject, None)
+        """Follow one of these events."""
+        self._followed[event[0]](event)
 
-    def _follow_callback(self, tag: str, event: Event) -> None:
-        entity, place = event[2], event[2:4]
-        if tag in ("callback_start", "taken"):
-            self._runs[place] = {"start": event}
-        elif tag == "at":
-            self._runs.get(place, {})[tag] = event
-        elif tag == "callback_resume":
-            if self._suspended[entity]:
-                self._runs[place] = {**self._suspended[entity].pop(0), tag: event}
-        else:
-            run = self._runs.pop(place, None)
-            if tag == "callback_suspend" and run is not None:
-                self._suspended[entity].append({"start": run["start"], tag: event})
+    def _gone(self, event: Event) -> None:
+        self._lasting.pop(event[2], None)
+        self._wait_ended(event)
 
-    def _follow_call(self, tag: str, event: Event) -> None:
-        call = event[2]
-        if tag == "called":
-            self._calls[call] = event
-            if len(self._calls) > _CALLS:
-                del self._calls[next(iter(self._calls))]
-        elif tag == "blocked":
-            self._blocked[call] = event
-        elif tag == "unblocked":
-            self._blocked.pop(call, None)
-        else:
-            self._calls.pop(call, None)
+    def _mismatch(self, event: Event) -> None:
+        self._lasting[event[2:5]] = event
+
+    def _wait_ended(self, event: Event) -> None:
+        self._ready.pop(event[2], None)
+        self._waits.pop(event[2], None)
+
+    def _called(self, event: Event) -> None:
+        self._calls[event[2]] = event
+        if len(self._calls) > _CALLS:
+            del self._calls[next(iter(self._calls))]
+
+    def _started(self, event: Event) -> None:
+        self._runs[event[2:4]] = [event]
+
+    def _at(self, event: Event) -> None:
+        self._positions[event[2:4]] = event
+
+    def _left(self, event: Event) -> list[Event] | None:
+        self._positions.pop(event[2:4], None)
+        return self._runs.pop(event[2:4], None)
+
+    def _was_suspended(self, event: Event) -> None:
+        if run := self._left(event):
+            self._suspended[event[2]].append([run[0], event])
+
+    def _resumed(self, event: Event) -> None:
+        if suspended := self._suspended[event[2]]:
+            self._runs[event[2:4]] = [*suspended.pop(0), event]
 
     def events(self) -> list[Event]:
         """The events, in order of time."""
-        several = [*self._waits.values(), *self._runs.values()]
-        for each in self._suspended.values():
-            several += each
-        single = [*self._lasting.values(), *self._calls.values(), *self._blocked.values()]
-        return sorted((*single, *(event for each in several for event in each.values())), key=_time_of)
+        single = self._lasting, self._ready, self._waits, self._calls, self._blocked, self._positions
+        several = [*self._runs.values(), *(run for runs in self._suspended.values() for run in runs)]
+        every = [event for kept in single for event in kept.values()]
+        return sorted((*every, *(event for each in several for event in each)), key=itemgetter(1))
 
 
-def _time_of(event: Event) -> int:
-    return int(event[1])
+def _kept_in(events: dict[Any, Event]) -> Callable[[Event], None]:
+    """Keeps an event by the id that it is about."""
+
+    def keep(event: Event) -> None:
+        events[event[2]] = event
+
+    return keep
+
+
+def _taken_from(events: dict[Any, Event]) -> Callable[[Event], None]:
+    """Drops the event that one with the same id has ended."""
+
+    def drop(event: Event) -> None:
+        events.pop(event[2], None)
+
+    return drop
