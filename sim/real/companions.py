@@ -56,6 +56,11 @@ class Companion:
         """Whether it was started, and has not ended."""
         return self._process is not None and not self.is_over
 
+    @property
+    def is_awaited(self) -> bool:
+        """Whether it runs, and has not written anything."""
+        return self.is_running and not self.has_spoken
+
     def say(self, line: object) -> None:
         """Send it a line of JSON."""
         self.start()
@@ -132,38 +137,17 @@ class RunRobot:
         take: Callable[[Iterable[ProbeLine]], None],
     ) -> None:
         command = [sys.executable, "-m", "sim.real.robot", str(sensor_rate or ""), physics or ""]
-        self._process = Companion(selector, command, environment, self._told)
+        self.process = Companion(selector, command, environment, self._told)
         self._take = take
         self._use = use
         self._is_used = use is RobotUse.ALWAYS
         self._arena: list[ProbeLine] = []
         """Events about its world from before its first use."""
-        self.stop = self._process.stop
 
     def start(self) -> None:
         """Start it, if there is to be one."""
         if self._use is not RobotUse.NEVER:
-            self._process.start()
-
-    @property
-    def drives(self) -> bool:
-        """Whether it has sent something."""
-        return self._process.has_spoken
-
-    @property
-    def is_gone(self) -> bool:
-        """Whether it was started and has ended: there is no rclpy for it."""
-        return self._process.is_over
-
-    @property
-    def is_running(self) -> bool:
-        """Whether it was started, and has not ended."""
-        return self._process.is_running
-
-    @property
-    def is_awaited(self) -> bool:
-        """Whether it was started, and has neither ended nor sent anything."""
-        return self.is_running and not self.drives
+            self.process.start()
 
     def hear(self, lines: Sequence[ProbeLine]) -> None:
         """Note whether something uses it."""

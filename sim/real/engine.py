@@ -14,7 +14,7 @@ from itertools import count
 from multiprocessing.connection import Connection
 from pathlib import Path
 from selectors import EVENT_READ, DefaultSelector
-from typing import NoReturn, Protocol
+from typing import NoReturn
 
 import msgspec
 
@@ -69,29 +69,6 @@ class _Due:
     do: Callable[[], None]
 
 
-class Programs(Protocol):
-    """The programs of a run, which it starts itself or only watches."""
-
-    def start(self) -> None:
-        """Start them."""
-
-    def look(self) -> None:
-        """Notice new programs, and those that have ended."""
-
-    @property
-    def any_run(self) -> bool:
-        """Whether there is anything left to follow, now or soon."""
-
-    def outcome(self) -> Cause:
-        """How they ended, taken together."""
-
-    def interrupt(self) -> None:
-        """Interrupt the programs that the run started, as Ctrl-C would, and stop following the others."""
-
-    def kill(self) -> list[str]:
-        """Kill the programs that the run started; returns the names of those that still ran."""
-
-
 class RealEngine:
     """One run of one set-up on real rclpy. ``pipe`` carries events out and commands in."""
 
@@ -113,7 +90,7 @@ class RealEngine:
         self._began_to_wait = time.monotonic_ns()
         self._python = setup.real.python or sys.executable
         folder = Path(self._folder.name)
-        self._programs: Programs
+        self._programs: LaunchedPrograms | WatchedProcesses
         self._keyboard: RealKeyboard | None
         lines: tuple[Mapping[str, str], list[Path], LaunchedPrograms | None]
         if setup.real.is_watched:
@@ -138,7 +115,7 @@ class RealEngine:
                 self._take_untrusted if setup.seal else self._take,
                 self._record,
                 self._print,
-                self._run_launched_line,
+                self._carry_out,
             )
             lines = probed, launched.folders, launched
         self._lines = Ros2Lines(self._selector, *lines[:2], self._take, self._record, lines[2])
@@ -164,7 +141,7 @@ class RealEngine:
             self._programs.kill()
             self._lines.stop()
             self._caller.stop()
-            self._robot.stop()
+            self._robot.process.stop()
             self._folder.cleanup()
             os._exit(0)
 
@@ -172,10 +149,10 @@ class RealEngine:
         self._start_companions()
         while self._robot_is_awaited():
             self._turn()
-        if self._robot.is_gone:
+        if self._robot.process.is_over:
             text = f"there is no robot: cbtui's own Python has no rclpy ({sys.executable})"
             self._tell(Severity.WARN, f"{text}; install cbtui[ros] there, or give --no-robot")
-        if self._robot.drives and self._keyboard is None:  # who only watches may wait for long
+        if self._robot.process.has_spoken and self._keyboard is None:  # who only watches may wait for long
             self._translation.begin_at(time.monotonic_ns())
         if self._cause is None:
             self._programs.start()
@@ -195,11 +172,11 @@ class RealEngine:
     def _robot_is_awaited(self) -> bool:
         """Whether the run has a robot that is not ready yet."""
         is_late = time.monotonic_ns() > self._began_to_wait + _TO_BEGIN
-        return self._robot.is_awaited and not is_late and self._cause is None
+        return self._robot.process.is_awaited and not is_late and self._cause is None
 
     def _robot_is_all(self) -> bool:
         """Whether the run is about its robot, which goes on when programs come and go."""
-        return self._keyboard is None and self._robot.is_running and self._cause is None
+        return self._keyboard is None and self._robot.process.is_running and self._cause is None
 
     def _schedule(self) -> None:
         name = None if self._setup.service is None else self._setup.service.name
@@ -318,7 +295,7 @@ class RealEngine:
 
     # commands
 
-    def _run_launched_line(
+    def _carry_out(
         self, words: Sequence[str], show: Callable[[str, bool], None], on_exit: OnExit
     ) -> Callable[[], None]:
         return self._lines.begin_launched(words, show, on_exit)

@@ -16,7 +16,7 @@ from functools import cached_property
 from itertools import count
 from pathlib import Path
 from selectors import BaseSelector
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, TypeAlias
 
 from sim.engine.failures.cause import Cause
 from sim.engine.setup import ProgramSetup, RealRos
@@ -26,25 +26,23 @@ from sim.real.watched import WatchedProcesses
 from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
 
 if TYPE_CHECKING:
-    from sim.launch import OnOutput, ProcessSpec, RunningProcess
+    from sim.launch import LaunchRun, OnOutput, ProcessSpec
     from sim.packages import Executable, Packages
 
 
-class RunLaunchedLine(Protocol):
-    """Carries out a ``ros2`` line; ``show`` gets what it prints."""
+RunLine: TypeAlias = Callable[[Sequence[str], Callable[[str, bool], None], OnExit], Callable[[], None]]
+"""Carries out the words of a ``ros2`` line; gets what takes its output and its exit status.
 
-    def __call__(
-        self, words: Sequence[str], show: Callable[[str, bool], None], on_exit: OnExit
-    ) -> Callable[[], None]:
-        """Begin; returns what interrupts the line."""
+Returns what interrupts the line.
+"""
 
 
 class LaunchedPrograms:
     """Starts programs, each with a command of its own, and knows which of them run.
 
     Their probes, and those of their child processes, listen in ``folder``. ``take`` gets the probes' lines,
-    ``record`` the events about starts and ends, ``show`` what programs print. ``run_line`` carries out the
-    ``ros2`` lines of launch files.
+    ``record`` the events about starts and ends, ``show`` what programs print. ``carry_out`` carries out the
+    ``ros2`` lines of launch files. It is the machine on which ``sim.launch`` starts things.
     """
 
     def __init__(
@@ -58,7 +56,7 @@ class LaunchedPrograms:
         take: Callable[..., None],
         record: Callable[[AnyEvent], None],
         show: Callable[[str, bool, int], None],
-        run_line: RunLaunchedLine,
+        carry_out: RunLine,
     ) -> None:
         self._selector = selector
         self._folder = folder
@@ -69,10 +67,10 @@ class LaunchedPrograms:
         self._take = take
         self.record = record
         self.show = show
-        self.run_line = run_line
+        self.carry_out = carry_out
         self._programs: list[Program] = []
         self._running: dict[Program, OnExit] = {}
-        self._launches: list[Launching] = []
+        self._launches: list[LaunchRun] = []
         self._due: list[tuple[float, int, Callable[[], None]]] = []
         self._numbers = count(1)
         self._order = count()
@@ -177,7 +175,7 @@ class LaunchedPrograms:
         start = Start(self.command_of(found, arguments), environment, terminal=self._keyboard.near)
         return self.begin(start, f"{executable}-{next(self._order) + 1}", on_exit)
 
-    def launch(self, path: Path, arguments: Sequence[str], on_exit: OnExit) -> Program | Launching:
+    def launch(self, path: Path, arguments: Sequence[str], on_exit: OnExit) -> Program | LaunchRun:
         """Start a launch file: with ROS's own launch where a ``ros2`` can be found, else with cbtui's.
 
         Raises:
@@ -187,9 +185,9 @@ class LaunchedPrograms:
         if ros2 is not None:
             start = Start([ros2, "launch", str(path), *arguments], self.environment())
             return self.begin(start, path.name, on_exit)
-        from sim.launch import LaunchError
+        from sim.launch import LaunchError, LaunchRun
 
-        launching = Launching(self, path, arguments, self.packages, on_exit)
+        launching = LaunchRun(path, arguments, self, packages=self.packages, on_finish=on_exit)
         self._launches.append(launching)
         try:
             launching.start()
@@ -200,7 +198,7 @@ class LaunchedPrograms:
 
     def launch_of(
         self, package: str, launch_file: str, arguments: Sequence[str], on_exit: OnExit
-    ) -> Program | Launching:
+    ) -> Program | LaunchRun:
         """Start a launch file of a package, or by its path; raises LaunchError and PackageError."""
         known = self.packages
         path = known.package(package).launch_file(launch_file) if package else Path(launch_file)
@@ -213,6 +211,29 @@ class LaunchedPrograms:
             self.launch(path, arguments, _ignore)
         except LaunchError as error:
             self._fail(Cause(str(error), failed=True))
+
+    # What a launch file needs of the machine
+
+    def start_process(self, spec: ProcessSpec, on_exit: OnExit, on_output: OnOutput) -> Program:
+        """Start a program of a launch file."""
+        from sim.packages import Executable
+
+        executable = Executable(spec.executable, spec.path, spec.folder, spec.module, spec.function)
+        command = self.command_of(executable, spec.arguments)
+        environment = self.environment(spec.environment, spec.folder)
+        start = Start(command, environment, spec.working_folder)
+        shows_stdout = spec.output != "log"
+        return self.begin(start, spec.label, on_exit, shows_stdout=shows_stdout, hear_output=on_output)
+
+    def run_line(
+        self, label: str, words: Sequence[str], on_exit: OnExit, on_output: OnOutput
+    ) -> _LaunchedLine:
+        """Start a ``ros2 …`` line of a launch file."""
+        return _LaunchedLine(self, label, words, on_exit, on_output)
+
+    def say(self, text: str, severity: str = "INFO", logger: str = "launch") -> None:
+        """Print a line of a launch's own log."""
+        self.show(f"[{severity}] [{logger}]: {text}", False, 0)
 
     def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:
         """Call ``action`` that many seconds from now."""
@@ -229,10 +250,10 @@ class LaunchedPrograms:
         self._children.look()
         for program in [each for each in self._running if each.has_ended]:
             self._end(program)
-        for launching in [each for each in self._launches if each.is_over]:
+        for launching in [each for each in self._launches if each.finished]:
             self._launches.remove(launching)
-            if launching.error:
-                self._fail(Cause(launching.error, failed=True))
+            if launching.error is not None:
+                self._fail(Cause(str(launching.error), failed=True))
         readers = {each.process: each.name for each in self._running if each.reads}
         waiting = self._keyboard.look(readers)
         for program in self._running:
@@ -293,72 +314,6 @@ def _ignore(_status: int) -> None:
     """Take an end that nobody waits for."""
 
 
-class Launching:
-    """Carries out one launch file. All of it happens on the run's thread."""
-
-    def __init__(
-        self,
-        programs: LaunchedPrograms,
-        path: Path,
-        arguments: Sequence[str],
-        packages: Packages,
-        on_exit: OnExit,
-    ) -> None:
-        from sim.launch import LaunchRun
-
-        self._programs = programs
-        self._run = LaunchRun(path, arguments, self, packages=packages, on_finish=on_exit)
-
-    def start(self) -> None:
-        """Begin; raises LaunchError if the launch file cannot be carried out."""
-        self._run.start()
-
-    def interrupt(self) -> None:
-        """End it as Ctrl-C would; does not wait."""
-        self._run.interrupt()
-
-    @property
-    def is_over(self) -> bool:
-        """Whether nothing runs, and nothing is to come."""
-        return self._run.finished
-
-    @property
-    def error(self) -> str:
-        """What went wrong with the launch itself."""
-        return "" if self._run.error is None else str(self._run.error)
-
-    # What a launch needs of the machine
-
-    def start_process(self, spec: ProcessSpec, on_exit: OnExit, on_output: OnOutput) -> RunningProcess:
-        """Start a program."""
-        from sim.packages import Executable
-
-        programs = self._programs
-        executable = Executable(spec.executable, spec.path, spec.folder, spec.module, spec.function)
-        start = Start(
-            programs.command_of(executable, spec.arguments),
-            programs.environment(spec.environment, spec.folder),
-            spec.working_folder,
-        )
-        return programs.begin(
-            start, spec.label, on_exit, shows_stdout=spec.output != "log", hear_output=on_output
-        )
-
-    def run_line(
-        self, label: str, words: Sequence[str], on_exit: OnExit, on_output: OnOutput
-    ) -> RunningProcess:
-        """Start a ``ros2 …`` line."""
-        return _LaunchedLine(self._programs, label, words, on_exit, on_output)
-
-    def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:
-        """Call ``action`` that many seconds from now."""
-        self._programs.call_at(seconds_from_now, action)
-
-    def say(self, text: str, severity: str = "INFO", logger: str = "launch") -> None:
-        """Print a line of the launch's own log."""
-        self._programs.show(f"[{severity}] [{logger}]: {text}", False, 0)
-
-
 class _LaunchedLine:
     """A ``ros2`` line of a launch file: one more process of the launch."""
 
@@ -380,4 +335,4 @@ class _LaunchedLine:
             programs.record(ProcessEnded(0, self.number, "the line is done", status))
             on_exit(status)
 
-        self.interrupt = self.terminate = self.kill = programs.run_line(words, show, end)
+        self.interrupt = self.terminate = self.kill = programs.carry_out(words, show, end)

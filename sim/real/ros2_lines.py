@@ -10,41 +10,23 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import count
 from pathlib import Path
 from selectors import BaseSelector
-from typing import NamedTuple, Protocol
+from typing import TYPE_CHECKING, NamedTuple
 
 from sim.engine import commands
 from sim.probes.on_path.cbtui_probe import FOLDER
 from sim.real.companions import Companion
-from sim.real.launched import ros2_command
+from sim.real.launched import LaunchedPrograms, ros2_command
 from sim.real.programs import OnExit, Program, Start
 from sim.real.wire import Interrupted, NodesKnown, ProbeLine, ProgramEnded, ProgramWanted
 from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineSaid, NodeAppeared
+
+if TYPE_CHECKING:
+    from sim.launch import LaunchRun
 
 _STARTING = ("run", "launch")
 """Commands whose programs are watched."""
 _FIRST_LAUNCHED = 1 << 40
 """The first number of lines that launch files start, which are not told of on the trace."""
-
-
-class Starter(Protocol):
-    """Starts programs of packages, and launch files; raises PackageError and LaunchError."""
-
-    def start_executable(
-        self, package: str, executable: str, arguments: Sequence[str], on_exit: OnExit
-    ) -> "Startable":
-        """Start a program."""
-
-    def launch_of(
-        self, package: str, launch_file: str, arguments: Sequence[str], on_exit: OnExit
-    ) -> "Startable":
-        """Start a launch file of a package, or by its path."""
-
-
-class Startable(Protocol):
-    """Programs that were started."""
-
-    def interrupt(self) -> None:
-        """Have them end as Ctrl-C would."""
 
 
 class _Line(NamedTuple):
@@ -64,7 +46,7 @@ class Ros2Lines:
         folders: Sequence[Path],
         take: Callable[[list[ProbeLine]], None],
         record: Callable[[AnyEvent], None],
-        starter: Starter | None,
+        starter: LaunchedPrograms | None,
     ) -> None:
         self._selector = selector
         self._environment = environment
@@ -77,7 +59,7 @@ class Ros2Lines:
         self._companion = Companion(selector, command, quiet, self._told)
         self._lines: dict[int, _Line] = {}
         self._processes: dict[int, Program] = {}
-        self._started: dict[int, Startable] = {}
+        self._started: dict[int, Program | LaunchRun] = {}
         self._launched = count(_FIRST_LAUNCHED)
         self._nodes: list[str] = []
         """The nodes that the companion has not been told of."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
-from importlib.abc import Loader, MetaPathFinder
+from importlib.abc import MetaPathFinder
 from importlib.machinery import ModuleSpec, PathFinder
 from typing import TYPE_CHECKING, Any
 
@@ -34,30 +34,22 @@ class _RclpyFinder(MetaPathFinder):
         sys.meta_path.remove(self)
         spec = PathFinder.find_spec(fullname, path, target)
         if spec is not None and spec.loader is not None:
-            spec.loader = _ProbedLoader(spec.loader)
+            _probe_when_loaded(spec.loader)
         return spec
 
 
-class _ProbedLoader(Loader):
-    """Loads a module as ``loader`` does, and puts the probe into it."""
+def _probe_when_loaded(loader: Any) -> None:
+    """Have a loader put the probe into the module that it loads."""
+    load = loader.exec_module
 
-    def __init__(self, loader: Loader) -> None:
-        self._loader = loader
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._loader, name)
-
-    def create_module(self, spec: ModuleSpec) -> ModuleType | None:
-        """Make the module as its own loader does."""
-        return self._loader.create_module(spec)
-
-    def exec_module(self, module: ModuleType) -> None:
-        """Run the module, and put the probe in place."""
+    def load_and_install(module: ModuleType) -> None:
         with UNSEEN:
-            self._loader.exec_module(module)
+            load(module)
         try:
             from .installing import install
 
             install(os.environ[FOLDER])
         except Exception as error:  # noqa: BLE001 - the program is worth more than its being watched
             sys.stderr.write(f"cbtui's probe cannot watch this rclpy, and leaves it alone: {error!r}\n")
+
+    loader.exec_module = load_and_install
