@@ -6,6 +6,7 @@ from contextlib import suppress
 import pytest
 
 import sim.ros.rclpy as rclpy
+from sim.diagnosis import diagnose
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.trace.events import RunEnded
@@ -115,3 +116,38 @@ def test_what_asyncio_misses_in_a_callback_is_told_with_what_to_await_instead(th
     told = Diagnosed(Trace([*events, ended])).explained("program-raised")
     assert told.why == "an executor of rclpy resumes coroutines itself, and runs no event loop of asyncio"
     assert told.cure.startswith("await only futures of rclpy")
+
+
+@pytest.mark.parametrize(
+    ("error", "why", "cure"),
+    [
+        (
+            "AttributeError: property 'timers' of 'MyNode' object has no setter",
+            "every node of rclpy has a property timers, and nothing can be assigned to it",
+            "give the attribute another name, such as my_timers",
+        ),
+        (
+            "AttributeError: can't set attribute 'timers'",
+            "every node of rclpy has a property timers, and nothing can be assigned to it",
+            "give the attribute another name, such as my_timers",
+        ),
+        (
+            "AttributeError: 'NoneType' object has no attribute 'successful'",
+            "a callback of add_on_set_parameters_callback() has returned nothing; rclpy needs its answer",
+            "end that callback with: return SetParametersResult(successful=True)",
+        ),
+        (
+            "AttributeError: property 'speed' of 'Motor' object has no setter",
+            "an exception that no except clause takes ends the program, and spin() with it",
+            "mend the line, or catch the exception there",
+        ),
+    ],
+)
+def test_an_exception_that_rclpy_makes_of_a_usual_slip_is_told_in_its_terms(
+    error: str, why: str, cure: str
+) -> None:
+    timeline = Timeline()
+    timeline.extend([RunEnded(1, error, failed=True, error=error, problem=f"the program raised {error}")])
+    (found,) = diagnose(timeline)
+    told = found.rule.explain(found, timeline)
+    assert (told.why, told.cure) == (why, cure)

@@ -180,6 +180,22 @@ def test_a_publisher_of_another_program_that_does_not_match_is_told() -> None:
     assert diagnosed(program).told() == {("qos-mismatch", "hear")}
 
 
+def test_of_two_publishers_that_do_not_match_the_one_in_the_program_is_told_with_both_lines() -> None:
+    def program(simulation: Simulation) -> None:
+        simulation.outside_node().create_publisher(Int32, "t", BEST_EFFORT)
+        node = Node("n")
+        node.create_publisher(Int32, "t", BEST_EFFORT)
+
+        def hear(_: object) -> None: ...
+
+        node.create_subscription(Int32, "t", hear, RELIABLE)
+        spin(node, None)
+
+    told = diagnosed(program).explained("qos-mismatch")
+    assert "outside" not in told.what
+    assert told.cure.count(Path(__file__).name) == 2
+
+
 def test_a_subscription_of_another_program_that_does_not_match_is_told() -> None:
     def program(simulation: Simulation) -> None:
         outside = simulation.outside_node()

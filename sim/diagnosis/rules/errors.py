@@ -1,5 +1,6 @@
 """Rules on exceptions that go unnoticed."""
 
+import re
 from collections.abc import Iterator
 
 from sim.diagnosis.edits.functions import fit_parameters
@@ -42,8 +43,9 @@ class ProgramRaised(Rule):
         cure = "mend the line, or catch the exception there"
         if ended.exception in _UNREADABLE:
             why, cure = "Python could not read the file, so nothing of it ran", "mend the line"
-        elif ended.error == _NO_LOOP:
-            why, cure = _NOT_ASYNCIO
+        for pattern, its_why, its_cure in _KNOWN:
+            if known := pattern.fullmatch(ended.error or ""):
+                why, cure = known.expand(its_why), known.expand(its_cure)
         return Explanation(
             ended.problem,
             why,
@@ -56,13 +58,32 @@ class ProgramRaised(Rule):
 _UNREADABLE = ("SyntaxError", "IndentationError", "TabError")
 """The exceptions that come before a file runs."""
 
-_NO_LOOP = "RuntimeError: no running event loop"
-_NOT_ASYNCIO = (
-    "an executor of rclpy resumes coroutines itself, and runs no event loop of asyncio",
-    "await only futures of rclpy, such as that of call_async(); in place of asyncio.sleep(), await a "
-    "rclpy.task.Future that a timer completes",
+_NODE_PROPERTIES = (
+    "clients|context|default_callback_group|guards|handle|publishers|services|subscriptions|timers|waitables"
 )
-"""The reason for ``_NO_LOOP``, which asyncio raises in a coroutine of a callback, and the cure."""
+_KNOWN = tuple(
+    (re.compile(error), why, cure)
+    for error, why, cure in (
+        (
+            r"RuntimeError: no running event loop",
+            r"an executor of rclpy resumes coroutines itself, and runs no event loop of asyncio",
+            r"await only futures of rclpy, such as that of call_async(); in place of asyncio.sleep(), await "
+            r"a rclpy.task.Future that a timer completes",
+        ),
+        (
+            rf"AttributeError: (?:property|can't set attribute) '({_NODE_PROPERTIES})'"
+            r"(?: of '\w+' object has no setter)?",
+            r"every node of rclpy has a property \1, and nothing can be assigned to it",
+            r"give the attribute another name, such as my_\1",
+        ),
+        (
+            r"AttributeError: 'NoneType' object has no attribute 'successful'",
+            r"a callback of add_on_set_parameters_callback() has returned nothing; rclpy needs its answer",
+            r"end that callback with: return SetParametersResult(successful=True)",
+        ),
+    )
+)
+"""Exceptions that Python words alike in every program, each with the reason and the cure in rclpy's terms."""
 
 
 class ExceptionSwallowed(Rule):

@@ -151,7 +151,16 @@ class QosMismatch(Rule):
         for each in reversed(view.timeline.mismatches):
             if each.t <= view.window.start:
                 return
-            yield Finding(self, each.t, each.t, each.entity, about=each.topic, detail=each.policy, event=each)
+            yield Finding(
+                self,
+                each.t,
+                each.t,
+                each.entity,
+                about=each.topic,
+                size=bool(each.publisher[0]),  # one of the program goes first: both ends can be named
+                detail=each.policy,
+                event=each,
+            )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         assert isinstance(found.event, QosMismatched)
