@@ -36,8 +36,9 @@ def _lines(found: Finding, timeline: Timeline) -> Iterator[str]:
 
 
 def sentence(text: str) -> str:
-    """A clause as a sentence."""
-    return f"{text[:1].upper()}{text[1:]}."
+    """Return a clause as a sentence; a piece of code at its beginning keeps its case."""
+    first = text.partition(" ")[0]
+    return f"{text}." if "(" in first or "_" in first else f"{text[:1].upper()}{text[1:]}."
 
 
 def location_text(found: Finding, explanation: Explanation) -> str:

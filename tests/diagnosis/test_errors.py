@@ -2,6 +2,8 @@
 
 import asyncio
 from contextlib import suppress
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -151,3 +153,31 @@ def test_an_exception_that_rclpy_makes_of_a_usual_slip_is_told_in_its_terms(
     (found,) = diagnose(timeline)
     told = found.rule.explain(found, timeline)
     assert (told.why, told.cure) == (why, cure)
+
+
+def test_a_timer_that_was_given_what_a_call_returned_is_told_with_its_own_line() -> None:
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        nothing: Any = None
+        node.create_timer(1.0, nothing)
+        executor = executor_of(None)
+        executor.add_node(node)
+        with pytest.raises(TypeError) as raised:
+            executor.spin()
+        said.append(f"TypeError: {raised.value}")
+
+    said: list[str] = []
+    events = [each for each in diagnosed(program).trace.events if not isinstance(each, RunEnded)]
+    ended = RunEnded(
+        max(each.t for each in events),
+        said[0],
+        failed=True,
+        error=said[0],
+        exception="TypeError",
+        problem=said[0],
+    )
+    told = Diagnosed(Trace([*events, ended])).explained("program-raised")
+    assert told.why == "this timer was made with what a call returned, in place of a function"
+    assert told.place is not None
+    line = Path(__file__).read_text().splitlines()[told.place.first_line - 1]
+    assert "node.create_timer(1.0, nothing)" in line

@@ -4,11 +4,11 @@ import re
 from collections.abc import Iterator
 
 from sim.diagnosis.edits.functions import fit_parameters
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, line_location, place_of
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, line_location, made_at, place_of
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of
 from sim.diagnosis.words import often, who
-from sim.trace.events import EntityKind
-from sim.trace.model import AxisMarkKind, Nanoseconds, Window
+from sim.trace.events import EntityKind, RunEnded
+from sim.trace.model import AxisMarkKind, EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 
@@ -46,6 +46,10 @@ class ProgramRaised(Rule):
         for pattern, its_why, its_cure in _KNOWN:
             if known := pattern.fullmatch(ended.error or ""):
                 why, cure = known.expand(its_why), known.expand(its_cure)
+        if (entity := _called_too_soon(ended, timeline)) is not None:
+            why = f"this {entity.kind.value} was made with what a call returned, in place of a function"
+            cure = "hand over the function itself, without calling it: self.tick, not self.tick()"
+            place = made_at(entity)
         return Explanation(
             ended.problem,
             why,
@@ -53,6 +57,15 @@ class ProgramRaised(Rule):
             place,
             remedies=by_edit(place, "define it with the parameters it is called with", fit_parameters),
         )
+
+
+def _called_too_soon(ended: RunEnded, timeline: Timeline) -> EntityInfo | None:
+    """Return what was made with a value in place of a callback, if that is why a program ended."""
+    if ended.exception != "TypeError" or not (ended.error or "").endswith("object is not callable"):
+        return None
+    kinds = (EntityKind.TIMER, EntityKind.SUBSCRIPTION, EntityKind.SERVICE)
+    entities = (each for each in timeline.entities.values() if each.kind in kinds and not each.callback)
+    return next((each for each in entities if made_at(each)), None)
 
 
 _UNREADABLE = ("SyntaxError", "IndentationError", "TabError")
