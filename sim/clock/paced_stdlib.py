@@ -51,7 +51,7 @@ class PacedLock:
         self.locked = lock.locked
         self.release = lock.release
         self.holder_ident = 0
-        """The ident of the thread that last took the lock by ``with``; 0 after ``acquire``."""
+        """The identifier of the thread that last took the lock by ``with``; 0 after ``acquire``."""
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock; False if it is not available at once (or within ``timeout`` seconds)."""
@@ -83,7 +83,7 @@ class PacedRLock(_RLock):  # type: ignore[misc]
 
     _clock: PacedClock
     holder_ident = 0
-    """The ident of the thread that last took the lock."""
+    """The identifier of the thread that last took the lock."""
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock once more; False if it is not available at once (or within ``timeout`` seconds)."""

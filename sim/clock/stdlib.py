@@ -160,7 +160,7 @@ class VirtualLock:
 
     @property
     def holder_ident(self) -> int:
-        """The ident of the only thread that can release the lock; 0 if any thread can."""
+        """The identifier of the only thread that can release the lock; 0 if any thread can."""
         return self.holder.ident if self.holder is not None and self.guards else 0
 
     def _is_owned(self) -> bool:

@@ -121,7 +121,7 @@ class VirtualClock:
         self._deadlines.add((max(time, self.time.now), self._deadlines.number(), action))
 
     def park(self, deadline: int | None) -> bool:
-        """Wait until ``unpark`` or ``deadline``; True if unparked. A signal also unparks the main thread.
+        """Wait until ``unpark`` or ``deadline``; True if unparked. A signal ends the main thread's wait, too.
 
         Raises:
             KeyboardInterrupt: the thread was interrupted.

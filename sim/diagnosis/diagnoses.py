@@ -18,7 +18,7 @@ _OUT_OF_ORDER: Nanoseconds = SECOND
 
 _BEFORE_START: Nanoseconds = -1
 
-_Key: TypeAlias = tuple[str, EntityId, str]
+_FindingKey: TypeAlias = tuple[str, EntityId, str]
 
 
 class Diagnoses:
@@ -34,7 +34,7 @@ class Diagnoses:
         self._rules = tuple(rules)
         self._timeline: Timeline | None = None
         self._from = _BEFORE_START
-        self._settled: dict[_Key, Finding] = {}
+        self._settled: dict[_FindingKey, Finding] = {}
 
     def update(self, timeline: Timeline) -> tuple[Finding, ...]:
         """Check what is new in a timeline since the last update; with another timeline, start over."""
@@ -97,7 +97,7 @@ def diagnose(timeline: Timeline) -> tuple[Finding, ...]:
     return Diagnoses().update(timeline)
 
 
-def _merge(into: dict[_Key, Finding], found: Finding) -> None:
+def _merge(into: dict[_FindingKey, Finding], found: Finding) -> None:
     """Add an occurrence: the worst one gives the times; of equal ones, the earliest."""
     known = into.get(found.key)
     if known is None:

@@ -14,6 +14,7 @@ from sim.interpreter.function_marks import calls_the_program, waits_for_keyboard
 from sim.probes.own_code import is_library, is_own, outwards
 from sim.probes.probe import Probe, RunningCallback
 from sim.trace.events import AnyEvent, CallbackAt, Doing, EntityId
+from sim.trace.events.fields import SourcePlace
 
 _WAITING = ("sim.clock.", "threading", "queue")
 """Modules in which threads wait for each other."""
@@ -21,8 +22,8 @@ _WAITING = ("sim.clock.", "threading", "queue")
 LOCK = "Lock.acquire"
 """The name that a position gives to every way of taking a lock."""
 
-Place: TypeAlias = tuple[str, int]
-Position: TypeAlias = tuple[Doing, str, tuple[tuple[str, str, int], ...], Place, int]
+
+PositionFields: TypeAlias = tuple[Doing, str, tuple[tuple[str, str, int], ...], SourcePlace, int]
 
 
 class CallbackPositions:
@@ -32,7 +33,7 @@ class CallbackPositions:
         self._probe = probe
         self._clock = clock
         self._record = record
-        self._latest: dict[int, tuple[RunningCallback, Position]] = {}
+        self._latest: dict[int, tuple[RunningCallback, PositionFields]] = {}
 
     def look(self) -> None:
         """Take one sample; one thread at a time may call this."""
@@ -53,7 +54,7 @@ class CallbackPositions:
         return 0 if callback is None else callback.entity
 
 
-def position_of(top: FrameType | None, running: Mapping[int, RunningCallback]) -> Position | None:
+def position_of(top: FrameType | None, running: Mapping[int, RunningCallback]) -> PositionFields | None:
     """Return where a thread is, inside its callback if it runs one; None outside the program's code."""
     stack = list(takewhile(lambda frame: frame not in calls_the_program, outwards(top)))
     own = [place for place, frame in enumerate(stack) if is_own(frame) and _is_written(frame)]
@@ -100,7 +101,7 @@ def _lock_holder(inside: list[FrameType]) -> int:
     return 0
 
 
-def loop_around(file: str, line: int) -> Place | None:
+def loop_around(file: str, line: int) -> SourcePlace | None:
     """Return file and line of the innermost ``while`` around a line; None for none."""
     found = [(first, last) for first, last in _loops(file) if first <= line <= last]
     return (file, max(found)[0]) if found else None

@@ -11,7 +11,7 @@ import msgspec
 from sim.clock import RunClock, VirtualClock
 from sim.engine import commands
 from sim.engine.failures.cause import Cause
-from sim.engine.programs.ros2_lines import Lines
+from sim.engine.programs.ros2_lines import Ros2Lines
 from sim.engine.requests import Requests
 from sim.engine.setup import RunSetup
 from sim.engine.shutdown import RunShutdown
@@ -33,7 +33,7 @@ class CommandLoop:
         shutdown: RunShutdown,
         contents: Contents,
         requests: Requests,
-        lines: Lines,
+        lines: Ros2Lines,
         terminal: Terminal,
     ) -> None:
         self._pipe = pipe

@@ -35,7 +35,7 @@ from sim.engine.programs.ending import finalise, set_engine_apart
 from sim.engine.programs.exit_functions import share_exit_functions
 from sim.engine.programs.program import ProgramOutcome
 from sim.engine.programs.programs import ProgramSupervisor
-from sim.engine.programs.ros2_lines import Lines
+from sim.engine.programs.ros2_lines import Ros2Lines
 from sim.engine.programs.set_up_programs import run_programs
 from sim.engine.programs.starting import ProgramStarter
 from sim.engine.programs.workspace_imports import use_workspace
@@ -112,7 +112,7 @@ class Engine:
         self._descriptors = Descriptors(lambda text, error: record(Printed(clock.now(), text, error)))
         self._programs = ProgramSupervisor(self._host, record)
         self._starter = ProgramStarter(self._programs, setup, _launch)
-        self._lines = Lines(self._host, record, self._starter, self._programs.look)
+        self._lines = Ros2Lines(self._host, record, self._starter, self._programs.look)
         self._terminal = Terminal(clock, record, setup.keyboard, len(setup.typed))
         self._shutdown = RunShutdown(
             setup.title,

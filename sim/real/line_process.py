@@ -187,7 +187,7 @@ class _Program:
 
 
 @dataclass
-class _Starter:
+class _RealStarter:
     """Reports to the run what one line prints, and which programs it starts."""
 
     line: int
@@ -246,7 +246,7 @@ class _Lines:
         self.programs: dict[int, _Program] = {}
 
     def _line(self, number: int, text: str) -> ShellLine:
-        starter = _Starter(number, self)
+        starter = _RealStarter(number, self)
         return ShellLine(self._ground, text, starter, starter.say, starter.ended)
 
     def obey(self, request: object) -> None:

@@ -23,7 +23,7 @@ from sim.recording.recorder import EVENTS_CHANNEL, LIBRARY
 from sim.trace.events import AnyEvent, RunStarted
 
 ReadableT = TypeVar("ReadableT", Attachment, Channel, Header, Metadata, Schema)
-_Message: TypeAlias = tuple[int, bytes, int, int]
+_RawMessage: TypeAlias = tuple[int, bytes, int, int]
 """A message: id of its channel, content of its chunk, start and end in it."""
 
 _MESSAGE = struct.Struct("<HIQQ")
@@ -230,7 +230,7 @@ class Recording:
         # The chunk with the first channel may be damaged.
         return known.topic == batch.TOPIC if known else channel == EVENTS_CHANNEL
 
-    def _messages(self) -> Iterator[_Message]:
+    def _messages(self) -> Iterator[_RawMessage]:
         """Every message of every intact chunk; counts them at the end."""
         counts: Counter[int] = Counter()
         room = unpacked_most(self._size)
@@ -251,7 +251,7 @@ class Recording:
                     self._damaged.add(chunk.offset)
         self._counts = counts
 
-    def _messages_in(self, content: bytes) -> Iterator[_Message]:
+    def _messages_in(self, content: bytes) -> Iterator[_RawMessage]:
         for opcode, start, end in records_in(content):
             if opcode == Opcode.MESSAGE:
                 channel, _, _, _ = _MESSAGE.unpack_from(content, start)

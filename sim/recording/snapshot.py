@@ -20,7 +20,7 @@ _Placed: TypeAlias = tuple[int, Any]
 
 
 @dataclass
-class _Call:
+class _OpenCall:
     """An unfinished call of a callback: its start, its last suspension and resumption."""
 
     start: _Placed
@@ -58,7 +58,7 @@ class RunSnapshot:
         self._latest: dict[Hashable, _Placed] = {}
         self._queued: defaultdict[EntityId, deque[_Placed]] = defaultdict(lambda: deque(maxlen=_MOST_QUEUED))
         self._published: dict[MessageId, _Placed] = {}
-        self._running: defaultdict[EntityId, list[_Call]] = defaultdict(list)
+        self._running: defaultdict[EntityId, list[_OpenCall]] = defaultdict(list)
         self._waits: dict[EntityId, list[_Placed]] = {}
 
     def take(self, events: Iterable[AnyEvent]) -> None:
@@ -105,7 +105,7 @@ class RunSnapshot:
         self._latest["input", self._place] = (self._place, event)
 
     def _take_start(self, event: ev.CallbackStarted) -> None:
-        self._running[event.entity].append(_Call((self._place, event), event.thread))
+        self._running[event.entity].append(_OpenCall((self._place, event), event.thread))
         self._leave_queue(event)
 
     def _take_suspension(self, event: ev.CallbackSuspended) -> None:
@@ -123,14 +123,14 @@ class RunSnapshot:
         if over is not None:
             self._running[event.entity].remove(over)
 
-    def _here(self, event: ev.CallbackSuspended | ev.CallbackEnded) -> _Call | None:
+    def _here(self, event: ev.CallbackSuspended | ev.CallbackEnded) -> _OpenCall | None:
         """The innermost running call on the event's thread."""
         for each in reversed(self._running[event.entity]):
             if each.thread == event.thread and not each.is_suspended:
                 return each
         return None
 
-    def _awaiting(self, entity: EntityId) -> _Call | None:
+    def _awaiting(self, entity: EntityId) -> _OpenCall | None:
         """The call that has been suspended longest."""
         suspended = (each for each in self._running[entity] if each.is_suspended)
         return min(suspended, key=lambda each: each.suspended or each.start, default=None)

@@ -39,11 +39,11 @@ def complete(ground: Ground, packages: Packages, text: str, cursor: int) -> list
             names = ["ros2", *names]
         return [name for name in names if name.startswith(begun)]
     parser, used = found
-    candidates = _Place(parser, words[used:]).candidates(begun, ground, packages)
+    candidates = _CursorPosition(parser, words[used:]).candidates(begun, ground, packages)
     return [each for each in candidates if _unquoted(each).startswith(begun)]
 
 
-class _Place:
+class _CursorPosition:
     """The position of the cursor in a verb's arguments, after some words."""
 
     def __init__(self, parser: LineParser, words: list[str]) -> None:

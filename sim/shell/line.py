@@ -9,9 +9,9 @@ from sim.shell.command_names import ELSEWHERE, listed
 from sim.shell.commands import parse
 from sim.shell.ground import Ground, TakeOutput
 from sim.shell.parser import HelpAsked, UsageError
-from sim.shell.session import CommandFailed, CommandInterrupted, Ended, ShellSession
+from sim.shell.session import CommandFailed, CommandInterrupted, LineExit, ShellSession
 from sim.shell.splitting import LineError, split
-from sim.shell.starter import Starter
+from sim.shell.starter import LineStarter
 
 _USAGE_STATUS = 2
 _INTERRUPTED = int(signal.SIGINT)
@@ -26,7 +26,7 @@ class ShellLine:
     """
 
     def __init__(
-        self, ground: Ground, text: str, starter: Starter, take: TakeOutput, end: Callable[[int], None]
+        self, ground: Ground, text: str, starter: LineStarter, take: TakeOutput, end: Callable[[int], None]
     ) -> None:
         self._text = text
         self._end = end
@@ -56,7 +56,7 @@ class ShellLine:
             return 0
         except CommandInterrupted:
             return _INTERRUPTED
-        except Ended as ended:
+        except LineExit as ended:
             return ended.status
         except Exception as error:  # noqa: BLE001 -- ros2 ends with a traceback; this is its last line
             text, status = _complaint(error)

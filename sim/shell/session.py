@@ -9,7 +9,7 @@ from sim.ros.node.node import Node
 from sim.ros.scheduling.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from sim.ros.scheduling.task import Future
 from sim.shell.ground import Ground, TakeOutput
-from sim.shell.starter import Starter
+from sim.shell.starter import LineStarter
 
 _SERVICE_POLL = 0.25
 """Seconds between two looks for a service, as in rclpy."""
@@ -19,7 +19,7 @@ class CommandFailed(Exception):  # noqa: N818 -- a line's result, as a shell wou
     """The line failed with exit status 1; the text goes to stderr."""
 
 
-class Ended(Exception):  # noqa: N818
+class LineExit(Exception):  # noqa: N818
     """The line ended with a status, without a message."""
 
     def __init__(self, status: int) -> None:
@@ -34,7 +34,7 @@ class CommandInterrupted(Exception):  # noqa: N818
 class ShellSession:
     """One line's presence on the network. Other threads than the line's may only call ``interrupt``."""
 
-    def __init__(self, ground: Ground, starter: Starter, take: TakeOutput) -> None:
+    def __init__(self, ground: Ground, starter: LineStarter, take: TakeOutput) -> None:
         self.ground = ground
         self.starter = starter
         self.process = ground.enter(take)

@@ -18,7 +18,7 @@ class Running(Protocol):
         """End them as Ctrl-C would. Does not wait; any thread may call it, more than once."""
 
 
-class Starter(Protocol):
+class LineStarter(Protocol):
     """Starts programs for a line; called on the line's own thread. Its errors are sentences."""
 
     def packages(self) -> Packages:

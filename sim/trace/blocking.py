@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from sim.trace.events import CallBlocked, CallUnblocked, EntityId, ThreadId
 from sim.trace.lazy import LazySequence
 from sim.trace.model import Blocked, Nanoseconds, Window
-from sim.trace.storage.intervals import Intervals, Lane, RowId, end_or_none
+from sim.trace.storage.intervals import IntervalLane, Intervals, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 
 
@@ -18,8 +18,8 @@ class Blocking(Intervals):
     def __init__(self, spill: SpillFile) -> None:
         super().__init__(spill, more=4)
         self._services: dict[str, int] = {}
-        self._by_thread: defaultdict[ThreadId, Lane] = defaultdict(lambda: Lane(self))
-        self._by_entity: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self))
+        self._by_thread: defaultdict[ThreadId, IntervalLane] = defaultdict(lambda: IntervalLane(self))
+        self._by_entity: defaultdict[EntityId, IntervalLane] = defaultdict(lambda: IntervalLane(self))
         self._standing: dict[ThreadId, RowId] = {}
 
     def start(self, event: CallBlocked) -> None:

@@ -16,7 +16,7 @@ from sim.trace.events import (
 )
 from sim.trace.lazy import LazySequence
 from sim.trace.model import Nanoseconds, Span, Window
-from sim.trace.storage.intervals import OPEN, Intervals, Lane, Layer, RowId, end_or_none
+from sim.trace.storage.intervals import OPEN, IntervalLane, Intervals, Layer, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import IntegerTable
 
@@ -77,7 +77,7 @@ class Spans(Intervals):
         return Span(start, end_or_none(end), entity, thread, message, age, *self._failures[failure], row)
 
 
-class ThreadSpans(Lane):
+class ThreadSpans(IntervalLane):
     """The spans of a thread. They overlap only by nesting, so the first layer covers all its busy time."""
 
     __slots__ = ("_busy", "_busy_before", "_latest", "stack")
@@ -125,10 +125,10 @@ class Execution:
         self._spans = Spans(spill)
         self._gaps = Intervals(spill)
         self._threads: defaultdict[ThreadId, ThreadSpans] = defaultdict(lambda: ThreadSpans(self._spans))
-        self._entities: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self._spans))
-        self._groups: defaultdict[GroupId, Lane] = defaultdict(lambda: Lane(self._spans))
-        self._group_of: dict[EntityId, Lane] = {}
-        self._suspended: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self._gaps))
+        self._entities: defaultdict[EntityId, IntervalLane] = defaultdict(lambda: IntervalLane(self._spans))
+        self._groups: defaultdict[GroupId, IntervalLane] = defaultdict(lambda: IntervalLane(self._spans))
+        self._group_of: dict[EntityId, IntervalLane] = {}
+        self._suspended: defaultdict[EntityId, IntervalLane] = defaultdict(lambda: IntervalLane(self._gaps))
         self._awaiting: defaultdict[EntityId, deque[tuple[RowId, RowId]]] = defaultdict(deque)
         self._resumed_at: defaultdict[EntityId, IntegerTable] = defaultdict(lambda: IntegerTable(spill, 1))
         self._uncertain_below = 0
@@ -284,5 +284,5 @@ class Execution:
                 return stack.pop(place)
         return None
 
-    def _made(self, lane: Lane, window: Window) -> Sequence[Span]:
+    def _made(self, lane: IntervalLane, window: Window) -> Sequence[Span]:
         return LazySequence(lane.overlapping(window), self._spans.span)

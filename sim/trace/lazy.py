@@ -3,11 +3,11 @@
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from typing import TypeVar, overload
 
-Key = TypeVar("Key")
-Value = TypeVar("Value")
+KeyT = TypeVar("KeyT")
+ValueT = TypeVar("ValueT")
 
 
-class LazyMapping(Mapping[Key, Value]):
+class LazyMapping(Mapping[KeyT, ValueT]):
     """Maps each of ``keys`` to ``make(key)``, computed on every access.
 
     The collection of keys may grow. As thread-safe as the function and the collection.
@@ -15,16 +15,16 @@ class LazyMapping(Mapping[Key, Value]):
 
     __slots__ = ("_keys", "_make")
 
-    def __init__(self, keys: Collection[Key], make: Callable[[Key], Value]) -> None:
+    def __init__(self, keys: Collection[KeyT], make: Callable[[KeyT], ValueT]) -> None:
         self._keys = keys
         self._make = make
 
-    def __getitem__(self, key: Key) -> Value:
+    def __getitem__(self, key: KeyT) -> ValueT:
         if key not in self._keys:
             raise KeyError(key)
         return self._make(key)
 
-    def __iter__(self) -> Iterator[Key]:
+    def __iter__(self) -> Iterator[KeyT]:
         return iter(self._keys)
 
     def __len__(self) -> int:
@@ -34,7 +34,7 @@ class LazyMapping(Mapping[Key, Value]):
         return repr(dict(self))
 
 
-class ListLike(Sequence[Value]):
+class ListLike(Sequence[ValueT]):
     """A sequence that is compared and printed like a list."""
 
     __slots__ = ()
@@ -50,7 +50,7 @@ class ListLike(Sequence[Value]):
         return repr(list(self))
 
 
-class LazySequence(ListLike[Value]):
+class LazySequence(ListLike[ValueT]):
     """The values of row numbers, each made by ``make`` on access.
 
     A picture of an hour of a run queries a hundred thousand calls and reads a few hundred.
@@ -58,7 +58,7 @@ class LazySequence(ListLike[Value]):
 
     __slots__ = ("_make", "_rows")
 
-    def __init__(self, rows: Sequence[int], make: Callable[[int], Value]) -> None:
+    def __init__(self, rows: Sequence[int], make: Callable[[int], ValueT]) -> None:
         self._rows = rows
         self._make = make
 
@@ -66,13 +66,13 @@ class LazySequence(ListLike[Value]):
         return len(self._rows)
 
     @overload
-    def __getitem__(self, place: int) -> Value: ...
+    def __getitem__(self, place: int) -> ValueT: ...
     @overload
-    def __getitem__(self, place: slice) -> Sequence[Value]: ...
-    def __getitem__(self, place: int | slice) -> Value | Sequence[Value]:
+    def __getitem__(self, place: slice) -> Sequence[ValueT]: ...
+    def __getitem__(self, place: int | slice) -> ValueT | Sequence[ValueT]:
         if isinstance(place, slice):
             return LazySequence(self._rows[place], self._make)
         return self._make(self._rows[place])
 
-    def __iter__(self) -> Iterator[Value]:
+    def __iter__(self) -> Iterator[ValueT]:
         return map(self._make, self._rows)

@@ -7,10 +7,10 @@ from typing import TypeAlias
 from sim.trace.events import CallbackAt, Doing, EntityId, ThreadId
 from sim.trace.lazy import LazySequence
 from sim.trace.model import Frame, Nanoseconds, Position, Span, Window
-from sim.trace.storage.intervals import Intervals, Lane, RowId, end_or_none
+from sim.trace.storage.intervals import IntervalLane, Intervals, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 
-_Place: TypeAlias = tuple[Doing, str, tuple[Frame, ...], tuple[str, int], ThreadId]
+_PositionCells: TypeAlias = tuple[Doing, str, tuple[Frame, ...], tuple[str, int], ThreadId]
 
 
 class Positions(Intervals):
@@ -20,10 +20,10 @@ class Positions(Intervals):
 
     def __init__(self, spill: SpillFile) -> None:
         super().__init__(spill, more=3)
-        self._numbers: dict[_Place, int] = {}
-        self._places: list[_Place] = []
-        self._by_thread: defaultdict[ThreadId, Lane] = defaultdict(lambda: Lane(self))
-        self._by_entity: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self))
+        self._numbers: dict[_PositionCells, int] = {}
+        self._places: list[_PositionCells] = []
+        self._by_thread: defaultdict[ThreadId, IntervalLane] = defaultdict(lambda: IntervalLane(self))
+        self._by_entity: defaultdict[EntityId, IntervalLane] = defaultdict(lambda: IntervalLane(self))
         self._latest: dict[ThreadId, RowId] = {}
         self.threads: set[ThreadId] = set()
         """The threads of which any is known."""

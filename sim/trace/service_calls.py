@@ -6,7 +6,7 @@ from sim.trace.events import CallId, RequestLost, ServiceCalled, ServiceReplied
 from sim.trace.lazy import LazySequence
 from sim.trace.model import Call, Nanoseconds, Window
 from sim.trace.storage.history import History
-from sim.trace.storage.intervals import Intervals, Lane, RowId, end_or_none
+from sim.trace.storage.intervals import IntervalLane, Intervals, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import IntegerTable
 
@@ -24,7 +24,7 @@ class ServiceCalls(Intervals):
         self._requests = _texts(spill)
         self._responses = _texts(spill)
         self._responses.add("")
-        self._lane = Lane(self)
+        self._lane = IntervalLane(self)
         self._in_order = IntegerTable(spill, 2)
         self._numbered = IntegerTable(spill, 2)
         self._pending: dict[CallId, RowId] = {}

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from sim.trace.events import EntityId, Reason, WaitStarted
 from sim.trace.lazy import LazySequence
 from sim.trace.model import Nanoseconds, Wait, Window
-from sim.trace.storage.intervals import OPEN, Intervals, Lane, RowId, end_or_none
+from sim.trace.storage.intervals import OPEN, IntervalLane, Intervals, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 
 _REASONS = tuple(Reason)
@@ -19,9 +19,9 @@ class Waiting(Intervals):
 
     def __init__(self, spill: SpillFile) -> None:
         super().__init__(spill, more=5)
-        self._lanes: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self))
+        self._lanes: defaultdict[EntityId, IntervalLane] = defaultdict(lambda: IntervalLane(self))
         self._latest: dict[EntityId, RowId] = {}
-        self._none = Lane(self)
+        self._none = IntervalLane(self)
         self._open: set[EntityId] = set()
         self._changed: Nanoseconds = 0
         """When a wait last started or ended."""
@@ -65,7 +65,7 @@ class Waiting(Intervals):
         """Starts of waits of the entity, with the nearest after or before ``at``."""
         return self._of(entity).starts_beside(at, step)
 
-    def _of(self, entity: EntityId) -> Lane:
+    def _of(self, entity: EntityId) -> IntervalLane:
         return self._lanes.get(entity, self._none)
 
     def _goes_on(self, latest: RowId, since: Nanoseconds) -> bool:

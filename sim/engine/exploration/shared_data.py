@@ -48,11 +48,11 @@ def shared_data(source: str) -> SharedData:
         return found
     for function in ast.walk(tree):
         if isinstance(function, _Function):
-            _Accesses(function, found).collect()
+            _FunctionAccesses(function, found).collect()
     return found
 
 
-class _Accesses:
+class _FunctionAccesses:
     """The accesses of one function."""
 
     def __init__(self, function: _Function, found: SharedData) -> None:

@@ -26,7 +26,7 @@ _CUT = "\n  ..."
 _MODEL = str(Path(__file__).parents[2])
 
 
-class _Frame(NamedTuple):
+class _DumpFrame(NamedTuple):
     file: str
     line: str
     function: str
@@ -91,8 +91,8 @@ def _threads(crash_dump: str) -> list[str]:
     return [text for _, text in found]
 
 
-def _frames(text: str) -> Sequence[_Frame]:
-    return [_Frame(*found) for found in _FRAME.findall(text)]
+def _frames(text: str) -> Sequence[_DumpFrame]:
+    return [_DumpFrame(*found) for found in _FRAME.findall(text)]
 
 
 def _is_own(file: str, folders: tuple[str, ...]) -> bool:

@@ -9,7 +9,7 @@ from typing import Any
 from sim.probes import own_code
 from sim.ros.middleware.process import current_process, of_process
 
-_Call = tuple[Callable[..., object], tuple[Any, ...], Mapping[str, Any]]
+_ExitCall = tuple[Callable[..., object], tuple[Any, ...], Mapping[str, Any]]
 
 
 def share_exit_functions() -> None:
@@ -48,7 +48,7 @@ def run_exit_functions() -> None:
             _tell(error, function)
 
 
-def _calls() -> list[_Call]:
+def _calls() -> list[_ExitCall]:
     return []
 
 

@@ -26,7 +26,7 @@ from sim.trace.events import AnyEvent, Notice, ProcessAppeared, ProcessEnded, Se
 # Kept from before a clock replaces it.
 _set_handler = signal.signal
 
-Ended = Callable[[ProgramOutcome], None]
+OnProgramEnd = Callable[[ProgramOutcome], None]
 
 
 @dataclass(eq=False)
@@ -36,7 +36,7 @@ class RunningProgram:
     programs: "ProgramSupervisor"
     process: Process
     program: ProgramSpec
-    on_exit: Ended
+    on_exit: OnProgramEnd
     thread: int | None = None
     outcome: ProgramOutcome | None = None
 
@@ -87,7 +87,7 @@ class ProgramSupervisor:
         self,
         program: ProgramSpec,
         label: str,
-        on_exit: Ended,
+        on_exit: OnProgramEnd,
         environment: Mapping[str, str] | None = None,
         shows_stdout: bool = True,
         has_keyboard: bool = True,

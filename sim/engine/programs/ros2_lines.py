@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from sim.shell import ShellLine
 
 
-class Lines:
+class Ros2Lines:
     """All ``ros2`` lines of a run. Call it on threads that have the run's time (see ``Clock.call_at``).
 
     ``changed`` is called after the end of each line.

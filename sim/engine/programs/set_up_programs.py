@@ -5,13 +5,13 @@ from pathlib import Path
 
 from sim.engine.programs.program import STOPPED, ProgramOutcome, ProgramSpec, script
 from sim.engine.programs.programs import ProgramSupervisor
-from sim.engine.programs.ros2_lines import Lines
+from sim.engine.programs.ros2_lines import Ros2Lines
 from sim.engine.programs.starting import ProgramStarter, StartError
 from sim.engine.setup import ProgramSetup
 
 
 def run_programs(
-    setup: tuple[ProgramSetup, ...], programs: ProgramSupervisor, starter: ProgramStarter, lines: Lines
+    setup: tuple[ProgramSetup, ...], programs: ProgramSupervisor, starter: ProgramStarter, lines: Ros2Lines
 ) -> ProgramOutcome:
     """Run all programs, or without programs all lines, to their ends; return the outcome."""
     if len(setup) == 1 and not setup[0].is_launch_file:

@@ -4,7 +4,7 @@ import select
 from collections.abc import Callable
 from typing import Any
 
-Wait = Callable[[Callable[[], Any], float | None], tuple[Any, bool]]
+WaitForKeys = Callable[[Callable[[], Any], float | None], tuple[Any, bool]]
 
 
 class Polling:
@@ -18,7 +18,7 @@ class Polling:
     def __init__(
         self,
         is_terminal: Callable[[Any], bool],
-        wait: Wait,
+        wait: WaitForKeys,
         make: Callable[..., Any],
         per_second: float,
         *arguments: Any,

@@ -19,7 +19,7 @@ _SETTLES = 100_000_000
 
 
 @dataclass(eq=False)
-class _Wait:
+class _ThreadWait:
     """A thread's wait without a timeout; ``entity`` is the callback that it runs, 0 for none.
 
     ``other`` is a thread of the program that did not wait at the last check.
@@ -46,7 +46,7 @@ class EndlessWaits:
         self._clock = clock
         self._host = host
         self._record = record
-        self._waits: dict[VirtualThread, _Wait] = {}
+        self._waits: dict[VirtualThread, _ThreadWait] = {}
         self._deadlocked = False
 
     def begins(self, thread: VirtualThread) -> None:
@@ -56,7 +56,7 @@ class EndlessWaits:
         cycle = cycle_of(thread)
         if not (cycle or entity or thread.is_main):
             return
-        wait = _Wait(thread, thread.wants, process, entity, self._clock.now())
+        wait = _ThreadWait(thread, thread.wants, process, entity, self._clock.now())
         self._waits[thread] = wait
         if lasts(cycle):
             self._tell_of_deadlock(wait, cycle)
@@ -80,7 +80,7 @@ class EndlessWaits:
             if cycle and wait.thread in self._waits and self._lasted(wait) >= _SETTLES:
                 self._tell_of_deadlock(wait, cycle)
 
-    def _standing(self) -> list[_Wait]:
+    def _standing(self) -> list[_ThreadWait]:
         """Return the waits that have not ended, those of callbacks first; forget the others."""
         waits = list(self._waits.values())
         for wait in waits:
@@ -89,10 +89,10 @@ class EndlessWaits:
         standing = [wait for wait in waits if wait.thread.wants is wait.wants]
         return sorted(standing, key=lambda wait: not wait.entity)
 
-    def _lasted(self, wait: _Wait) -> int:
+    def _lasted(self, wait: _ThreadWait) -> int:
         return self._clock.now() - wait.since
 
-    def _is_last(self, wait: _Wait) -> bool:
+    def _is_last(self, wait: _ThreadWait) -> bool:
         """Return whether all threads of a wait's program wait."""
         alive = self._clock.threads
         if wait.other is None or wait.other not in alive or wait.other.wants is not None:
@@ -108,7 +108,7 @@ class EndlessWaits:
             )
         return wait.other is None
 
-    def _tell_of_deadlock(self, wait: _Wait, cycle: list[VirtualThread]) -> None:
+    def _tell_of_deadlock(self, wait: _ThreadWait, cycle: list[VirtualThread]) -> None:
         self._deadlocked = True
         told = deadlock_of_cycle(cycle) if cycle else deadlock_of_last(wait.thread)
         self._record(told.notice(self._clock.now(), wait.entity))

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from sim.shell.parser import LineParser
 from sim.shell.programs import known_launch_files, known_packages, package, wait_for
-from sim.shell.session import CommandFailed, Ended, ShellSession
+from sim.shell.session import CommandFailed, LineExit, ShellSession
 from sim.shell.verbs.verb import ShellCommand, Verb
 
 _NOT_HERE = ("debug", "print", "show_all_subprocesses_output", "launch_prefix", "launch_prefix_filter")
@@ -73,7 +73,7 @@ def _launch(session: ShellSession, arguments: Namespace) -> None:
         return
     status = wait_for(session, lambda on_exit: session.starter.launch(owner, file, given, on_exit))
     if status != 0:
-        raise Ended(status)
+        raise LineExit(status)
 
 
 def _chosen(session: ShellSession, arguments: Namespace) -> tuple[str | None, str, list[str]]:

@@ -8,7 +8,7 @@ from argparse import Namespace
 
 from sim.shell.parser import LineParser
 from sim.shell.programs import known_executables, known_packages, package, wait_for
-from sim.shell.session import Ended, ShellSession
+from sim.shell.session import LineExit, ShellSession
 from sim.shell.verbs.verb import ShellCommand, Verb
 
 _SAYS = "[ros2run]:"
@@ -44,7 +44,7 @@ def _run(session: ShellSession, arguments: Namespace) -> None:
     elif status > 0:
         session.say(f"{_SAYS} Process exited with failure {status}")
     if status != 0:
-        raise Ended(status)
+        raise LineExit(status)
 
 
 RUN = ShellCommand(

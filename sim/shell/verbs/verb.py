@@ -10,21 +10,21 @@ from typing import TypeAlias
 from sim.shell.parser import LineParser
 from sim.shell.session import ShellSession
 
-Action: TypeAlias = Callable[[ShellSession, Namespace], None]
+VerbAction: TypeAlias = Callable[[ShellSession, Namespace], None]
 
 
 @dataclass(frozen=True, slots=True)
 class Verb:
     """A verb: its name, its arguments and its action.
 
-    ``carry_out`` raises for every end but success: CommandFailed, Ended, CommandInterrupted, or an error
+    ``carry_out`` raises for every end but success: CommandFailed, LineExit, CommandInterrupted, or an error
     whose text is a sentence (NotImplementedError, PackageError, DefinitionError).
     """
 
     name: str
     help: str
     add_arguments: Callable[[LineParser], None]
-    carry_out: Action
+    carry_out: VerbAction
 
 
 @dataclass(frozen=True, slots=True)

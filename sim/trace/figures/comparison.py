@@ -15,7 +15,7 @@ from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end
 from sim.trace.model import EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
-Key: TypeAlias = tuple[str, str, str, str, int]
+CallbackKey: TypeAlias = tuple[str, str, str, str, int]
 """Identifies a callback in any run: node, kind, callback, topic or service, and number among equals."""
 
 
@@ -101,7 +101,7 @@ def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> 
     of_first = yield from _callbacks_of(first, window)
     of_second = yield from _callbacks_of(second, window)
     partners = _partners(of_first, of_second)
-    pairs: list[tuple[Key, CallbackInRun | None, CallbackInRun | None]] = [
+    pairs: list[tuple[CallbackKey, CallbackInRun | None, CallbackInRun | None]] = [
         (key, callback, of_second.get(partners.get(key, key))) for key, callback in of_first.items()
     ]
     taken = {*of_first, *partners.values()}
@@ -152,7 +152,7 @@ def _first_different(first: Sequence[Span], second: Sequence[Span]) -> Nanosecon
     return next((span.start for rest in (first[len(second) :], second[len(first) :]) for span in rest), None)
 
 
-def _partners(first: Iterable[Key], second: Iterable[Key]) -> dict[Key, Key]:
+def _partners(first: Iterable[CallbackKey], second: Iterable[CallbackKey]) -> dict[CallbackKey, CallbackKey]:
     """Match callbacks of the first run with those of the second that differ only in the node's name."""
     alone, others = set(first) - set(second), set(second) - set(first)
     nodeless = Counter(key[1:] for key in alone), Counter(key[1:] for key in others)
@@ -160,19 +160,19 @@ def _partners(first: Iterable[Key], second: Iterable[Key]) -> dict[Key, Key]:
     return {key: found[key[1:]] for key in alone if nodeless[0][key[1:]] == 1 and key[1:] in found}
 
 
-def _short_name(key: Key) -> str:
+def _short_name(key: CallbackKey) -> str:
     _, kind, callback, name, _ = key
     return callback or name or kind
 
 
-def _long_name(key: Key) -> str:
+def _long_name(key: CallbackKey) -> str:
     node, _, _, name, number = key
     place = " ".join(part for part in (node, name) if part)
     return f"{_short_name(key)} ({place}{f' #{number}' if number > 1 else ''})"
 
 
-def _callbacks_of(timeline: Timeline, window: Window) -> Incremental[dict[Key, CallbackInRun]]:
-    callbacks: dict[Key, CallbackInRun] = {}
+def _callbacks_of(timeline: Timeline, window: Window) -> Incremental[dict[CallbackKey, CallbackInRun]]:
+    callbacks: dict[CallbackKey, CallbackInRun] = {}
     for key, entity in _entities_of(timeline).items():
         waits = yield from _wait_figures(timeline.waits_of(entity, window), timeline, window)
         figures = yield from statistics_incrementally(timeline, entity, window)
@@ -180,9 +180,9 @@ def _callbacks_of(timeline: Timeline, window: Window) -> Incremental[dict[Key, C
     return callbacks
 
 
-def _entities_of(timeline: Timeline) -> dict[Key, EntityId]:
+def _entities_of(timeline: Timeline) -> dict[CallbackKey, EntityId]:
     equals: Counter[tuple[str, str, str, str]] = Counter()
-    entities: dict[Key, EntityId] = {}
+    entities: dict[CallbackKey, EntityId] = {}
     for entity in tuple(timeline.entities.values()):
         alike = _description(entity, timeline)
         equals[alike] += 1

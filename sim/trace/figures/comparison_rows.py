@@ -102,8 +102,8 @@ def verdict(comparison: Comparison) -> str:
     Errors weigh most, then losses, collisions, subscriptions that do not match, waits, lateness, and the age
     of data.
     """
-    better: list[_Difference] = []
-    worse: list[_Difference] = []
+    better: list[_FigureDifference] = []
+    worse: list[_FigureDifference] = []
     for each in _differences(comparison):
         (better if each.second < each.first else worse).append(each)
     if not better and not worse:
@@ -114,7 +114,7 @@ def verdict(comparison: Comparison) -> str:
     return told + (f"; but {_listed(against)}" if against else "")
 
 
-class _Difference(NamedTuple):
+class _FigureDifference(NamedTuple):
     """A figure, of which less is better, that differs enough to speak for a run; ``rank`` 0 weighs most."""
 
     rank: int
@@ -130,28 +130,28 @@ class _Difference(NamedTuple):
         return f"{self.what} {second} instead of {first}"
 
 
-def _weight(difference: _Difference) -> tuple[float, float]:
+def _weight(difference: _FigureDifference) -> tuple[float, float]:
     return difference.rank, -abs(difference.second - difference.first)
 
 
-def _listed(differences: Sequence[_Difference]) -> str:
+def _listed(differences: Sequence[_FigureDifference]) -> str:
     first, *others = sorted(differences, key=_weight)
     more = f", and in {counted(len(others), 'more way')}" if others else ""
     return f"{first.text}{more}"
 
 
-def _differences(comparison: Comparison) -> Iterator[_Difference]:
+def _differences(comparison: Comparison) -> Iterator[_FigureDifference]:
     pairs = [(pair.name, pair.first, pair.second) for pair in comparison.callbacks]
     for rank, (what, figure, wording, least) in enumerate(_DECIDING):
         for name, first, second in pairs:
             if first is not None and second is not None:
                 one, other = figure(first), figure(second)
                 if abs(other - one) >= least:
-                    yield _Difference(rank, f"{what} of {name}", one, other, wording)
+                    yield _FigureDifference(rank, f"{what} of {name}", one, other, wording)
     for rank, what, count in _DECIDING_RUNS:
         one, other = count(comparison.first), count(comparison.second)
         if one != other:
-            yield _Difference(rank, what, one, other, _LOSSES)
+            yield _FigureDifference(rank, what, one, other, _LOSSES)
 
 
 _NONE = (math.inf, 0.0)
@@ -251,11 +251,11 @@ def _degrees(radians: float) -> int:
     return round(math.degrees(radians))
 
 
-_Result = TypeVar("_Result")
+ResultT = TypeVar("ResultT")
 
 
 def _format_both(
-    write: Callable[[_Result], str], first: _Result | None, second: _Result | None
+    write: Callable[[ResultT], str], first: ResultT | None, second: ResultT | None
 ) -> tuple[str, str]:
     return (NOTHING if first is None else write(first), NOTHING if second is None else write(second))
 
@@ -284,10 +284,10 @@ def _rows(first: CallbackInRun | None, second: CallbackInRun | None) -> Iterator
             yield _spread_row(label, of_first, of_second, wording)
 
 
-_Value = TypeVar("_Value")
+ValueT = TypeVar("ValueT")
 
 
-def _apply(function: Callable[[_Value], _Result | None], value: _Value | None) -> _Result | None:
+def _apply(function: Callable[[ValueT], ResultT | None], value: ValueT | None) -> ResultT | None:
     return None if value is None else function(value)
 
 

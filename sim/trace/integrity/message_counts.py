@@ -20,7 +20,7 @@ from sim.trace.events import (
 
 
 @dataclass
-class _Subscription:
+class _SubscriptionCounts:
     """The counts of a subscription's messages; ``queue`` has those that wait, in order of arrival."""
 
     name: str
@@ -37,8 +37,8 @@ class MessageCounts:
     def __init__(self) -> None:
         self.faults: list[str] = []
         self.messages = 0
-        self._all: dict[EntityId, _Subscription] = {}
-        self._of_topic: dict[str, dict[EntityId, _Subscription]] = defaultdict(dict)
+        self._all: dict[EntityId, _SubscriptionCounts] = {}
+        self._of_topic: dict[str, dict[EntityId, _SubscriptionCounts]] = defaultdict(dict)
 
     def take(self, events: Iterable[AnyEvent]) -> None:
         """Count the messages of the next events."""
@@ -57,7 +57,7 @@ class MessageCounts:
                     self._all[entity].dropped += 1
                     self._leave(event, self._all[entity])
                 case EntityAppeared(entity=entity, kind=EntityKind.SUBSCRIPTION, name=name):
-                    self._all[entity] = self._of_topic[name][entity] = _Subscription(name)
+                    self._all[entity] = self._of_topic[name][entity] = _SubscriptionCounts(name)
                 case EntityGone(entity=entity) if entity in self._all:
                     self._of_topic[self._all[entity].name].pop(entity, None)
                 case QosMismatched(entity=entity) if entity in self._all:
@@ -76,27 +76,27 @@ class MessageCounts:
                     f"{len(each.queue)} wait",
                 )
 
-    def _arrive(self, event: EntityReady, subscription: _Subscription) -> None:
+    def _arrive(self, event: EntityReady, subscription: _SubscriptionCounts) -> None:
         subscription.arrived += 1
         if event.message in subscription.queue:
             self._complain(subscription, f"message {event.message} arrived twice")
         subscription.queue[event.message] = None
         self._compare(event, subscription)
 
-    def _leave(self, event: CallbackStarted | MessageDropped, subscription: _Subscription) -> None:
+    def _leave(self, event: CallbackStarted | MessageDropped, subscription: _SubscriptionCounts) -> None:
         if event.message not in subscription.queue:
             self._complain(subscription, f"message {event.message} left and had not arrived")
         subscription.queue.pop(event.message, None)
         self._compare(event, subscription)
 
     def _compare(
-        self, event: EntityReady | CallbackStarted | MessageDropped, subscription: _Subscription
+        self, event: EntityReady | CallbackStarted | MessageDropped, subscription: _SubscriptionCounts
     ) -> None:
         if event.depth != len(subscription.queue):
             self._complain(
                 subscription, f"at {event.t} ns {event.depth} wait, and {len(subscription.queue)} by count"
             )
 
-    def _complain(self, subscription: _Subscription, what: str) -> None:
+    def _complain(self, subscription: _SubscriptionCounts, what: str) -> None:
         if len(self.faults) < 5:
             self.faults.append(f"{subscription.name}: {what}")

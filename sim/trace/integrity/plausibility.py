@@ -24,7 +24,7 @@ _KINDS = frozenset(_INTRODUCED.values())
 _HOLDER = "holder"
 """The field that refers to an entity by another name."""
 _NO_THREAD: ThreadId = 0
-_Place: TypeAlias = tuple[EntityId, ThreadId]
+_CallbackOnThread: TypeAlias = tuple[EntityId, ThreadId]
 """A callback and its thread; a suspended callback has ``_NO_THREAD``."""
 
 
@@ -39,7 +39,7 @@ class Plausibility:
         self._known = Counter[str]()
         self._exclusive: set[GroupId] = set()
         self._groups: dict[EntityId, GroupId] = {}
-        self._running = Counter[_Place]()
+        self._running = Counter[_CallbackOnThread]()
         self._inside = Counter[GroupId]()
 
     def take(self, events: Iterable[AnyEvent]) -> None:
@@ -102,7 +102,7 @@ class Plausibility:
         if group in self._exclusive and self._inside[group] > 1:
             self._complain(now, f"two callbacks run at once in the exclusive group {group}")
 
-    def _move(self, event: AnyEvent, place: _Place, to: _Place | None) -> None:
+    def _move(self, event: AnyEvent, place: _CallbackOnThread, to: _CallbackOnThread | None) -> None:
         if self._running[place] < 1:
             self._complain(event.t, f"{_name(event)} is of a callback that was not running")
         self._running[place] -= 1

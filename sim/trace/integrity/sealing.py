@@ -16,7 +16,7 @@ class BrokenSealError(Exception):
     """A batch that the engine did not send at this place; the text is a sentence."""
 
 
-class Batch(msgspec.Struct, frozen=True, array_like=True):
+class TraceBatch(msgspec.Struct, frozen=True, array_like=True):
     """Encoded events, their place among a run's batches, and which functions of the engine were replaced."""
 
     number: int
@@ -38,10 +38,10 @@ class Seal:
 
     def close(self, events: bytes, replaced: tuple[str, ...] = ()) -> bytes:
         """Return the next batch, sealed."""
-        batch = msgspec.msgpack.encode(Batch(next(self._numbers), events, replaced))
+        batch = msgspec.msgpack.encode(TraceBatch(next(self._numbers), events, replaced))
         return msgspec.msgpack.encode(_Sealed(batch, self._digest(batch)))
 
-    def open(self, data: bytes) -> Batch:
+    def open(self, data: bytes) -> TraceBatch:
         """Return the next batch.
 
         Raises:
@@ -53,7 +53,7 @@ class Seal:
             raise BrokenSealError("something without a seal was written to the trace") from None
         if not hmac.compare_digest(sealed.digest, self._digest(sealed.batch)):
             raise BrokenSealError("something with a wrong seal was written to the trace")
-        batch = msgspec.msgpack.decode(sealed.batch, type=Batch)
+        batch = msgspec.msgpack.decode(sealed.batch, type=TraceBatch)
         expected = next(self._numbers)
         if batch.number != expected:
             raise BrokenSealError(f"batch {batch.number} of the trace came in place of {expected}")

@@ -73,7 +73,7 @@ class Layer(IntegerTable):
         return self.column(self.ROW, places)
 
 
-class Lane:
+class IntervalLane:
     """The rows of a thread, an entity or a group, in layers within which none overlap.
 
     A row goes to the first layer whose last row has ended. So there are never more layers than simultaneous
