@@ -85,9 +85,7 @@ def _statements(body: Iterable[ast.stmt]) -> Iterator[ast.stmt]:
 
 def _setup_call(statement: ast.stmt) -> ast.Call | None:
     match statement:
-        case ast.Expr(value=ast.Call(func=ast.Name(id="setup")) as call):
-            return call
-        case ast.Expr(value=ast.Call(func=ast.Attribute(attr="setup")) as call):
+        case ast.Expr(value=ast.Call(func=ast.Name(id="setup") | ast.Attribute(attr="setup")) as call):
             return call
     return None
 
