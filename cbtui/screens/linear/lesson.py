@@ -11,6 +11,7 @@ from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.learning.lesson_page import introduction
 from cbtui.learning.outcome import Observe
 from cbtui.runs.judged.cures import Cure
+from cbtui.runs.judged.hangs import ComparedHangs
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
@@ -61,7 +62,7 @@ class LessonConsole(LinearConsole[LiveRun]):
         trials = CureTrials(runs, self.restarts, subject, self._comparison.action_compare)
         self._cures = CuresByNumber(self, trials)
         self._teaching = None if lesson is None else self._teaching_of(lesson, observe)
-        take_over = TakeOver(runs, subject, self._open_choosing)
+        take_over = TakeOver(self, runs, subject, self._open_choosing)
         keys = (PaceKeys(self, runs), WorldKeys(runs), TypedLines(self), self.restarts, take_over)
         exercise = None if lesson is None else ExerciseInLines(self, lesson, self.progress)
         recording = RecordingKey(self, runs, FinishInLines(self))
@@ -185,7 +186,8 @@ class LinearComparison(ScreenPart):
         self._due = None
         first, second = (side.timeline for side in both)
         window = Window(0, min(first.end, second.end))
-        for line in comparison_lines(compare(first, second, window), both[0].name, both[1].name):
+        compared, hang = compare(first, second, window), ComparedHangs(first, second).told()
+        for line in comparison_lines(compared, both[0].name, both[1].name, hang):
             self.host.tell(line)
         at = run_to_end(first_difference(first, second, window))
         self.host.tell("no call differs" if at is None else f"they differ from {timestamp(at)}")

@@ -14,7 +14,7 @@ from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
 from sim.diagnosis.rules.timing import OverlappingCallback, OverrunTimer
 from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NodeNeverSpins, NoFreeWorker
 
-RULES: tuple[Rule, ...] = (
+HANGS: tuple[Rule, ...] = (
     SelfMadeDeadlock(),
     NeedsOneMoreWorker(),
     NestedSpin(),
@@ -23,6 +23,11 @@ RULES: tuple[Rule, ...] = (
     EndlessWait(),
     WaitsForLock(),
     ServiceNeverComes(),
+)
+"""The rules that find what can never go on."""
+
+RULES: tuple[Rule, ...] = (
+    *HANGS,
     ProgramRaised(),
     NodeNeverSpins(),
     NobodyOffers(),

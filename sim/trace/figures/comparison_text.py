@@ -16,8 +16,11 @@ from sim.trace.figures.comparison_rows import (
 _GAP = "  "
 
 
-def comparison_text(comparison: Comparison, first: str, second: str) -> str:
-    """The whole comparison, ending in a newline; ``first`` and ``second`` are the runs' names."""
+def comparison_text(comparison: Comparison, first: str, second: str, before: str = "") -> str:
+    """The whole comparison, ending in a newline; ``first`` and ``second`` are the runs' names.
+
+    ``before`` is a sentence that comes before the verdict.
+    """
     shown = sections(comparison)
     head = ComparisonRow("", RUNS, DIFFERENCE)
     rows = [head, *(row for section in shown for row in section.rows)]
@@ -30,7 +33,7 @@ def comparison_text(comparison: Comparison, first: str, second: str) -> str:
         f"{RUNS[0]}  {first}",
         f"{RUNS[1]}  {second}",
         extent(comparison),
-        f"{verdict(comparison)}.",
+        f"{before} {verdict(comparison)}.".lstrip(),
         "",
         _line(head, widths),
     ]
@@ -58,10 +61,10 @@ def _line(row: ComparisonRow, widths: tuple[int, int, int]) -> str:
     return _GAP.join(cells).rstrip()
 
 
-def comparison_lines(comparison: Comparison, first: str, second: str) -> Iterator[str]:
-    """Yield the whole comparison as lines that can be listened to; ``first`` and ``second`` name the runs."""
+def comparison_lines(comparison: Comparison, first: str, second: str, before: str = "") -> Iterator[str]:
+    """Yield the whole comparison as lines that can be listened to; the same, for the rest."""
     yield from (f"{run}: {name}" for run, name in zip(RUNS, (first, second), strict=True))
-    yield f"{verdict(comparison)}."
+    yield f"{before} {verdict(comparison)}.".lstrip()
     yield extent(comparison)
     for section in sections(comparison):
         yield section.title
