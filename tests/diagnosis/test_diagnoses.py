@@ -140,7 +140,7 @@ def test_the_list_has_a_sign_a_reason_a_cure_and_a_place_for_each_finding() -> N
         "      MultiThreadedExecutor(num_threads=2); or let timer_callback return",
         "      sooner.",
         "      node.py:120, at 4.003 s",
-        "  · timer_callback decided on data at least 10.0 s old: newer messages waited",
+        "  · timer_callback ran while newer messages had waited 10.0 s for",
     ]
     assert any(line.startswith("  · timer_callback took 10.0 s") for line in lines)
     assert max(map(len, lines)) <= 79

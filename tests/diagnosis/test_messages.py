@@ -73,7 +73,7 @@ def test_a_timer_that_runs_before_the_waiting_messages_decides_on_old_data() -> 
     found = run.one("stale-data")
     assert (found.at, found.count, found.culprit) == (ns(6.0), 1, run.trace.entity("hear"))
     assert found.size == ns(2.95)
-    assert "at least 3.0 s old" in run.explained("stale-data").what
+    assert "newer messages had waited 3.0 s for" in run.explained("stale-data").what
 
 
 def test_a_sensor_with_a_thread_and_a_group_of_its_own_is_well() -> None:

@@ -165,6 +165,19 @@ def test_a_crash_is_worse_than_what_comes_to_light_without_it() -> None:
     assert helps(crash, TriedRun({crash: False}, is_whole=False), TriedRun({slow: False}))
 
 
+def test_what_was_an_effect_of_the_problem_is_no_worse_one_in_its_place() -> None:
+    starved, lost = ("group-starvation", "", ""), ("dropped-messages", "", "")
+    before = TriedRun({starved: False}, effects=frozenset({"dropped-messages"}))
+    assert helps(starved, before, TriedRun({lost: False}))
+    assert not helps(starved, replace(before, effects=frozenset()), TriedRun({lost: False}))
+
+
+def test_a_trial_tells_which_rules_found_effects_alone() -> None:
+    before = tried(program_setup(PROGRAMS / "held_group.py", 3.0), UNTIL, Event())
+    assert {rule for rule, *_ in before.problems} == {"group-starvation"}
+    assert before.effects <= {"dropped-messages", "stale-data", "overrun-timer"}
+
+
 def test_the_calls_of_a_run_belong_to_its_trial(tmp_path: Path) -> None:
     text = (PROGRAMS / "sleep_in_service.py").read_text().replace("self.create_timer(2.0, self.close)", "")
     program = tmp_path / "served.py"

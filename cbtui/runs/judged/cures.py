@@ -13,8 +13,7 @@ from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.changeable import place_of
 from cbtui.runs.setup.changes import Changes
-from lessons.checks import problems
-from sim.diagnosis import Explanation, Finding
+from sim.diagnosis import Explanation, Finding, Weight, diagnose
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import diff
 from sim.engine.setup import RunSetup, TimedInput
@@ -31,10 +30,14 @@ Problem: TypeAlias = tuple[str, str, str]
 
 @dataclass(frozen=True)
 class TriedRun:
-    """What is wrong in a run, and whether for ever; ``is_whole`` if it came to its end."""
+    """What is wrong in a run, and whether for ever; ``is_whole`` if it came to its end.
+
+    ``effects`` are the rules that found nothing but what a problem brings about.
+    """
 
     problems: Mapping[Problem, bool]
     is_whole: bool = True
+    effects: frozenset[str] = frozenset()
 
     @property
     def badness(self) -> tuple[int, int]:
@@ -100,12 +103,16 @@ def with_inputs(setup: RunSetup, inputs: tuple[TimedInput, ...]) -> RunSetup:
 
 
 def helps(problem: Problem, before: TriedRun, after: TriedRun) -> bool:
-    """Whether a run has a problem, and the same run with a cure has not, nor a worse one in its place."""
+    """Whether a run has a problem, and the same run with a cure has not, nor a worse one in its place.
+
+    What was an effect of the problem before, and is told for itself without it, is none in its place.
+    """
+    left = {each: lasts for each, lasts in after.problems.items() if each[0] not in before.effects}
     return (
         problem in before.problems
         and after.is_whole
         and problem not in after.problems
-        and after.badness < before.badness
+        and replace(after, problems=left).badness < before.badness
     )
 
 
@@ -126,7 +133,9 @@ def tried(
         for batch in run:
             timeline.extend(batch)
             note(timeline.end)
-    found = {
-        problem_of(each, timeline): each.rule.explain(each, timeline).for_ever for each in problems(timeline)
-    }
-    return TriedRun(found, timeline.ended is not None and timeline.ended.time_was_up)
+    found = diagnose(timeline)
+    wrong = [each for each in found if each.rule.weigh(each, timeline) is Weight.PROBLEM]
+    lasts = {problem_of(each, timeline): each.rule.explain(each, timeline).for_ever for each in wrong}
+    effects = {each.rule.id for each in found if each.due_to} - {each.rule.id for each in wrong}
+    is_whole = timeline.ended is not None and timeline.ended.time_was_up
+    return TriedRun(lasts, is_whole, frozenset(effects))

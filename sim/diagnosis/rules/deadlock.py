@@ -108,7 +108,7 @@ _OWN_LOCK = "its own lock"
 _LOCK_AND_CALL = "a lock and a reply"
 _WHY = {
     _OWN_LOCK: "it holds the lock already, and a Lock cannot be taken twice",
-    WaitedFor.RATE: "sleep() comes back when the executor has called the rate's timer, which needs a thread",
+    WaitedFor.RATE: "the rate's sleep() ends when the executor calls its timer, which needs a thread",
     WaitedFor.LOCK: "each keeps its lock while it waits for the other's, so neither lets go",
     _LOCK_AND_CALL: "the lock is held during a call, and whoever has to answer needs it",
 }

@@ -124,9 +124,9 @@ class StaleData(Rule):
         window = Window(found.at - found.size, found.at)
         room = remedy_for_waits([found.culprit], found.culprit, window, timeline)
         return Explanation(
-            f"{subject} decided on data at least {duration(found.size)} old: "
-            f"newer messages waited for {sensor}{often(found.count)}",
-            f"the node only knows what {sensor} has taken, and that did not run",
+            f"{subject} ran while newer messages had waited {duration(found.size)} for {sensor}"
+            f"{often(found.count)}",
+            f"if {subject} uses them, it decides on old data: it knows only what {sensor} has taken",
             room.words(timeline) or f"let {sensor} return sooner",
             place_of(found.subject, timeline),
             remedies=(room,),
