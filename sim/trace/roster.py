@@ -1,5 +1,6 @@
 """The callbacks of a run by group, up to a number that can be shown; the others are counted."""
 
+from collections import Counter
 from collections.abc import Iterator
 from itertools import islice
 from weakref import WeakKeyDictionary
@@ -37,6 +38,8 @@ class Roster:
         """The names of the services that the run itself offers."""
         self.places: dict[tuple[str, int], EntityId] = {}
         """The first entity of each place in the source: several may share a callback."""
+        self.labels: Counter[str] = Counter()
+        """How many callbacks have a label."""
         self._sizes: dict[GroupId, int] = {}
         self._members: dict[GroupId, list[EntityInfo]] = {}
         self._seen = 0
@@ -75,6 +78,7 @@ class Roster:
         size = self._sizes.get(entity.group, 0)
         self._sizes[entity.group] = size + 1
         self.lanes += 2 if size == 1 else 1
+        self.labels[entity.label] += 1
         if entity.kind is EntityKind.SERVICE:
             self.services.add(entity.name)
         if size < MOST_LANES:

@@ -4,10 +4,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from cbtui.looks.theme import Glyphs, Ink, Role, TextRun, texture_of
-from cbtui.widgets.lanes.names import entity_name, group_name, shortened, sole_name, thread_name
+from cbtui.widgets.lanes.names import entity_name, group_name, shortened, sole_name, thread_name, told_apart
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from sim.trace.events import GroupId
-from sim.trace.model import GroupInfo
+from sim.trace.model import EntityInfo, GroupInfo
+from sim.trace.timeline import Timeline
 
 _PLAIN = Ink(Role.TEXT)
 _TEXTURED_FROM = 20
@@ -20,6 +21,7 @@ _SWATCH = 2
 class LaneLabels:
     """Labels of ``width`` columns; ``numbers`` are the places of the groups, by which they are coloured."""
 
+    timeline: Timeline
     width: int
     glyphs: Glyphs
     numbers: Mapping[GroupId, int]
@@ -35,16 +37,20 @@ class LaneLabels:
                 letter = self._letter(group)
                 return [*letter, TextRun(group_name(group, self.room_after(letter)), _PLAIN)]
             case MemberLane(entity):
-                return [TextRun(f"  {entity_name(entity, self.width - 3, ellipsis)}", _PLAIN)]
+                return [TextRun(f"  {entity_name(self._name(entity), self.width - 3, ellipsis)}", _PLAIN)]
             case SoleLane(entity, group):
                 letter = self._letter(group)
-                return [*letter, TextRun(sole_name(entity, group, self.room_after(letter), ellipsis), _PLAIN)]
+                name = sole_name(self._name(entity), group, self.room_after(letter), ellipsis)
+                return [*letter, TextRun(name, _PLAIN)]
             case ServiceLane(service):
                 return [TextRun(shortened(service, self.width, ellipsis), _PLAIN)]
 
     def room_after(self, runs: Sequence[TextRun]) -> int:
         """Return the columns that are left after parts of a label."""
         return self.width - sum(len(run.text) for run in runs)
+
+    def _name(self, entity: EntityInfo) -> str:
+        return told_apart(entity, self.timeline, self.glyphs.back)
 
     def _letter(self, group: GroupInfo) -> list[TextRun]:
         """A group's letter, and its texture where there is room."""

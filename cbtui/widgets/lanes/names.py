@@ -1,7 +1,10 @@
 """The names of lanes, shortened to the available columns."""
 
 from cbtui.text.callback_names import short_name
+from sim.trace.events import EntityKind
 from sim.trace.model import EntityInfo, GroupInfo, ThreadInfo
+from sim.trace.roster import roster_of
+from sim.trace.timeline import Timeline
 
 _LEAST_PROGRAM = 3
 """Columns below which a program's name cannot be recognised."""
@@ -44,18 +47,28 @@ def group_name(group: GroupInfo, room: int) -> str:
     return full if len(full) <= room else brief
 
 
-def entity_name(entity: EntityInfo, room: int, ellipsis: str) -> str:
+def told_apart(entity: EntityInfo, timeline: Timeline, reply: str) -> str:
+    """Return a callback's label; if others have the same one, a name that tells it from them.
+
+    ``reply`` is the sign of a reply, which is what a client takes.
+    """
+    if roster_of(timeline).labels[entity.label] < 2 or entity.kind is EntityKind.SERVICE:
+        return entity.label
+    return f"{entity.label} {reply}" if entity.kind is EntityKind.CLIENT else entity.callback or entity.label
+
+
+def entity_name(name: str, room: int, ellipsis: str) -> str:
     """Return the name of a callback in a group of several."""
-    return entity.label if len(entity.label) <= room else shortened(short_name(entity.label), room, ellipsis)
+    return name if len(name) <= room else shortened(short_name(name), room, ellipsis)
 
 
-def sole_name(entity: EntityInfo, group: GroupInfo, room: int, ellipsis: str) -> str:
+def sole_name(name: str, group: GroupInfo, room: int, ellipsis: str) -> str:
     """Return the name of a group's only callback, behind the group's kind if there is room."""
-    names = (entity.label, short_name(entity.label))
-    for text in (f"{kind} {name}" for kind in _kinds(group) for name in names):
+    names = (name, short_name(name))
+    for text in (f"{kind} {each}" for kind in _kinds(group) for each in names):
         if len(text) <= room:
             return text
-    return shortened(short_name(entity.label), room, ellipsis)
+    return shortened(short_name(name), room, ellipsis)
 
 
 def more_lanes(hidden: int, key: str, room: int) -> str:

@@ -164,7 +164,7 @@ class _LaneFrame:
         self._edge = max(now, timeline.end) if timeline.ended is None else timeline.end
         self._calls = LatestCalls(timeline)
         self._numbers = {group: place for place, group in enumerate(timeline.groups)}
-        self._labels = LaneLabels(layout.names, self._glyphs, self._numbers)
+        self._labels = LaneLabels(timeline, layout.names, self._glyphs, self._numbers)
         self._bars = BarPainter(timeline, self._glyphs, now, self._told, self._numbers)
         self._status = LaneStatus(timeline, scale.window, moment, self._calls, self._charset, layout.statuses)
 

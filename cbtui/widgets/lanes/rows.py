@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import EntityId, GroupId, ThreadId
+from sim.trace.events import EntityId, EntityKind, GroupId, ThreadId
 from sim.trace.model import EntityInfo, GroupInfo, Nanoseconds, ThreadInfo, Window
 from sim.trace.roster import MOST_LANES, roster_of
 from sim.trace.timeline import Timeline
@@ -100,19 +100,26 @@ def choose_lanes(
     """Return the most important lanes of ``window`` that fit, in their order.
 
     The selected lane and its neighbours stay, so that moving through the lanes scrolls the view. Lanes with
-    work or long waits come next; idle ones are dropped first. The cursor's moment does not count: the choice
+    work or long waits come next; idle ones are dropped first, and threads beyond half of the room before
+    callbacks that are called: one thread works like another. The cursor's moment does not count: the choice
     would flicker.
     """
     if len(lanes) <= room:
         return lanes
     worth = _LanePriority(timeline, window)
+    value = [worth.of(lane) for lane in lanes]
+    threads = [place for place, lane in enumerate(lanes) if isinstance(lane, ThreadLane)]
+    for place in sorted(threads, key=lambda place: -value[place])[room // 2 :]:
+        value[place] = min(value[place], _SPARE)
     middle = lanes.index(selected) if selected in lanes else -_FAR
     places = sorted(
-        range(len(lanes)), key=lambda place: (min(abs(place - middle), _FAR), -worth.of(lanes[place]), place)
+        range(len(lanes)), key=lambda place: (min(abs(place - middle), _FAR), -value[place], place)
     )
     return [lanes[place] for place in sorted(places[: max(room, 0)])]
 
 
+_SPARE = 4
+"""The priority of a thread beyond half of the room, and the highest of a client, which only takes replies."""
 _FAR = 2
 """The distance from the selected lane beyond which only priority counts."""
 _LONG_WAIT: Nanoseconds = 10_000_000
@@ -135,7 +142,8 @@ class _LanePriority:
             case GroupLane(group):
                 return 8 if self._group_waits(group.id) else 6
             case MemberLane(entity) | SoleLane(entity):
-                return self._entity(entity.id)
+                of_replies = entity.kind is EntityKind.CLIENT
+                return min(_SPARE, self._entity(entity.id)) if of_replies else self._entity(entity.id)
             case ServiceLane(service):
                 return 5 if service in self.timeline.services_called else 3
 

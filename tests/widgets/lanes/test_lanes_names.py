@@ -1,8 +1,11 @@
 import pytest
 
-from cbtui.widgets.lanes.names import group_name, more_lanes, shortened, thread_name
+from cbtui.widgets.lanes.names import group_name, more_lanes, shortened, thread_name, told_apart
+from cbtui.widgets.lanes.rows import ThreadLane, all_lanes, choose_lanes
 from sim.trace.events import GroupKind
-from sim.trace.model import GroupInfo, ThreadInfo
+from sim.trace.model import GroupInfo, ThreadInfo, Window
+from sim.trace.timeline import Timeline
+from tests.support.builder import Run, ns
 
 
 @pytest.mark.parametrize(
@@ -50,3 +53,34 @@ def test_names_that_differ_at_an_end_stay_apart() -> None:
     names = ("front_wheel_odometry", "rear_wheel_odometry", "front_wheel_current")
     assert len({shortened(name, 9, "…") for name in names}) == 3
     assert shortened("odom", 9, "…") == "odom"
+
+
+def test_lanes_of_one_group_have_names_of_their_own() -> None:
+    run = Run()
+    group = run.exclusive(run.node("/n"))
+    run.service(group, "/bake", "on_bake")
+    run.client(group, "/bake")
+    run.timer(group, "count", 1.0)
+    run.subscription(group, "/count", "on_count")
+    run.subscription(group, "/words", "on_words")
+    timeline = run_timeline(run)
+    names = [told_apart(each, timeline, "◂") for each in timeline.entities.values()]
+    assert names == ["bake", "bake ◂", "count", "on_count", "words"]
+
+
+def test_where_lanes_are_few_threads_leave_room_for_callbacks_that_run() -> None:
+    run = Run()
+    node = run.node("/n")
+    threads = [run.thread(f"ThreadPoolExecutor-0_{number}") for number in range(6)]
+    callbacks = [run.timer(run.exclusive(node), f"ask_{number}", 1.0) for number in range(6)]
+    for thread, callback in zip(threads, callbacks, strict=True):
+        run.callback(callback, thread, 0.5, 4.0)
+    timeline = run_timeline(run)
+    lanes = choose_lanes(all_lanes(timeline, ""), 8, timeline, Window(0, ns(5.0)))
+    assert [isinstance(each, ThreadLane) for each in lanes] == 4 * [True] + 4 * [False]
+
+
+def run_timeline(run: Run) -> Timeline:
+    timeline = Timeline()
+    timeline.extend(run.until(5.0))
+    return timeline
