@@ -19,7 +19,7 @@ _EVENTS = "Go to the selected lane's bar before or after the cursor"
 _BARS = "Go to the clicked lane's bar before or after the cursor"
 _WIDTH = "Make the pane wider or narrower; that is remembered"
 _HEIGHT = "Make the pane, or the lanes, taller or lower"
-_JUMP = "Show a letter on whatever can be gone to; type it to go there"
+_JUMP = "Show a letter on each place; type it to go there"
 _OPTION = "Highlight another thread, and its line"
 _OPTION_NUMBER = "Have the thread with this number go on"
 _ANSWER_NUMBER = "Highlight the answer with this number"
@@ -117,6 +117,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("no_solution", "H", "", "Tell why there is no solution now"),
         ("no_comparison", "C", "", "Tell what can be compared"),
         *((f"no_time('{name}')", key, "", _NO_TIME) for name, key in OWN_TIME.items()),
+        ("no_take_over", "W", "", "Tell when you can choose which thread goes on"),
         ("diagnoses", "d", "diagnoses", "List what went wrong, why, and what to do about it"),
         *(
             (f"show_pane('{name}')", str(number), "pane", f"Go to the {name}", _PANE)
@@ -211,7 +212,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
             "leave_keyboard",
             "ctrl+right_square_bracket",
             "other keys",
-            "Go back to the other keys; the program gets every other key where it takes single ones",
+            "Go back to the other keys of the console",
         ),
     ),
     Scope.THREADS: (

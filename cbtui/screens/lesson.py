@@ -86,7 +86,10 @@ class LessonScreen(RunScreen[LiveRun]):
             comparison,
             SetUpKeys(self, runs, self.restarts, self.selection, subject),
             TakeOver(
-                runs, subject, lambda taken: self.ask(ChoosingScreen(taken, open_session, charset), None)
+                self,
+                runs,
+                subject,
+                lambda taken: self.ask(ChoosingScreen(taken, open_session, charset), None),
             ),
             *([] if lesson is None else self._teaching_parts(lesson)),
             Refusals(self, lesson, is_available),

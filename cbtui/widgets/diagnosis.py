@@ -98,11 +98,11 @@ def with_worst_problem(
     explanation = worst.explanation
     what = explanation.what
     if worst.at is None:
-        return Diagnosis(what, DiagnosisLevel.TROUBLE, at_length=f"{worst.name}: {what}")
+        return Diagnosis(what, DiagnosisLevel.TROUBLE, at_length=worst.headline)
     time = f"at {worst.at / 1e9:.1f} s: "
     text = f"{time}{what}"
     further = f"; {way_on}" if way_on and explanation.for_ever else ""
-    at_length = f"{worst.name} {text}{further}"
+    at_length = f"{worst.name} {text}{further}".lstrip()
     return Diagnosis(text, DiagnosisLevel.TROUBLE, at_length=at_length, time=time)
 
 

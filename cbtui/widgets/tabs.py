@@ -29,6 +29,8 @@ class Tabs(PaintedWidget):
         self._has_scene = has_scene
 
     current: reactive[str] = painted(PANES[0])
+    empty: reactive[str] = painted("")
+    """A pane without content, which has a tab only while it is the current one."""
     note: reactive[str] = painted("")
     """The current pane's note at the right, its most important part first."""
 
@@ -69,6 +71,8 @@ class Tabs(PaintedWidget):
 
     def _labels(self) -> Iterator[tuple[str, str]]:
         for pane in self._panes:
+            if pane == self.empty != self.current:
+                continue
             title = title_of(pane, self._has_scene)
             yield pane, f"[{title}]" if pane == self.current else f" {title} "
 

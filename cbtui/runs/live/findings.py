@@ -35,8 +35,14 @@ class ExplainedFinding:
 
     @property
     def name(self) -> str:
-        """The rule's name in words: ``group starvation``."""
-        return self.finding.rule.id.replace("-", " ")
+        """The rule's name in words: ``group starvation``; "" if the explanation begins with its last word."""
+        name = self.finding.rule.id.replace("-", " ")
+        return "" if self.explanation.what.startswith(name.rpartition(" ")[2]) else name
+
+    @property
+    def headline(self) -> str:
+        """What is wrong, behind the rule's name."""
+        return f"{self.name}: {self.explanation.what}".removeprefix(": ")
 
     @property
     def at(self) -> Nanoseconds | None:

@@ -116,14 +116,14 @@ class Narrative:
             at = self._timeline.end if each.at is None else each.at
             if each.is_problem and at <= now and key not in self._problems:
                 self._problems.add(key)
-                yield f"problem: {each.name}: {told_finding(each)}"
+                yield f"problem: {told_finding(each)}"
 
 
 def told_finding(each: ExplainedFinding) -> str:
-    """Return what is wrong, why, what to do, and where, as one line."""
+    """Return its kind, what is wrong, why, what to do, and where, as one line."""
     explained = each.explanation
     where = location_text(each.finding, explained)
-    parts = (explained.what, f"why: {explained.why}", f"what to do: {explained.cure}", where)
+    parts = (each.headline, f"why: {explained.why}", f"what to do: {explained.cure}", where)
     return ". ".join(part for part in parts if part)
 
 

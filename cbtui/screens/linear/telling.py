@@ -124,7 +124,7 @@ class Telling(ScreenPart):
         findings.look()
         for number, each in enumerate(findings.findings, start=1):
             what = "problem" if each.is_problem else "remark"
-            self.host.tell(f"{number}: {what}: {each.name}: {told_finding(each)}")
+            self.host.tell(f"{number}: {what}: {told_finding(each)}")
         if not findings.findings:
             self.host.tell("nothing has gone wrong so far: no rule has found a problem")
 

@@ -160,14 +160,28 @@ class TakeOver(ScreenPart):
     The run is made again up to there, which leaves the one on screen as it is. ``open_choosing`` opens it.
     """
 
+    host: RunHost
     runs: RunController[LiveRun]
     subject: ShownProgram
     open_choosing: Callable[[ShownProgram], object]
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer it on a paused run in the usual order of threads."""
+        """Offer it on a paused run in the usual order of threads, and the reason on others."""
         run = self.runs.run
-        return run.can_step and not run.setup.seed
+        return (run.can_step and not run.setup.seed) is (action == "take_over")
+
+    def action_no_take_over(self) -> None:
+        """Tell what it takes."""
+        run, pause = self.runs.run, self.host.key("pause")
+        if not run.virtual:
+            told = "Choosing who goes on needs virtual time: cbtui open FILE.py --clock virtual."
+        elif run.setup.seed:
+            told = "In this run the order of the threads is chosen already."
+        elif not run.alive:
+            told = f"The run is over: run it again, and pause it with {pause} where you want to choose."
+        else:
+            told = f"Pause the run with {pause} first: from that moment on you choose who goes on."
+        self.host.tell(told)
 
     def action_take_over(self) -> None:
         """Open the screen for choosing."""

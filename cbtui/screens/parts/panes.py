@@ -102,6 +102,7 @@ class PaneLayout(ScreenPart):
         """Have room for the robot's pane, or give it to the code."""
         if is_here is self.screen.has_class(WITHOUT_ROBOT):
             self.screen.set_class(not is_here, WITHOUT_ROBOT)
+            self.screen.query_one(Tabs).empty = "" if is_here else "robot"
             self.arranged()
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
@@ -114,7 +115,9 @@ class PaneLayout(ScreenPart):
 
     def action_next_pane(self) -> None:
         """Go to the next pane."""
-        self.show(self.names[(self.names.index(self.current) + 1) % len(self.names)])
+        place = self.names.index(self.current) + 1
+        following = (*self.names[place:], *self.names[:place])
+        self.show(next(name for name in following if name != self.screen.query_one(Tabs).empty))
 
     def action_maximise(self) -> None:
         """Let the current pane, or the lanes if they have the focus, fill the screen, or undo that."""

@@ -187,6 +187,7 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         """Offer to try a cure if it helps; the highlight stays where it is."""
         chosen = self._chosen
         self._untried[place] -= 1
+        self._percent[place] = 0
         if helps:
             self._helpful.append((place, cure))
         self._rows = tuple(self._ways())
@@ -235,8 +236,10 @@ class DiagnosesScreen(WindowScreen[Chosen]):
 
     def _about_trial(self, place: int) -> str:
         """What there is to say about trying the cure of a finding."""
-        if self._untried[place]:
-            return f"A cure is being tried in the background: {self._percent.get(place, 0)} %."
+        if left := self._untried[place]:
+            of = sum(about == place for about, _ in self._cures)
+            percent = (100 * (of - left) + self._percent.get(place, 0)) // of
+            return f"A cure is being tried in the background: {percent} %."
         return self._trial.refusal if self._trial and self._findings[place].is_problem else ""
 
     @on(OptionList.OptionHighlighted)

@@ -126,6 +126,36 @@ async def test_without_a_robot_r_runs_again_and_the_code_has_the_room(tmp_path: 
         assert len(engines.sessions) == 2
 
 
+async def test_without_a_robot_there_is_no_tab_of_it_until_it_is_gone_to(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    engines = FakeEngines(dummy_server_run().events, ns(5.2))
+    app = CbtuiApp(start_file=(file, [], "real"), open_session=engines)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        assert "3 Factory  5 Log" in text_of(app)
+        await pilot.press("3", "tab")
+        await settle(pilot)
+        assert "3 Factory [5 Log]" in text_of(app)
+        await pilot.press("4")
+        await settle(pilot)
+        assert "[4 Robot] 5 Log" in text_of(app)
+
+
+async def test_why_nobody_can_choose_the_thread_is_told(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    for clock, told in (("real", "needs virtual time"), ("virtual", "Pause the run with ␣ first")):
+        app = CbtuiApp(
+            start_file=(file, [], clock), open_session=FakeEngines(dummy_server_run().events, ns(5.2))
+        )
+        async with app.run_test(size=NARROW) as pilot:
+            await settle(pilot)
+            await pilot.press("W")
+            await settle(pilot)
+            assert any(told in note.message for note in app._notifications)
+
+
 async def test_a_program_that_cannot_begin_is_shown_at_its_line(tmp_path: Path) -> None:
     file = tmp_path / "my_node.py"
     file.write_text("import rclpy\nprint((\n")

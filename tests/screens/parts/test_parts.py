@@ -35,7 +35,7 @@ WITH_A_PERSON = {
 }
 CHOSEN = {"undo"}
 TAUGHT = {"predict", "explain", "exercise"}
-REFUSED = {"no_exercise", "no_hint", "no_solution", "no_comparison"}
+REFUSED = {"no_exercise", "no_hint", "no_solution", "no_comparison", "no_take_over"}
 
 
 class Lamp(ScreenPart):
