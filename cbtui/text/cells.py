@@ -20,8 +20,17 @@ _MOST_COLUMNS = 90
 
 
 def lines_of_text(text: str, width: int, charset: Charset = Charset.BRAILLE) -> list[str]:
-    """Break running text, made safe to display, into lines of ``width`` columns at most, or 90."""
-    return wrap(visible(text, charset), min(width, _MOST_COLUMNS), break_on_hyphens=False)
+    """Break running text, made safe to display, into lines of ``width`` columns at most, or 90.
+
+    A last word that would be left alone on its line takes the one before it along.
+    """
+    shown, width = visible(text, charset), min(width, _MOST_COLUMNS)
+    lines = wrap(shown, width, break_on_hyphens=False)
+    if len(lines) > 1 and " " not in lines[-1] and " " in lines[-2]:
+        before, _, taken = lines[-2].rpartition(" ")
+        if len(taken) + 1 + len(lines[-1]) <= width:
+            lines[-2:] = [before, f"{taken} {lines[-1]}"]
+    return lines
 
 
 def visible(text: str, charset: Charset) -> str:

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from rich.cells import cell_len
 
 from cbtui.looks.theme import Charset, Ink, Role
-from cbtui.text.cells import CellRow, fit, to_cells, visible, without_tabs
+from cbtui.text.cells import CellRow, fit, lines_of_text, to_cells, visible, without_tabs
 
 
 def test_escape_sequences_become_pictures() -> None:
@@ -65,3 +65,9 @@ def test_text_that_does_not_fit_ends_in_an_ellipsis() -> None:
     row = CellRow(5, Charset.BRAILLE)
     row.write(2, "timer", Ink(Role.TEXT))
     assert "".join(row.cells) == "  ti…"
+
+
+def test_no_word_is_left_alone_on_the_last_line() -> None:
+    assert lines_of_text("the timer waits for the group", 24) == ["the timer waits for", "the group"]
+    assert lines_of_text("expected nothing; saw deadlock, at 1.500 s", 40)[-1] == "1.500 s"
+    assert lines_of_text("anextraordinarily longword", 20) == ["anextraordinarily", "longword"]

@@ -37,7 +37,6 @@ from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
 _GUTTER = 7
-_LEAST_CODE = 20
 _SIDEWAYS = 8
 """Columns of a step sideways."""
 
@@ -377,11 +376,11 @@ class CodeView(InkedView):
         return self._with_text(line, marked.texts, Ink(_INKS[marked.doing], marked.number), width)
 
     def _with_text(self, line: Strip, texts: Sequence[str], ink: Ink, width: int) -> Strip:
-        """Put the longest text that fits beside the code at the right of a line."""
+        """Put the longest text that fits beside the code at the right of a line, or a part of the last."""
         room = width - line.cell_length - 1
-        padded = [f" {text} " for text in texts]
+        padded = [f" {text} " if text else "" for text in texts]
         text = next((text for text in padded if len(text) <= room), padded[-1])
-        text = fit(text, min(len(text), max(0, width - _LEAST_CODE)), Charset.BRAILLE) if text.strip() else ""
+        text = fit(text, max(0, min(len(text), room)), Charset.BRAILLE)
         mark = Segment(text, self.in_ink(ink))
         return Strip([*line.adjust_cell_length(width - len(text), self.in_class("")), mark], width)
 

@@ -253,3 +253,18 @@ async def test_code_that_is_too_wide_is_scrolled_sideways(tmp_path: Path) -> Non
         await pilot.press("shift+left", "shift+left")
         await pilot.pause()
         assert lines_of(app)[0] == before
+
+
+async def test_the_text_of_a_fault_stands_beside_its_line_and_not_on_it(tmp_path: Path) -> None:
+    path = tmp_path / "echo.py"
+    path.write_text("class Echo:\n    def on_a_word_that_is_said(self):\n        pass\n")
+    timeline = Timeline()
+    problem = "the program raised RuntimeError: a callback should be callable with one argument or two"
+    timeline.extend([*Run().until(0), RunEnded(1, problem, True, place=(str(path), 2), problem=problem)])
+    app = CodeOnly(path)
+    async with app.run_test(size=(70, 6)) as pilot:
+        app.view.show(timeline, 1)
+        await pilot.pause()
+        line = lines_of(app)[1]
+        assert "def on_a_word_that_is_said(self):  ✗ the program raised" in line
+        assert line.rstrip().endswith("…")
