@@ -288,7 +288,7 @@ class CbtuiApp(EndingApp):
         """Offer what the palette has beside the registry's actions."""
         yield SystemCommand("Theme", "Choose another colour theme, dark or light", self.action_change_theme)
         for lesson in lessons():
-            title = f"Open lesson {lesson.number}: {lesson.title}"
+            title = f"Open lesson {lesson.number:>2}: {lesson.title}"  # the palette sorts by text
             yield SystemCommand(title, lesson.executor, partial(self.open_lesson, lesson))
         for puzzle in puzzles():
             yield SystemCommand(

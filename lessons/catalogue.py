@@ -37,9 +37,9 @@ def lessons() -> tuple[Lesson, ...]:
 
 
 def find(lesson_id: str) -> Lesson:
-    """Return the lesson with this id. Raises UnknownLesson, which names the nearest one."""
+    """Return the lesson with this id or number. Raises UnknownLesson, which names the nearest one."""
     for lesson in lessons():
-        if lesson.id == lesson_id:
+        if lesson_id in (lesson.id, str(lesson.number)):
             return lesson
     raise UnknownLesson(
         f"No lesson is called {lesson_id!r}; the nearest is {_nearest(lesson_id)!r}, "

@@ -15,7 +15,9 @@ from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, nee
 def add_open_options(parser: argparse.ArgumentParser) -> None:
     """Give ``cbtui open`` its arguments."""
     parser.add_argument(
-        "target", metavar="LESSON|PUZZLE|FILE.py", help="a lesson's or puzzle's id, see cbtui list, or a file"
+        "target",
+        metavar="LESSON|PUZZLE|FILE.py",
+        help="a lesson's number or id, a puzzle's id, see cbtui list, or a file",
     )
     add_options(parser)
     changes.add_options(parser)

@@ -32,9 +32,10 @@ def keeps_coming(callback: str, while_: Stretch, at_least: float) -> Check:
         rates = [(len(calls_of(run, callback, window)), window) for window in long_enough]
         count, window = min(rates, key=lambda pair: pair[0] / pair[1].length)
         passed = count * SECOND >= at_least * window.length
-        return Verdict(
-            passed, expected, f"{counted(count, 'call')} in {seconds(window.length)}", window.start
-        )
+        seen = f"{counted(count, 'call')} in {seconds(window.length)}"
+        if count:
+            seen = f"{count * SECOND / window.length:.2g} a second, {seen}"
+        return Verdict(passed, expected, seen, window.start)
 
     return Check(f"{callback} keeps coming while {while_.words}", judge)
 

@@ -50,9 +50,10 @@ def test_every_lesson_folder_is_in_the_catalogue() -> None:
     assert folders == {lesson.folder for lesson in lessons()}
 
 
-def test_a_lesson_is_found_by_its_id() -> None:
+def test_a_lesson_is_found_by_its_id_and_by_its_number() -> None:
     for lesson in lessons():
         assert find(lesson.id) is lesson
+        assert find(str(lesson.number)) is lesson
 
 
 @pytest.mark.parametrize(

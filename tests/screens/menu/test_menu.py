@@ -193,7 +193,7 @@ async def test_the_palette_finds_a_command_of_the_screen() -> None:
     app = menu()
     async with app.run_test(size=WIDE) as pilot:
         await pilot.press("ctrl+p", *"lesson 5")
-        await until(pilot, lambda: is_the_palettes_first(app, "Open lesson 5: Reentrant, 2 threads"))
+        await until(pilot, lambda: is_the_palettes_first(app, "Open lesson  5: Reentrant, 2 threads"))
         await pilot.press("enter", "enter")
         while opened(app) is None:
             await pilot.pause(0.02)
