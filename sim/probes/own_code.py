@@ -1,4 +1,4 @@
-"""Which code on a thread's stack is the learner's own, and where it stands."""
+"""Finds the learner's own code on a thread's stack."""
 
 from __future__ import annotations
 
@@ -9,19 +9,19 @@ from types import FrameType
 
 
 def outwards(frame: FrameType | None) -> Iterator[FrameType]:
-    """A frame, its caller, and so on."""
+    """Yield a frame, its caller, and so on."""
     while frame is not None:
         yield frame
         frame = frame.f_back
 
 
 def module_root(frame: FrameType) -> str:
-    """The first part of the name of a frame's module."""
+    """The top-level package of a frame's module."""
     return str(frame.f_globals.get("__name__", "")).partition(".")[0]
 
 
 def is_own(frame: FrameType) -> bool:
-    """Whether a frame runs neither the model's code nor Python's."""
+    """Whether a frame runs neither the model's code nor the standard library's."""
     root = module_root(frame)
     return root != "sim" and (root == "__main__" or root not in sys.stdlib_module_names)
 
@@ -32,12 +32,12 @@ def is_library(frame: FrameType) -> bool:
 
 
 def own_frame(frame: FrameType | None) -> FrameType | None:
-    """The innermost frame of the learner's own from a frame on."""
+    """The innermost frame of the learner's own, from a frame outwards."""
     return next(filter(is_own, outwards(frame)), None)
 
 
 def place_of(frame: FrameType | None) -> str:
-    """The innermost line of the learner's own from a frame on, as ``node.py:12, in tick``; "" for none."""
+    """The line of the innermost frame of the learner's own, as ``node.py:12, in tick``; "" for none."""
     own = own_frame(frame)
     return (
         "" if own is None else f"{Path(own.f_code.co_filename).name}:{own.f_lineno}, in {own.f_code.co_name}"
@@ -45,9 +45,9 @@ def place_of(frame: FrameType | None) -> str:
 
 
 def call_into_ros() -> tuple[str, str, int]:
-    """Which function of rclpy's the learner's code called on this thread, and the file and line of the call.
+    """The function of rclpy's that the learner's code called on this thread, the file and line of the call.
 
-    "" and 0 for a call from nowhere in the learner's code, as a thread that only spins makes.
+    File and line are "" and 0 if no frame is the learner's own, as on a thread that only spins.
     """
     function = ""
     for frame in outwards(sys._getframe(1)):
@@ -70,12 +70,12 @@ def has_timeout() -> bool:
 
 
 def place_of_caller() -> str:
-    """Where the learner's own code called from, on the calling thread; "" where it did not."""
+    """``place_of`` on the calling thread."""
     return place_of(sys._getframe(1))
 
 
 def raised_at(error: BaseException) -> tuple[str, int]:
-    """File and line of the innermost frame of the learner's own code, else of the innermost frame."""
+    """The file and line of the innermost frame of the learner's own code, else of the innermost frame."""
     found = ("", 0)
     trace = error.__traceback__
     while trace is not None:

@@ -1,4 +1,4 @@
-"""What a probe knows of groups, nodes, entities and messages."""
+"""The interfaces of groups, nodes, entities and messages that the model's probe uses."""
 
 from collections.abc import Callable
 from typing import Any, Protocol
@@ -25,7 +25,7 @@ class TracedNode(Protocol):
 
 
 class TracedEntity(Protocol):
-    """Something with a callback, as far as the trace shows it."""
+    """An entity, as far as the trace shows it."""
 
     trace_id: int
     wait_shown: tuple[Reason, int, bool] | None
@@ -36,11 +36,11 @@ class TracedEntity(Protocol):
 
     @property
     def kind(self) -> EntityKind:
-        """What it is."""
+        """Its kind."""
 
     @property
     def name(self) -> str:
-        """The topic or service it is for; empty for none."""
+        """Its topic or service; empty for none."""
 
     @property
     def node(self) -> TracedNode:
@@ -60,26 +60,26 @@ class TracedEntity(Protocol):
 
     @property
     def interface_type(self) -> str:
-        """The type of the topic or service it is for; empty for none."""
+        """The type of its topic or service; empty for none."""
 
     @property
     def ready_since(self) -> int:
         """When it became ready."""
 
     def shown_callback(self) -> Callable[..., Any] | None:
-        """The function that a learner knows it by; None: it has none of its own."""
+        """The function that the trace names; None: it has none of its own."""
 
 
 class MessageContents(Protocol):
-    """Turns what messages hold into events."""
+    """Makes events from the contents of messages."""
 
     @property
     def wanted(self) -> bool:
-        """Whether somebody wants them now."""
+        """Whether the events are wanted now."""
 
     @property
     def keeps_messages(self) -> bool:
-        """Whether messages are looked at later, so that nobody may be handed them to change."""
+        """Whether messages are read later, so that a subscription must not get the same object."""
 
     def events(self, now: int, message: int, topic: str, data: Any, qos: Any) -> list[AnyEvent]:
-        """What goes on the trace besides the publication; ``qos`` is what its publisher offers."""
+        """The events besides the publication; ``qos`` is what the publisher offers."""

@@ -1,4 +1,4 @@
-"""Starts the probe in every Python process that finds this folder on its path, before its program."""
+"""Starts the probe before the program, in every Python process that has this folder on its path."""
 
 import os
 import sys
@@ -12,7 +12,7 @@ _HERE = Path(__file__).parent
 
 
 def _run_the_other() -> None:
-    """Run the ``sitecustomize`` that Python would have run, had this one not been in front of it."""
+    """Run the ``sitecustomize`` that this one hides, if there is one."""
     elsewhere = [folder for folder in sys.path if Path(folder or os.curdir).absolute() != _HERE]
     spec = PathFinder.find_spec("sitecustomize", elsewhere)
     if spec is not None and spec.loader is not None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
-from sim.probes.callbacks import callback_name
+from sim.probes.on_path.cbtui_probe.naming import callback_name
 from sim.ros.clocks.clock import Clock
 from sim.ros.context.context import NODE_ENDED
 from sim.ros.entities.client import Client

@@ -1,4 +1,4 @@
-"""Callbacks that tell when they start, fail, end, and leave and come back to their thread."""
+"""Wrappers of callbacks that record when they start, end, raise, are suspended and resumed."""
 
 from __future__ import annotations
 
@@ -19,53 +19,38 @@ if TYPE_CHECKING:
     from .recorder import Here, Recorder
 
 _SHIFT = 1_000_000
-"""Nanoseconds by which a timer's rhythm may seem shifted: asking for it takes time, too, and clocks drift."""
+"""The tolerance of a timer's phase in nanoseconds: reading it takes time, and clocks drift."""
 _WITH_INFO = inspect.Signature(
     [inspect.Parameter(name, inspect.Parameter.POSITIONAL_ONLY) for name in ("data", "info")]
 )
-"""By this rclpy sees that a subscription's callback wants to know about its messages, too."""
+"""The signature by which rclpy passes the message info to a subscription's callback."""
 
 
 _OTHERS = {"rclpy", "cbtui_probe", *sys.stdlib_module_names}
-"""Modules that are not the program's own."""
+"""Top-level modules that are not the program's own code."""
 
 
 def is_own(frame: FrameType) -> bool:
-    """Whether a frame runs the program's code: not rclpy's, this package's or Python's."""
+    """Whether a frame runs the program's own code, not rclpy's, the probe's or the standard library's."""
     root = str(frame.f_globals.get("__name__", "")).partition(".")[0]
     return root == "__main__" or root not in _OTHERS
 
 
-def written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int]:
-    """Name, file and first and last line of a callback; empty for none."""
-    if callback is None:
-        return "", "", 0, 0
-    while isinstance(callback, functools.partial):
-        callback = callback.func
-    callback = inspect.unwrap(callback)
-    name = str(getattr(callback, "__name__", type(callback).__name__))
-    code = getattr(callback, "__code__", None) or getattr(type(callback).__call__, "__code__", None)
-    if code is None:
-        return name, "", 0, 0
-    lines = [line for _, _, line in code.co_lines() if line is not None]
-    return name, code.co_filename, code.co_firstlineno, max(lines, default=code.co_firstlineno)
-
-
 class Calls:
-    """Tells of the calls of one entity's callback. ``recorder`` takes the events."""
+    """Records the calls of one entity's callback."""
 
     def __init__(self, recorder: Recorder, entity: WatchedEntity) -> None:
         self._recorder = recorder
         self._entity = entity
 
     def traced(self, callback: Callable[..., Any], start: Callable[..., None] | None = None) -> Any:
-        """Wrap a callback so that its calls are recorded; ``start`` gets its arguments as it starts."""
+        """Wrap a callback so that its calls are recorded; ``start`` is called with its arguments first."""
         return self._wrapped(callback, start or self.begin, None)
 
     def traced_with_info(self, callback: Callable[..., Any]) -> Any:
-        """The callback of a subscription, which has rclpy hand it what is known of a message, too.
+        """Wrap the callback of a subscription so that rclpy also passes the message info.
 
-        One that rclpy will refuse is left as it is.
+        A callback whose signature rclpy will reject is returned unchanged.
         """
         takes = next((number for number in (1, 2) if _takes(callback, number)), None)
         if takes is None:
@@ -75,7 +60,7 @@ class Calls:
         return traced
 
     def _wrapped(self, callback: Callable[..., Any], begin: Callable[..., None], takes: int | None) -> Any:
-        """Wrap a callback so that its calls are recorded; it gets so many of its arguments, None: all."""
+        """Wrap a callback so that its calls are recorded; it gets ``takes`` arguments, None: all."""
         local, enter, leave = self._recorder.local, self._enter, self._leave
         if inspect.iscoroutinefunction(callback):
 
@@ -114,27 +99,27 @@ class Calls:
         return functools.wraps(callback)(run)
 
     def _tell_of_own_fault(self, error: Exception) -> None:
-        """Say that the probe cannot tell that a callback starts, which runs all the same."""
+        """Report that the start of a callback could not be recorded; the callback runs nevertheless."""
         text = f"cbtui's probe could not tell of a callback's start: {error!r}"
         self._recorder.put("notice", now(), "WARN", text)
 
     def begin(self, here: Here, *args: Any) -> None:
-        """Tell that the callback starts; a client's with the number of the call."""
+        """Record the start; a client's callback has the number of the call as its first argument."""
         call = args[0] if self._entity.kind == "client" else 0
         self._recorder.put("callback_start", now(), self._entity.number, here.thread, call, 0, 0)
 
     def begin_service(self, here: Here, *_args: Any) -> None:
-        """Tell that the callback starts with the request that its thread has taken."""
+        """Record the start with the request that the calling thread has taken."""
         sent, here.sent = here.sent, 0
         self.begin_with(here, sent) if sent else self.begin(here)
 
     def begin_guard(self, here: Here, *_args: Any) -> None:
-        """Tell that a guard condition's callback starts; what triggers it from now on is another time."""
+        """Record the start of a guard condition's callback; a later trigger counts as a new one."""
         self._entity.due = 0
         self.begin(here)
 
     def begin_timer(self, here: Here, *_args: Any) -> None:
-        """Tell that a timer's callback starts, and how late."""
+        """Record the start of a timer's callback, and how late it is."""
         entity, start = self._entity, now()
         late = start - entity.due
         if 0 <= late < _SHIFT and late < entity.period:  # to ask rclpy costs more than all the rest
@@ -144,10 +129,10 @@ class Calls:
         self._recorder.put("callback_start", start, entity.number, here.thread, 0, late, 0)
 
     def _lateness(self, start: int) -> int:
-        """How long ago a timer was due that is called at ``start``, by the time left to its next call.
+        """How long ago a timer was due that is called at ``start``.
 
-        Periods that it missed shift its next call by as many, so that only the time tells at which it was to
-        be called; not if it was reset since, which shows by its coming in another rhythm.
+        The time to its next call gives that up to whole periods: missed periods shift the next call. The
+        moment at which it was due gives the rest, unless a reset has changed the timer's phase since.
         """
         entity = self._entity
         timer = entity.made()
@@ -162,27 +147,27 @@ class Calls:
         return late
 
     def _begin_message(self, here: Here, _message: Any, info: Any = None) -> None:
-        """Tell that the callback starts with a message; an executor made of C++ hands over no information."""
+        """Record the start with a message; the C++ executor passes no message info."""
         self.begin(here) if info is None else self.begin_with(here, info["source_timestamp"])
 
     def begin_with(self, here: Here, sent: int) -> None:
-        """Tell that the callback starts with a message sent at ``sent`` (nanoseconds since 1970)."""
+        """Record the start with a message sent at ``sent`` (nanoseconds since 1970)."""
         age = max(0, time.time_ns() - sent)
         self._recorder.put("taken", now(), self._entity.number, here.thread, sent, age)
 
     def suspend(self, outer: int) -> None:
-        """Tell that the callback leaves the calling thread, on which ``outer`` runs again."""
+        """Record that the callback is suspended; ``outer`` runs on the calling thread again."""
         self._leave(self._recorder.here, outer, "callback_suspend")
 
     def resume(self) -> int:
-        """Tell that it goes on on the calling thread; returns what ran there until now."""
+        """Record that the callback is resumed; returns the entity that ran on the thread before."""
         here = self._recorder.here
         outer = self._enter(here)
         self._recorder.put("callback_resume", now(), self._entity.number, here.thread)
         return outer
 
     def _enter(self, here: Here) -> int:
-        """Be what runs on the calling thread; returns what ran there until now."""
+        """Mark the callback as running; returns the entity that ran on the thread before."""
         entity = self._entity
         if entity.wait is not None:
             entity.waits_no_more(self._recorder)
@@ -199,7 +184,7 @@ class Calls:
         self._recorder.put(tag, now(), self._entity.number, here.thread)
 
     def _fail(self, error: BaseException) -> None:
-        """Tell of an exception that is raised again."""
+        """Record an exception of the callback, which is raised again."""
         recorder = self._recorder
         place, exception = raised_at(error), type(error).__name__
         recorder.put("callback_error", now(), self._entity.number, recorder.thread(), *place, exception)
@@ -218,9 +203,9 @@ def raised_at(error: BaseException) -> tuple[str, str, int]:
 
 
 class _Steps:
-    """Awaits a coroutine, and tells whenever it leaves its thread and goes on.
+    """Awaits a coroutine, and records each suspension and resumption.
 
-    ``outer`` is what runs on the thread around it.
+    ``outer`` is the entity that runs around it on the thread.
     """
 
     def __init__(self, calls: Calls, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
@@ -248,9 +233,9 @@ class _Steps:
 
 
 def _is_polled(coroutine: Any) -> bool:
-    """Whether a coroutine waits for a future that is not done: it is asked, and will not go on.
+    """Whether a coroutine is only polled: the future that it awaits is not done, so it cannot go on.
 
-    Jazzy up to 7.1.6 asks again and again.
+    rclpy up to 7.1.6 polls awaiting tasks.
     """
     while getattr(coroutine, "cr_await", None) is not None:
         coroutine = coroutine.cr_await
@@ -260,7 +245,7 @@ def _is_polled(coroutine: Any) -> bool:
 
 
 def _takes(callback: Callable[..., Any], arguments: int) -> bool:
-    """Whether a subscription's callback takes so many arguments, as rclpy finds out."""
+    """Whether a subscription's callback accepts so many arguments, by rclpy's own test."""
     try:
         inspect.signature(callback).bind(*[object()] * arguments)
     except TypeError:

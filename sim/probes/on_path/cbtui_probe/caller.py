@@ -23,7 +23,7 @@ _TO_APPEAR = 2.0
 
 
 class _Caller:
-    """Calls services; one client each."""
+    """Calls services, with one client each."""
 
     def __init__(self) -> None:
         self._node = rclpy.create_node("_cbtui", enable_rosout=False, start_parameter_services=False)
@@ -40,7 +40,7 @@ class _Caller:
             return
 
     def call(self, service_type: str, names: list[str], fields: dict[str, Any]) -> None:
-        """Make one call, and report it."""
+        """Make one call, and report it and its reply."""
         name = self._offered(service_type, names)
         package, _, class_name = service_type.split("/")
         service = getattr(importlib.import_module(f"{package}.srv"), class_name)
@@ -62,7 +62,7 @@ class _Caller:
             )
 
     def _offered(self, service_type: str, names: list[str]) -> str:
-        """The first of the names that is a service of that type, as far as it is known; else the first."""
+        """The first name that discovery knows as a service of that type, else the first name."""
         types = dict(self._node.get_service_names_and_types())
         return next((name for name in names if service_type in types.get(name, ())), names[0])
 
@@ -73,7 +73,7 @@ def _tell(*event: Any) -> None:
 
 
 def main() -> None:
-    """Carry out calls until standard input ends."""
+    """Make the calls that standard input asks for, until it ends."""
     rclpy.init()
     caller = _Caller()
     for line in sys.stdin:

@@ -1,4 +1,4 @@
-"""Service calls: sent, answered, and blocked for."""
+"""Hooks that record service calls: requests, replies, and threads that block in ``call()``."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ if TYPE_CHECKING:
 
 
 _LONGEST = 1000
-"""Characters of a request or a response that are told."""
+"""The most characters of a request or response that are recorded."""
 
 
 def _text_of(message: Any) -> str:
-    """A message as text, which must not fail the call that has it."""
+    """A message as text; a ``repr`` that raises must not fail the call."""
     try:
         return repr(message)[:_LONGEST]
     except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
@@ -28,7 +28,7 @@ def _text_of(message: Any) -> str:
 
 
 def watch_clients(recorder: Recorder, client_class: Any) -> None:
-    """Tell of the calls of all clients of this class that the program has made."""
+    """Record the calls of the program's own clients."""
     send, block = client_class.call_async, client_class.call
 
     @wraps(send)
@@ -76,9 +76,9 @@ def watch_clients(recorder: Recorder, client_class: Any) -> None:
 
 
 def watch_services(recorder: Recorder, service_class: Any, rclpy_implementation: Any) -> None:
-    """Tell of the replies of all services of this class that the program has made.
+    """Record the replies of the program's own services.
 
-    On the thread that takes a request it is known when that was sent.
+    The thread that takes a request also learns when that was sent.
     """
     take = rclpy_implementation.Service.service_take_request
 

@@ -1,4 +1,4 @@
-"""A console that follows this process: what it is told, and what it is too slow for."""
+"""The send buffer of a connected console: bounded, and never blocking."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 _UNSENT = 1 << 24
-"""Bytes that wait for a slow console; what comes beyond them is lost to it, and counted."""
+"""The most bytes buffered for a slow console; further events are dropped for it, and counted."""
 _BATCH = 500
-"""Events of one line at most."""
+"""The most events in one line."""
 
 _encode = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode
 
 
 class Console:
-    """One that follows, by its connection. For one thread; nothing blocks."""
+    """A connected console. Not thread-safe; nothing blocks."""
 
     def __init__(self, connection: socket.socket) -> None:
         self._connection = connection
@@ -29,25 +29,25 @@ class Console:
 
     @property
     def is_up_to_date(self) -> bool:
-        """Whether it has been sent all that it was told."""
+        """Whether the buffer is empty."""
         return not self._unsent
 
     def tell(self, told: bytes, count: int) -> None:
-        """Tell it of so many events, as lines."""
+        """Buffer the lines of so many events."""
         if len(self._unsent) + len(told) > _UNSENT:
             self._lost += count
         else:
             self._unsent += told
 
     def tell_lost(self, lost: int) -> None:
-        """Tell it how many events it will never get, those included that this process lost for everybody."""
+        """Report how many events were dropped, including the ``lost`` ones that no console gets."""
         lost += self._lost
         if lost > self._lost_told and len(self._unsent) < _UNSENT // 2:
             self._lost_told = lost
             self._unsent += lines([("lost", time.monotonic_ns(), lost)])
 
     def send(self) -> bool:
-        """Send what it takes now; returns whether it is still there."""
+        """Send what the socket accepts now; returns whether the console is still connected."""
         try:
             while self._unsent:
                 del self._unsent[: self._connection.send(self._unsent)]
@@ -59,11 +59,11 @@ class Console:
         return True
 
     def close(self) -> None:
-        """Leave it."""
+        """Close the connection."""
         self._connection.close()
 
 
 def lines(events: Sequence[tuple[Any, ...]]) -> bytes:
-    """Lines of JSON, each an array of events: one event at a time takes three times as long."""
+    """Encode events as lines of JSON, each an array: encoding single events takes three times as long."""
     batches = (events[start : start + _BATCH] for start in range(0, len(events), _BATCH))
     return b"".join(_encode(batch).encode() + b"\n" for batch in batches)

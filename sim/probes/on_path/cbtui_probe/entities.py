@@ -1,4 +1,4 @@
-"""What the probe knows of nodes, callback groups and entities, and how it comes to know them."""
+"""Hooks that record nodes, callback groups and entities as they are created and destroyed."""
 
 from __future__ import annotations
 
@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from rclpy.qos import QoSPolicyKind
 
-from .callbacks import Calls, is_own, written_at
+from .callbacks import Calls, is_own
+from .naming import written_at
 from .recorder import now
 from .unseen import UNSEEN, leave_out_probe
 
@@ -28,28 +29,29 @@ if TYPE_CHECKING:
 _INCOMPATIBLE = "RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS"
 _ADVICE = "return the value from a pre-set callback, or refuse what was asked for"
 STATE = "_cbtui"
-"""The attribute in which an entity, node, publisher or group of rclpy's has what the probe knows of it."""
+"""The attribute of rclpy's entities, nodes, publishers and groups that holds the probe's own state."""
 
 
 class WatchedEntity:
-    """What the probe knows of something with a callback."""
+    """The probe's state of one entity: its id, and whether it waits."""
 
     def __init__(self, kind: str) -> None:
         self.kind = kind
         self.number = 0
         self.due = 0
-        """When a timer is to be called next, or a guard condition was triggered, in nanoseconds of the
-        monotonic clock; 0: not known, or not triggered."""
+        """When a timer is due next, or when a guard condition was triggered, in nanoseconds of the monotonic
+        clock; 0: not known, or not triggered."""
         self.period = 0
-        """A timer's, in nanoseconds: to ask rclpy costs more than to remember."""
+        """A timer's period in nanoseconds, kept since asking rclpy costs more."""
         self.wait: tuple[str, int, bool] | None = None
-        """Why it waits, by whom it is held up, and whether no worker was free; None: it does not."""
+        """The reason for which it waits, the entity that holds it up, and whether no worker is free; None: it
+        does not wait."""
         self._since = 0
         self.made: Callable[[], Any] = _nothing
-        """rclpy's object, None before it is made and once it is gone."""
+        """Returns rclpy's object; None before its creation and after its destruction."""
 
     def waits(self, recorder: Recorder, since: int, wait: tuple[str, int, bool]) -> None:
-        """Tell why it does not run, if that is new; ``since`` is when it became ready, as far as is known."""
+        """Record why it does not run, if that is new; ``since`` is when it became ready, as far as known."""
         if self.wait is None:
             self._since = since
             recorder.put("ready", now(), self.number, 1, 0)
@@ -58,7 +60,7 @@ class WatchedEntity:
             recorder.put("wait_start", now(), self.number, self._since, *wait)
 
     def waits_no_more(self, recorder: Recorder) -> None:
-        """Tell that it got its thread, or that what it waited for is gone."""
+        """Record that it no longer waits: it runs, or what it was ready for is gone."""
         if self.wait is not None:
             self.wait = None
             recorder.put("wait_end", now(), self.number)
@@ -69,7 +71,7 @@ def _nothing() -> None:
 
 
 def _type_of(made: Any) -> str:
-    """The type of a topic or service, such as ``std_srvs/srv/SetBool``; "" for what is for neither."""
+    """The type of an entity's topic or service, such as ``std_srvs/srv/SetBool``; "" if it has neither."""
     made_for = getattr(made, "srv_type", None) or getattr(made, "msg_type", None)
     return "" if made_for is None else "/".join([*made_for.__module__.split(".")[:2], made_for.__name__])
 
@@ -84,19 +86,19 @@ def _overruled(name: str, frame: FrameType | None) -> str:
 
 
 def state_of(thing: object) -> Any:
-    """What the probe knows of one of rclpy's objects; None: nothing."""
+    """The probe's state of one of rclpy's objects; None if it has none."""
     return getattr(thing, STATE, None)
 
 
 class _Execution:
-    """Stands for the execute callback of an action server."""
+    """A stand-in for the execute callback of an action server, which is no entity of rclpy's."""
 
     def __init__(self) -> None:
         self.callback_group = ReentrantCallbackGroup()
 
 
 class Entities:
-    """Puts itself into the ways in which nodes make and destroy things. ``nodes`` are those there are."""
+    """Hooks the methods by which nodes create and destroy entities. ``nodes`` has all nodes."""
 
     def __init__(self, recorder: Recorder, tuning: Tuning) -> None:
         self._recorder = recorder
@@ -104,7 +106,7 @@ class Entities:
         self.nodes: weakref.WeakSet[Any] = weakref.WeakSet()
 
     def watch(self, node_class: Any) -> None:
-        """Come to know whatever nodes of this class make."""
+        """Record the nodes of this class, and what they create."""
         make_node = node_class.__init__
         entities = self
 
@@ -124,7 +126,7 @@ class Entities:
         self._watch_parameters(node_class)
 
     def _watch_parameters(self, node_class: Any) -> None:
-        """Tell once of each parameter that an on-set callback sets while it is being set."""
+        """Report once each parameter that an on-set callback sets while it is being set."""
         set_all = node_class._set_parameters_atomically_common
         recorder, here = self._recorder, threading.local()
         told: set[tuple[int, str]] = set()
@@ -150,7 +152,7 @@ class Entities:
         node_class._set_parameters_atomically_common = set_known
 
     def watch_rhythms(self, timer_class: Any) -> None:
-        """Remember periods that the program changes, and forget when a timer was due that it resets."""
+        """Follow changes of timers' periods and resets, which change when a timer is due."""
         period, reset = timer_class.timer_period_ns, timer_class.reset
 
         def change(timer: Any, nanoseconds: int) -> None:
@@ -170,7 +172,7 @@ class Entities:
         timer_class.reset = reset_known
 
     def node_made(self, node: Any) -> int:
-        """Know a node; returns its id."""
+        """Record a node, unless that is done; returns its id."""
         if state_of(node) is None:
             number = self._recorder.new_id()
             setattr(node, STATE, number)
@@ -253,7 +255,7 @@ class Entities:
         entity.made = weakref.ref(made)
 
     def _watch_matching(self, subscription: Any, number: int, place: tuple[str, int]) -> None:
-        """Tell of publishers whose quality of service does not match a subscription's, made at ``place``."""
+        """Record publishers whose QoS is incompatible with that of a subscription created at ``place``."""
         topic = subscription.topic_name
         for handler in subscription.event_handlers:
             if handler.event_type.name == _INCOMPATIBLE:
@@ -267,7 +269,7 @@ class Entities:
                 handler.callback = tell
 
     def _publisher_of(self, topic: str) -> tuple[int, str, tuple[str, int]]:
-        """What is known of the first publisher of a topic here; without one it is another process's."""
+        """The state of the first publisher of a topic in this process; empty if another process has it."""
         known = (state_of(publisher) for node in list(self.nodes) for publisher in node.publishers)
         return next((each for each in known if each is not None and each[1] == topic), (0, "", ("", 0)))
 
@@ -300,7 +302,7 @@ class Entities:
         setattr(node_class, f"destroy_{kind}", destroy_known)
 
     def _watch_rates(self, node_class: Any) -> None:
-        """Know the timers of rates, which rclpy makes and calls: what sleeps by a rate waits for them."""
+        """Record the timers of rates, which rclpy itself creates: ``Rate.sleep`` waits for them."""
         make = node_class.create_rate
 
         @wraps(make)
@@ -328,7 +330,7 @@ class Entities:
         node_class.create_publisher = create_publisher
 
     def watch_publishing(self, publisher_class: Any) -> None:
-        """Tell of whatever publishers of this class publish."""
+        """Record the messages of the program's own publishers."""
         publish, recorder = publisher_class.publish, self._recorder
 
         @wraps(publish)
@@ -349,7 +351,7 @@ class Entities:
         publisher_class.publish = publish_known
 
     def _watch_waitables(self, node_class: Any) -> None:
-        """Actions' servers and clients, and waitables of the program's own."""
+        """Record action servers and clients, and the program's own waitables."""
         add = node_class.add_waitable
 
         @wraps(add)
@@ -370,9 +372,9 @@ class Entities:
         node_class.add_waitable = add_waitable
 
     def _know_execution(self, node: Any, server: Any, name: str) -> None:
-        """Know the execute callback of an action server, which rclpy runs as a task, in no group.
+        """Record the execute callback of an action server, which rclpy runs as a task, in no group.
 
-        On the trace it is in a reentrant group of its own, which lets everything in.
+        On the trace it is in a reentrant group of its own.
         """
         entity, callback = WatchedEntity("waitable"), server._execute_callback
         server._execute_callback = Calls(self._recorder, entity).traced(callback)
@@ -380,7 +382,7 @@ class Entities:
 
 
 def _watch_triggering(guard: Any, entity: WatchedEntity) -> None:
-    """Remember when a guard condition was triggered: asking it by a wait set would reset it."""
+    """Keep when a guard condition was triggered: a wait set of the probe's own would reset it."""
     trigger = guard.trigger
 
     @wraps(trigger)
@@ -405,6 +407,6 @@ def _name_of(kind: str, made: Any) -> str:
 
 
 def _called(node: Any, kind: str, arguments: dict[str, Any]) -> str:
-    """What a change calls something by: its callback, or its service where it has none."""
+    """The name that a change uses: of the callback, or of a client's service."""
     name = written_at(arguments.get("callback"))[0]
     return str(node.resolve_service_name(arguments["srv_name"])) if kind == "client" else name

@@ -1,4 +1,4 @@
-"""What the probe knows of executors: their threads, whether they wait, and whether they are spun."""
+"""Hooks that follow executors: their workers, what these run, and whether anybody spins them."""
 
 from __future__ import annotations
 
@@ -21,32 +21,32 @@ if TYPE_CHECKING:
     from .turns import Turns
 
 _IDLE = 200_000_000
-"""Nanoseconds without a sign of being spun after which nobody spins an executor."""
+"""Nanoseconds without activity after which an executor counts as not spun."""
 
 
 class Spinner:
-    """What the probe knows of one executor: its id, and how many callbacks it can run at once."""
+    """The state of one executor: its id, how many callbacks it can run at once, and what it runs."""
 
     def __init__(self, number: int, threads: int, *, asks_groups: bool) -> None:
         self.number = number
         self.threads = threads
         self.asks_groups = asks_groups
         self.waits = False
-        """Whether a thread waits in it for something to become ready."""
+        """Whether a thread waits in it for ready callbacks."""
         self.busy: dict[int, int] = {}
-        """The threads that run its callbacks, and the entities of these, by their ids on the trace."""
+        """The entities whose callbacks run, by thread; both by their ids on the trace."""
         self.spins = 0
-        """How many calls that spin it until something happens have not returned."""
+        """How many spinning calls have not returned."""
         self.spun_at = -_IDLE
         """When it was last spun."""
 
     def is_spun(self) -> bool:
-        """Whether such a call goes on, it waits or runs a callback, or did just now."""
+        """Whether it is being spun, or was until just now."""
         return self.spins > 0 or self.waits or bool(self.busy) or now() - self.spun_at < _IDLE
 
 
 class Executors:
-    """Puts itself into the ways in which executors are made and wait."""
+    """Hooks the creation and the waiting of executors."""
 
     def __init__(self, recorder: Recorder, tuning: Tuning, turns: Turns) -> None:
         self._recorder = recorder
@@ -55,16 +55,16 @@ class Executors:
         self._spinners: Any = weakref.WeakKeyDictionary()
 
     def spinner_of(self, executor: Any) -> Spinner | None:
-        """What is known of an executor."""
+        """The state of an executor; None if it is not known."""
         known: Spinner | None = None if executor is None else self._spinners.get(executor)
         return known
 
     def all(self) -> list[Spinner]:
-        """What is known of each executor there is. Thread-safe, as its whole contents are copied at once."""
+        """The states of all executors. Thread-safe: the list is copied at once."""
         return list(self._spinners.data.values())
 
     def watch(self, rclpy: Any, rclpy_implementation: Any) -> None:
-        """Come to know the executors of rclpy, and those made of C++."""
+        """Record rclpy's executors, those in C++ included."""
         executors = rclpy.executors
         base, pool_class = executors.Executor, executors.MultiThreadedExecutor
         make, make_pool, wait = base.__init__, pool_class.__init__, base.wait_for_ready_callbacks
@@ -133,10 +133,7 @@ class Executors:
                 self._watch_spinning(rclpy_implementation.EventsExecutor, name, _itself)
 
     def _watch_spinning(self, owner: Any, name: str, executor_of: Callable[..., Any]) -> None:
-        """Know that an executor is spun while a function that spins it goes on.
-
-        Of one made of C++ no more can be known.
-        """
+        """Note that an executor is spun while a spinning function runs; a C++ executor shows no more."""
         spin = getattr(owner, name)
 
         @wraps(spin)
@@ -180,9 +177,9 @@ class Executors:
 
 
 def _call_into_rclpy() -> tuple[str, str, int, bool]:
-    """Which function of rclpy's the program called on this thread, from which file and line.
+    """The function of rclpy's that the program called on this thread, the file and line of the call.
 
-    Last, whether it got no ``timeout_sec``.
+    The last item is whether the call has no timeout.
     """
     function, timeout, frame = "", None, sys._getframe(1)
     while not is_own(frame):

@@ -1,4 +1,4 @@
-"""Puts the parts of the probe into rclpy, once it is imported."""
+"""Installs the probe's hooks in rclpy."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _SEVERITIES = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
 
 
 def install(folder: str) -> None:
-    """Watch everything that this process does with rclpy, and tell it at a socket in ``folder``.
+    """Record what this process does with rclpy, and serve that at a socket in ``folder``.
 
     Raises:
-        Exception: this rclpy is made in another way than those that the probe knows.
+        Exception: this version of rclpy lacks something that the probe hooks.
     """
     import rclpy.client
     import rclpy.executors

@@ -1,4 +1,4 @@
-"""What a console that comes late is told: what began long ago and goes on, and the latest events."""
+"""The state and the latest events, which a console gets that connects later."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _CALLS = 1000
 
 
 class Latest:
-    """The latest events, as lines, and before them the state at their beginning. For one thread."""
+    """The latest events as lines, preceded by the state at their beginning. Not thread-safe."""
 
     def __init__(self) -> None:
         self._count = 0
@@ -28,7 +28,7 @@ class Latest:
         self._ongoing = _Ongoing()
 
     def add(self, events: list[Event], told: bytes) -> None:
-        """Keep events, whose lines are ``told``, and give up the oldest ones."""
+        """Add events, of which ``told`` are the lines, and drop the oldest."""
         wanted = self._ongoing.followed
         self._batches.append(([event for event in events if event[0] in wanted], len(events), told))
         self._count += len(events)
@@ -39,13 +39,13 @@ class Latest:
                 self._ongoing.follow(event)
 
     def whole(self) -> tuple[bytes, int]:
-        """The lines of all of it, and the number of their events."""
+        """The lines of state and events, and how many events these are."""
         ongoing = self._ongoing.events()
         return lines(ongoing) + b"".join(batch[2] for batch in self._batches), len(ongoing) + self._count
 
 
 class _Ongoing:
-    """Follows events, and returns those that began something which has not ended."""
+    """The state after the dropped events: those that began something which has not ended."""
 
     def __init__(self) -> None:
         self._lasting: dict[Any, Event] = {}

@@ -1,4 +1,4 @@
-"""At which line of the program's own code each running callback is, and the main thread if it runs none."""
+"""Samples the line of the program's own code at which each running callback and the main thread are."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ _LIBRARIES = (
     *(sysconfig.get_path(name) for name in ("purelib", "platlib")),
     *("/usr/lib/python3/", "/opt/ros/"),
 )
-"""Folders of packages that are nobody's own; a workspace's packages lie elsewhere."""
+"""Folders of installed packages; those of a workspace are elsewhere, and count as the program's own."""
 _CALLBACKS = "cbtui_probe.callbacks"
 _DEEPEST = 20
-"""Lines of one stack that are told: the innermost."""
+"""The most lines of one stack that are reported, the innermost ones."""
 _UNKNOWN = (0, 0, 0, 0)
 _EVERY = 250_000_000
 """Nanoseconds between two looks at the program's main thread."""
@@ -44,7 +44,7 @@ class PositionSampler:
         self._main_lines: list[Any] = []
 
     def look(self) -> None:
-        """Look once."""
+        """Sample once."""
         self._look_at_callbacks()
         if now() >= self._main_due:
             self._main_due = now() + _EVERY
@@ -86,7 +86,7 @@ def _stack(top: FrameType | None, until: str) -> list[FrameType]:
 
 
 def _position(stack: list[FrameType]) -> tuple[Any, ...] | None:
-    """The program's lines, the innermost last, the instruction there, and the function that it called."""
+    """The program's own lines, the innermost last; the instruction there, and the function that it called."""
     own = [
         place
         for place, frame in enumerate(stack)

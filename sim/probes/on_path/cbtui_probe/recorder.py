@@ -1,4 +1,4 @@
-"""Keeps what happens in this process as events until they are sent: bounded, and never blocking."""
+"""Buffers events until they are sent: bounded, and never blocking."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from itertools import count
 from typing import Any
 
 _BOUND = 200_000
-"""Events that are kept; the oldest are given up, and counted."""
+"""The most events in the buffer; the oldest are dropped, and counted."""
 _ROOM = 30
-"""Bits for the ids of one process, so that those of several processes differ."""
+"""The bits of an id below the process id, which makes ids unique on the machine."""
 
 now = time.monotonic_ns
 
 
 class Here:
-    """What runs on one thread."""
+    """The state of one thread."""
 
     __slots__ = ("blocks", "entity", "executor", "sent", "spinner", "thread")
 
@@ -27,13 +27,13 @@ class Here:
         self.entity = 0
         """The entity whose callback runs, 0 for none."""
         self.executor = 0
-        """The executor whose worker the thread is, 0 for a thread of the program's own."""
+        """The executor whose worker the thread is, 0 for one of the program's own threads."""
         self.spinner: Any = None
-        """What is known of the executor that the thread spins or works for."""
+        """The state of the executor that the thread spins or works for."""
         self.sent = 0
-        """When the request was sent that the thread has taken, in nanoseconds since 1970; 0: not known."""
+        """When the request that the thread has taken was sent, in nanoseconds since 1970; 0: not known."""
         self.blocks = 0
-        """The service call that the thread waits for; -1: the one that it is about to make, 0: none."""
+        """The service call for whose reply the thread blocks; -1: ``call()`` has begun, 0: none."""
 
 
 class _Local(threading.local):
@@ -42,7 +42,7 @@ class _Local(threading.local):
 
 
 class Recorder:
-    """Gives out ids and takes events, as arrays of a kind's tag and its fields. Thread-safe."""
+    """Gives out ids, and buffers events: tuples of a tag and the fields of that kind. Thread-safe."""
 
     def __init__(self) -> None:
         self.local = _Local()
@@ -54,28 +54,28 @@ class Recorder:
 
     @property
     def here(self) -> Here:
-        """What runs on the calling thread; code that cannot afford a call reads ``local``."""
+        """The state of the calling thread; hot paths read ``local`` instead."""
         return self.local.here
 
     def new_id(self) -> int:
-        """An id that nothing else has."""
+        """A new id, unique on the machine."""
         return next(self._ids)
 
     def put(self, *event: Any) -> None:
-        """Take an event: its tag, its time in nanoseconds of the monotonic clock, and its other fields."""
+        """Buffer an event: its tag, its time in nanoseconds of the monotonic clock, and its other fields."""
         if len(self._events) == _BOUND:
             self.lost += 1
         self._events.append(event)
 
     def take(self) -> list[tuple[Any, ...]]:
-        """Take all events out, in order."""
+        """Remove and return all buffered events, in order."""
         events = []
         while self._events:
             events.append(self._events.popleft())
         return events
 
     def thread(self) -> int:
-        """The id of the calling thread, which appears when it is first asked for."""
+        """The id of the calling thread, which is recorded at the first use."""
         here = self.local.here
         if here.thread == 0:
             here.thread = self.new_id()

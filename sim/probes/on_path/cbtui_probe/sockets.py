@@ -1,4 +1,4 @@
-"""The sockets at which consoles find this process, and the thread that looks and sends."""
+"""The server thread of the probe: samples, and sends events to the consoles that connect."""
 
 from __future__ import annotations
 
@@ -27,23 +27,23 @@ if TYPE_CHECKING:
     from .turns import Turns
 
 _PERIOD = 0.01
-"""Seconds between two looks, at least."""
+"""The shortest time between two samples, in seconds."""
 _LONGEST_PERIOD = 0.1
 _WAITING_SHARE = 0.1
-"""The share of the time that the thread waits for the interpreter's lock, at most: meanwhile each call into
-rclpy that lets go of the lock is slowed."""
+"""The largest share of the time that the thread may wait for the GIL: a waiting thread slows each call into
+rclpy that releases it."""
 _LOOKING_SHARE = 0.02
-"""The share of one core that looking takes, at most, as far as the longest period allows."""
+"""The largest share of one core for sampling, as far as the longest period allows."""
 _CONSOLES = 4
-"""How many follow at most, and how many may be about to."""
+"""The most consoles that are connected, and the most connections that have not yet sent a request."""
 _LONGEST_WORD = 200
-"""Bytes of what a visitor says."""
+"""The most bytes of a request."""
 _FAREWELL = 0.5
-"""Seconds for which the process's end waits for consoles to take the last events."""
+"""The longest time for which the end of the process waits until the last events are sent, in seconds."""
 
 
 class _Visitor:
-    """Who came, and has not said yet what it wants. One with a ``token`` to name is told nothing before."""
+    """A connection that has not sent its request yet; with a ``token`` it must send that first."""
 
     def __init__(self, connection: socket.socket, token: str) -> None:
         self.connection = connection
@@ -53,11 +53,11 @@ class _Visitor:
 
     @property
     def is_trusted(self) -> bool:
-        """Whether it may know which process this is."""
+        """Whether it may get the description of the process."""
         return not self._token
 
     def listen(self) -> bytes | None:
-        """What it wants, once it has said so; empty if it is to be turned away."""
+        """The request, once it has arrived; empty if the connection is to be refused, None: not yet."""
         with suppress(BlockingIOError):
             said = self.connection.recv(_LONGEST_WORD)
             self._said += said
@@ -73,9 +73,9 @@ class _Visitor:
 
 
 class Server:
-    """Sends the events of ``recorder`` to consoles, and has ``look`` called in between.
+    """Sends the events of ``recorder`` to consoles, and calls ``look`` to sample in between.
 
-    The thread is a daemon, and nothing it does can hold up or end the program.
+    Its thread is a daemon; nothing that it does blocks or ends the program.
     """
 
     def __init__(self, recorder: Recorder, look: Callable[[], None], turns: Turns) -> None:
@@ -91,7 +91,7 @@ class Server:
         self._thread = threading.Thread(target=self._serve, name="cbtui-probe", daemon=True)
 
     def start(self, folder: str) -> None:
-        """Listen in ``folder``, as ``<process id>.sock``, and on the port that the environment names."""
+        """Listen at ``<process id>.sock`` in ``folder``, and on the port that the environment names."""
         self._path = Path(folder) / f"{os.getpid()}.sock"
         deaf = self._path.with_suffix(".new")  # a socket that refuses is taken for a dead process's
         deaf.unlink(missing_ok=True)
@@ -110,7 +110,7 @@ class Server:
         self._thread.start()
 
     def _listen_on_loopback(self, first: int) -> None:
-        """Listen on the first port that is free: other processes of the same command have theirs."""
+        """Listen on the first free port: other processes of the same command use the others."""
         for port in range(first, first + PORTS):
             listener = socket.socket()
             try:
@@ -145,7 +145,7 @@ class Server:
             self._send()
 
     def _goes_on_after(self, error: Exception) -> bool:
-        """Whether to look again: rclpy may just have been shut down, which shows as an error of any kind."""
+        """Whether to go on sampling: after rclpy's shutdown an error of any kind is expected."""
         import rclpy
 
         if rclpy.ok():
@@ -155,7 +155,7 @@ class Server:
         return True
 
     def _let_in(self, listener: socket.socket) -> None:
-        """Take who comes, if it is the same user; through a port, if it names the token."""
+        """Accept a connection of the same user; on a port, of whoever sends the token."""
         connection, _ = listener.accept()
         is_local = listener.family == socket.AF_UNIX
         if len(self._visitors) >= _CONSOLES or (is_local and _user_of(connection) not in (0, os.getuid())):
@@ -182,7 +182,7 @@ class Server:
                 visitor.connection.close()
 
     def _follow(self, connection: socket.socket) -> None:
-        """Tell a console what is there, what happened lately, and from now on all that happens."""
+        """Send a console the state, the latest events, and from now on all events."""
         console = Console(connection)
         console.tell(*self._latest.whole())
         self._consoles.append(console)
@@ -211,7 +211,7 @@ class Server:
                 self._consoles.remove(console)
 
     def close(self) -> None:
-        """Send the rest and the farewell, and stop listening; a child made by fork sends nothing."""
+        """Send the last events and stop listening; a forked child sends nothing."""
         if os.getpid() != self._pid:
             return
         self._ends.set()

@@ -1,4 +1,4 @@
-"""Puts the probe into rclpy as soon as the program imports it."""
+"""Installs the probe as soon as the program imports rclpy."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 
 def watch_imports() -> None:
-    """Have rclpy probed when it is imported; nothing without the environment variable that asks for it."""
+    """Have the import of rclpy install the probe, if the environment asks for it."""
     if os.environ.get(FOLDER):
         sys.meta_path.insert(0, _RclpyFinder())
 
 
 class _RclpyFinder(MetaPathFinder):
-    """Finds rclpy where it is, once, and has it probed when it has been loaded."""
+    """Finds rclpy once, and makes its loader install the probe."""
 
     def find_spec(
         self, fullname: str, path: Sequence[str] | None, target: ModuleType | None = None
@@ -39,7 +39,7 @@ class _RclpyFinder(MetaPathFinder):
 
 
 def _probe_when_loaded(loader: Any) -> None:
-    """Have a loader put the probe into the module that it loads."""
+    """Make a loader install the probe after it has loaded rclpy."""
     load = loader.exec_module
 
     def load_and_install(module: ModuleType) -> None:

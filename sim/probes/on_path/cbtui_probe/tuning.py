@@ -1,4 +1,4 @@
-"""What a person changed about a program: callback groups, timers' periods, and executors' threads."""
+"""Applies the set-up's changes to a program: callback groups, timers' periods, executors' threads."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ class Tuning:
 
     @property
     def has_changes(self) -> bool:
-        """Whether anything that a node makes is to be changed."""
+        """Whether there are changes to what nodes create."""
         return bool(self._groups or self._periods)
 
     def change(self, node: Any, kind: str, name: str, arguments: dict[str, Any]) -> None:
-        """Change the arguments with which a node makes something whose callback has that name."""
+        """Change the arguments with which a node creates an entity whose callback has that name."""
         full = node.get_fully_qualified_name()
         wish = self._groups.get((full, name), self._groups.get(("", name)))
         if wish is not None:
@@ -45,7 +45,7 @@ class Tuning:
             arguments["timer_period_sec"] = period / 1e9
 
     def tell_of_single_thread(self) -> None:
-        """Tell that the executor that the program makes cannot have another number of threads."""
+        """Report that the program's SingleThreadedExecutor cannot have another number of threads."""
         if self.threads not in (None, 1):
             text = (
                 f"the program's SingleThreadedExecutor cannot have {self.threads} threads on real ROS 2: "

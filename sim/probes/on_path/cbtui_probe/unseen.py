@@ -1,4 +1,4 @@
-"""Keeps the probe out of the tracebacks that a program prints or logs."""
+"""Removes the probe's frames from the tracebacks that a program prints or logs."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ _HERE = str(Path(__file__).parent)
 
 
 def leave_out_probe(error: BaseException) -> None:
-    """Take the probe's frames out of an exception's traceback, which is then raised again.
+    """Remove the probe's frames from the traceback of an exception that is raised again.
 
-    Python 3.10 keeps the frame that does so.
+    On Python 3.10 the frame that raises it stays.
     """
     kept, trace = [], error.__traceback__
     while trace is not None:
@@ -25,7 +25,7 @@ def leave_out_probe(error: BaseException) -> None:
 
 
 class _Unseen:
-    """Leaves the probe out of what is raised within: for what is not called often."""
+    """A context that removes the probe's frames from exceptions; hot paths call the function instead."""
 
     def __enter__(self) -> None:
         return None

@@ -1,8 +1,8 @@
-"""Finds out what is ready but waits, while it waits, and why.
+"""Finds callbacks that are ready but wait, while they wait, and why.
 
 rclpy leaves the entities of a busy callback group out of its wait set, so its executor does not know that
-they are ready. A second wait set can tell: nothing is taken with it, and nothing is disturbed. rcl forbids
-two waits at one time that share an entity, so it gets only those for which no executor waits now.
+they are ready. The probe uses a second wait set, which takes nothing and disturbs nothing. rcl forbids that
+two concurrent waits share an entity, so the second one has only entities on which no executor waits now.
 """
 
 from __future__ import annotations
@@ -22,13 +22,13 @@ GROUP_HELD, NO_FREE_WORKER, NOBODY_SPINS = "group held", "no free worker", "nobo
 EVENT_QUEUE = "behind others in the event queue"
 
 _KINDS = ("subscription", "client", "service")
-"""The kinds that a wait set of the probe's own finds ready. A timer itself says whether it is due, and guard
-conditions are watched as they are triggered. An action's waitable remembers its place in the latest wait set;
-a second one would confuse its executor, so it counts as waiting from being taken out until it runs."""
+"""The kinds that the second wait set examines. A timer knows whether it is due, and triggers of guard
+conditions are recorded. An action's waitable keeps its index in the latest wait set, so a second one would
+confuse its executor: it counts as waiting from when it is taken until it runs."""
 
 
 class Waits:
-    """Looks for callbacks that wait. For one thread."""
+    """Looks for callbacks that wait. Not thread-safe."""
 
     def __init__(
         self, recorder: Recorder, entities: Entities, executors: Executors, rclpy_implementation: Any
@@ -40,7 +40,7 @@ class Waits:
         self._waiting: set[WatchedEntity] = set()
 
     def look(self) -> None:
-        """Tell of all callbacks that wait now, and of those that wait no longer without having run."""
+        """Record all callbacks that wait now, and those that no longer wait without having run."""
         waiting = set()
         for node in list(self._entities.nodes):
             if node.context.ok():
@@ -82,7 +82,7 @@ class Waits:
         return set(found)
 
     def _ready_of(self, node: Any, unsure: list[tuple[str, Any, WatchedEntity]]) -> list[WatchedEntity]:
-        """Those for which something has arrived."""
+        """The entities for which something has arrived."""
         if not unsure:
             return []
         with ExitStack() as held:
@@ -113,7 +113,7 @@ class Waits:
 
 
 def _reason(made: Any, spinner: Spinner | None) -> tuple[str, int, bool] | None:
-    """Why an entity would have to wait: the reason, who holds up, and whether no worker is free."""
+    """Why an entity would wait if it were ready: the reason, the holder, and whether no worker is free."""
     busy = [] if spinner is None else list(spinner.busy.values())
     full = spinner is not None and len(busy) >= spinner.threads
     if not made.callback_group.can_execute(made):

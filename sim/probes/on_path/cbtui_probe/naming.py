@@ -1,30 +1,32 @@
-"""Under which name a callback is on the trace, and where it is written."""
+"""The name of a callback on the trace, and the lines at which it is written."""
 
+from __future__ import annotations
+
+import functools
 import inspect
-from collections.abc import Callable
-from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def callback_name(callback: Callable[..., Any]) -> str:
-    """The name under which a callback is on the trace."""
+    """The name of a callback on the trace: of the function within partials and decorators."""
     inner = _innermost(callback)
     return str(getattr(inner, "__name__", type(inner).__name__))
 
 
-def _innermost(callback: Callable[..., Any]) -> Callable[..., Any]:
-    while isinstance(callback, partial):
+def _innermost(callback: Any) -> Any:
+    while isinstance(callback, functools.partial):
         callback = callback.func
-    unwrapped: Callable[..., Any] = inspect.unwrap(callback)
-    return unwrapped
+    return inspect.unwrap(callback)
 
 
 def written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int]:
-    """Name, file and first and last line of a callback; empty for one without source of its own."""
+    """The name, file, first and last line of a callback; file and lines are empty without source."""
     if callback is None:
         return "", "", 0, 0
-    inner = _innermost(callback)
-    name = callback_name(callback)
+    inner, name = _innermost(callback), callback_name(callback)
     code = getattr(inner, "__code__", None) or getattr(type(inner).__call__, "__code__", None)
     if code is None:
         return name, "", 0, 0
