@@ -57,7 +57,7 @@ class _Queue:
         return not self.heard or sending.sender in self.heard
 
     def hears(self, sender: int) -> None:
-        """Note that a message of a sender was taken; before the first one the queue's senders are unknown."""
+        """Note that a message of a sender was taken; until the first one all senders count as connected."""
         if not self.heard:
             others = {each.number for each in self.untaken if each.sender != sender}
             self.told = [number for number in self.told if number not in others]
@@ -75,7 +75,7 @@ class Arrivals:
         self._names: dict[int, str] = {}
 
     def appeared(self, entity: EntityAppeared) -> None:
-        """An entity was made."""
+        """Add an entity."""
         self._names[entity.entity] = entity.name
         queue = _Queue(entity.entity, entity.kind, max(1, entity.depth))
         self._queues[entity.entity] = queue
@@ -83,14 +83,14 @@ class Arrivals:
             self._readers[entity.name].append(queue)
 
     def gone(self, entity: int) -> None:
-        """An entity was destroyed."""
+        """Remove an entity."""
         queue = self._queues.pop(entity, None)
         readers = self._readers[self._names.pop(entity, "")]
         if queue in readers:
             readers.remove(queue)
 
     def sent(self, t: int, name: str, sending: SentMessage) -> Iterator[AnyEvent]:
-        """Something was sent to a topic or service."""
+        """Add a message or request to the queues of its topic or service."""
         for queue in self._readers[name]:
             if queue.was_taken(sending):
                 continue
@@ -99,14 +99,14 @@ class Arrivals:
                 yield from self._arrived(t, queue, sending.number)
 
     def called(self, service: str, call: int) -> None:
-        """A call was made."""
+        """Add a service call."""
         pending = self._pending[service]
         pending[call] = None
         if len(pending) > _REMEMBERED:
             del pending[next(iter(pending))]
 
     def replied(self, entity: int, sent: int) -> tuple[str, int]:
-        """A service answered the request that was sent at ``sent``; returns its name, and the call's number.
+        """Note the reply to the request sent at ``sent``; returns the service's name and the call's number.
 
         The number is 0 if the caller is not watched.
         """
@@ -114,11 +114,11 @@ class Arrivals:
         return self._names.get(entity, ""), 0 if queue is None else queue.handled.pop(sent, 0)
 
     def reply_arrived(self, service: str, call: int) -> None:
-        """The reply of a call was taken."""
+        """Note that the client has taken the reply of a call."""
         self._pending[service].pop(call, None)
 
     def ready(self, t: int, entity: int) -> Iterator[AnyEvent]:
-        """Something is in the queue of an entity that waits."""
+        """Note that an entity waits, and yield what is in its queue."""
         queue = self._queues.get(entity)
         if queue is None or queue.kind not in _QUEUED:
             yield EntityReady(t, entity, 0, 0)
@@ -135,7 +135,7 @@ class Arrivals:
             yield EntityReady(t, entity, 1, 0)
 
     def waits_no_more(self, entity: int) -> None:
-        """An entity got its thread, or its queue is empty."""
+        """Note that an entity no longer waits."""
         if entity in self._queues:
             self._queues[entity].waits = False
 
@@ -165,7 +165,7 @@ class Arrivals:
         return 0, len(queue.told), []
 
     def reply_taken(self, entity: int, call: int) -> tuple[int, int]:
-        """A client took the reply of a call; returns its number, and how many are left."""
+        """Note that a client took the reply of a call; returns its number, and how many replies are left."""
         queue = self._queues.get(entity)
         if queue is None:
             return call, 0
@@ -173,7 +173,7 @@ class Arrivals:
         return call, len(queue.told)
 
     def _passed(self, t: int, queue: _Queue, sending: SentMessage) -> Iterator[AnyEvent]:
-        """A message was passed over: it is lost, unless its sender had not found the queue yet."""
+        """Yield the loss of a skipped message, unless discovery had not connected its sender yet."""
         if sending.sender in queue.heard or sending.number in queue.told:
             yield from self._lost(t, queue, sending)
         else:

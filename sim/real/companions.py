@@ -1,6 +1,6 @@
 """Helper processes on a run's ROS graph: the service caller, the process of ``ros2`` lines, the robot.
 
-Each writes on standard output, line by line, what a probe would report about it.
+Each writes lines in the probe's format on standard output.
 """
 
 import subprocess
@@ -19,7 +19,7 @@ from sim.trace.events import ArenaShown, EntityAppeared, EntityKind
 
 
 class Companion:
-    """A process that is started at its first use, or before. ``take`` gets the lines that it writes."""
+    """A helper process, started at its first use at the latest. ``take`` gets the lines that it writes."""
 
     def __init__(
         self,
@@ -62,7 +62,7 @@ class Companion:
         return self.is_running and not self.has_spoken
 
     def say(self, line: object) -> None:
-        """Send it a line of JSON."""
+        """Send it a request as a line of JSON."""
         self.start()
         assert self._process is not None
         assert self._process.stdin is not None
@@ -70,7 +70,7 @@ class Companion:
             self._process.stdin.write(msgspec.json.encode(line) + b"\n")
 
     def stop(self) -> None:
-        """End it."""
+        """Kill it."""
         if self._process is not None:
             assert self._process.stdin is not None
             self._process.stdin.close()
@@ -122,10 +122,7 @@ class ServiceCaller:
 
 
 class RunRobot:
-    """The robot of a run; it is shown from its first use on, or from the beginning.
-
-    ``take`` gets its events. A robot that no program uses does not move.
-    """
+    """The robot of a run; its events are passed to ``take`` from its first use on, or from the beginning."""
 
     def __init__(
         self,
@@ -145,12 +142,12 @@ class RunRobot:
         """Events about its world from before its first use."""
 
     def start(self) -> None:
-        """Start it, if there is to be one."""
+        """Start it, if the run has one."""
         if self._use is not RobotUse.NEVER:
             self.process.start()
 
     def hear(self, lines: Sequence[ProbeLine]) -> None:
-        """Note whether something uses it."""
+        """Note whether a program uses one of its topics or services."""
         if not self._is_used and any(_name(line) in NAMES for line in lines):
             self._is_used = True
             self._take(msgspec.structs.replace(line, t=lines[0].t) for line in self._arena)
@@ -163,7 +160,7 @@ class RunRobot:
 
 
 def _name(line: ProbeLine) -> str:
-    """The topic or service that something is made for or sent to."""
+    """The topic or service of an event; "" for none."""
     match line:
         case EntityAppeared(name=name) | Sent(topic=name):
             return name

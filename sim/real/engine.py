@@ -49,21 +49,21 @@ from sim.trace.events import (
 from sim.trace.integrity.sealing import Seal
 
 _PERIOD = 0.01
-"""Seconds between two looks at what is due."""
+"""Seconds between two turns of the loop."""
 _LONGEST_HOLD = 500_000_000
 """The longest time, in nanoseconds, for which events are held back to be put in order."""
 _HOLD_DECAY = 0.995
 _GRACE = 3.0
 """Seconds that the programs have to exit once they were asked to."""
 _TO_GATHER = 500_000_000
-"""Nanoseconds in which processes that are already there tell what they did, which then comes in order."""
+"""Nanoseconds for which a watched run waits at first, so that the pasts of all processes are put in order."""
 _TO_BEGIN = 10_000_000_000
 """Nanoseconds to wait for the robot, and for the first node, before the run begins without."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Due:
-    """Something to be done at a moment of the run's time, in nanoseconds."""
+    """An action at a moment of the run's time, in nanoseconds."""
 
     at: int
     do: Callable[[], None]
@@ -175,7 +175,7 @@ class RealEngine:
         return self._robot.process.is_awaited and not is_late and self._cause is None
 
     def _robot_is_all(self) -> bool:
-        """Whether the run is about its robot, which goes on when programs come and go."""
+        """Whether the run goes on for its robot alone, as programs come and go."""
         return self._keyboard is None and self._robot.process.is_running and self._cause is None
 
     def _schedule(self) -> None:
@@ -235,7 +235,7 @@ class RealEngine:
     # what happens
 
     def _record(self, event: AnyEvent) -> None:
-        """Record an event of the run's own now, in order with those of the probes."""
+        """Record one of the run's own events at the present time, in order with those of the probes."""
         self._translation.take([msgspec.structs.replace(event, t=time.monotonic_ns())])
 
     def _record_keys(self, event: AnyEvent) -> None:
@@ -351,7 +351,7 @@ def _sealed_with(key: bytes) -> Callable[[list[AnyEvent]], bytes]:
 
 
 def _nothing() -> None:
-    """Do nothing between batches: the probes find out what waits."""
+    """Do nothing before a batch: the probes find waiting callbacks."""
 
 
 def run(packed_setup: bytes, pipe: Connection, crash_dump: Connection) -> None:

@@ -51,7 +51,7 @@ class RealKeyboard:
             self._record(Typed(0, self._pair.type(text)))
 
     def interrupts(self, text: str) -> bool:
-        """Whether this text, typed now, would interrupt the programs."""
+        """Whether typing this text now interrupts the programs."""
         return self._pair.interrupts(text)
 
     def look(self, programs: Mapping[int, str]) -> int:

@@ -1,7 +1,6 @@
-"""The programs that a run starts on real rclpy: from their start until all have ended.
+"""The programs that a run starts on real rclpy, until all have ended.
 
-A launch file is carried out by cbtui's model of ROS's launch where no ``ros2`` is found: what it starts are
-processes here.
+Launch files are run by ``ros2 launch`` if there is a ``ros2``, else by ``sim.launch``.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ Returns what interrupts the line.
 
 
 class LaunchedPrograms:
-    """Starts programs, each with a command of its own, and knows which of them run.
+    """Starts programs as processes, and follows which of them run.
 
     Their probes, and those of their child processes, listen in ``folder``. ``take`` gets the probes' lines,
     ``record`` the events about starts and ends, ``show`` what programs print. ``carry_out`` carries out the
@@ -106,9 +105,9 @@ class LaunchedPrograms:
         shows_stdout: bool = True,
         hear_output: Callable[[str, bool], None] | None = None,
     ) -> Program:
-        """Start one more program, as a process of its own on the trace.
+        """Start a program, which the trace shows as a process.
 
-        ``hear_output`` is that of the launch file that started it, which is to end it, too.
+        A launch file passes ``hear_output``, and ends the programs that it started.
         """
         number = self.announce(label)
 
@@ -126,12 +125,12 @@ class LaunchedPrograms:
         return program
 
     def announce(self, label: str) -> int:
-        """Have a process on the trace; returns its number."""
+        """Record a process; returns its number."""
         number = next(self._numbers)
         self.record(ProcessAppeared(0, number, label))
         return number
 
-    # What launch files and ros2 lines start
+    # programs of packages
 
     @cached_property
     def packages(self) -> Packages:
@@ -144,17 +143,17 @@ class LaunchedPrograms:
 
     @property
     def folders(self) -> list[Path]:
-        """Where packages are looked for."""
+        """The folders in which packages are searched."""
         return [Path(each.path) for each in self._setup] or [Path.cwd()]
 
     def environment(self, changes: Mapping[str, str] | None = None, *folders: Path) -> dict[str, str]:
-        """The environment of a program, with changes of its own, and folders that imports look in first."""
+        """The environment of a program, with changes, and with folders at the front of Python's path."""
         changed = {**self._environment, **(changes or {})}
         path = [str(ON_PATH), *map(str, folders), *filter(None, [changed.get("PYTHONPATH")])]
         return {**changed, "PYTHONPATH": os.pathsep.join(path)}
 
     def command_of(self, executable: Executable, arguments: Sequence[str]) -> list[str]:
-        """How an executable of a package is run, without being installed."""
+        """The command that runs an executable of a package, which need not be installed."""
         if not executable.module:
             return [self._python, str(executable.path), *arguments]
         begin = f"import sys; sys.argv[0] = {str(executable.path)!r}; from {executable.module} import "
@@ -212,7 +211,7 @@ class LaunchedPrograms:
         except LaunchError as error:
             self._fail(Cause(str(error), failed=True))
 
-    # What a launch file needs of the machine
+    # the machine of sim.launch
 
     def start_process(self, spec: ProcessSpec, on_exit: OnExit, on_output: OnOutput) -> Program:
         """Start a program of a launch file."""
@@ -239,7 +238,7 @@ class LaunchedPrograms:
         """Call ``action`` that many seconds from now."""
         heapq.heappush(self._due, (time.monotonic() + seconds_from_now, next(self._order), action))
 
-    # Meanwhile
+    # following them
 
     def look(self) -> None:
         """Connect to probes that have begun to listen, and notice programs that have ended."""
@@ -291,7 +290,7 @@ class LaunchedPrograms:
         return Cause("every program returned", failed=False)
 
     def interrupt(self) -> None:
-        """Have all end as Ctrl-C would."""
+        """Interrupt all programs as Ctrl-C would; launch files interrupt their own."""
         for launching in self._launches:
             launching.interrupt()
         for program in self._running:
@@ -299,7 +298,7 @@ class LaunchedPrograms:
                 program.interrupt()
 
     def kill(self) -> list[str]:
-        """End all that run by force; returns their names."""
+        """Kill all that run; returns their names."""
         for program in self._running:
             program.kill()
         return [program.name for program in self._running]
@@ -311,7 +310,7 @@ def ros2_command(environment: Mapping[str, str]) -> str | None:
 
 
 def _ignore(_status: int) -> None:
-    """Take an end that nobody waits for."""
+    """Drop an exit status."""
 
 
 class _LaunchedLine:

@@ -1,11 +1,13 @@
-"""What a process leaves open when it is killed: its callbacks run no longer, and nothing of it waits."""
+"""Closes the callbacks, blocked calls and entities that a killed process leaves open on the trace."""
 
 from collections.abc import Iterator
 
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
+    CallbackResumed,
     CallbackStarted,
+    CallbackSuspended,
     CallBlocked,
     CallUnblocked,
     EntityAppeared,
@@ -17,7 +19,7 @@ from sim.trace.events import (
 
 
 class LeftOpen:
-    """Follows the events of several processes, and closes what one of them has left open."""
+    """Follows the events of several processes, to close those of one that has ended."""
 
     def __init__(self) -> None:
         self._entities: dict[EntityId, int] = {}
@@ -26,7 +28,7 @@ class LeftOpen:
         self._blocked: dict[ThreadId, CallBlocked] = {}
 
     def appeared(self, event: EntityAppeared, process: int) -> None:
-        """Take note of whose an entity is."""
+        """Note to which process an entity belongs."""
         self._entities[event.entity] = process
 
     def follow(self, event: AnyEvent) -> None:
@@ -34,7 +36,9 @@ class LeftOpen:
         match event:
             case CallbackStarted():
                 self._running[event.entity, event.thread] = None
-            case CallbackEnded():
+            case CallbackResumed():
+                self._running[event.entity, event.thread] = None
+            case CallbackEnded() | CallbackSuspended():
                 self._running.pop((event.entity, event.thread), None)
             case CallBlocked():
                 self._blocked[event.thread] = event
@@ -44,7 +48,7 @@ class LeftOpen:
                 self._entities.pop(event.entity, None)
 
     def closed(self, process: int, t: Nanoseconds) -> Iterator[AnyEvent]:
-        """Close what a process that ended has left open, the innermost callback of a thread first."""
+        """Yield the events that close what an ended process left open, innermost callbacks first."""
         own = {entity for entity, owner in self._entities.items() if owner == process}
         for entity, thread in [each for each in reversed(self._running) if each[0] in own]:
             if thread in self._blocked:

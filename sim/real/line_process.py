@@ -1,4 +1,4 @@
-"""Carries out ``ros2`` lines on real rclpy: ``python -m sim.real.line_process [FOLDER…]``.
+"""Runs ``ros2`` lines on real rclpy: ``python -m sim.real.line_process [FOLDER…]``.
 
 Each line of standard input is a request (``sim.real.wire.LineRequest``). Standard output has, in the probe's
 format, what the ``ros2`` lines print and send, and how they end. The folders are searched for packages. All
@@ -39,7 +39,7 @@ _TO_FIND = 5.0
 """Seconds for which a line waits at most until discovery has found the nodes that the run knows."""
 _LOOK = 0.02
 _TO_TELL = 0.5
-"""Seconds that a node has to list its parameters while a line is completed."""
+"""Seconds that a node has to list its parameters for completion."""
 
 now = time.monotonic_ns
 
@@ -57,17 +57,17 @@ class _Signal:
 
 
 class _RosLineNode(Node):  # type: ignore[misc] # rclpy's classes are not typed
-    """A line's node, which tells what it sends for the line."""
+    """The node of a line, which reports the messages and requests that it sends."""
 
     def create_publisher(self, *args: Any, **kwargs: Any) -> Any:
-        """Make a publisher that tells what it publishes."""
+        """Make a publisher that reports what it publishes."""
         publisher = super().create_publisher(*args, **kwargs)
         if publisher.topic_name != "/parameter_events":
             publisher.publish = partial(_publish, publisher, publisher.publish)
         return publisher
 
     def create_client(self, *args: Any, **kwargs: Any) -> Any:
-        """Make a client that tells what it calls."""
+        """Make a client that reports its calls."""
         client = super().create_client(*args, **kwargs)
         client.call_async = partial(telling.call, client, client.call_async)
         return client
@@ -78,7 +78,7 @@ def _publish(publisher: Any, send: Callable[[Any], None], message: Any) -> None:
 
 
 class _Process:
-    """A line's stay on the graph, on a thread of its own."""
+    """A line as a process on the graph; it runs on a thread."""
 
     def __init__(self, ground: "RealGround") -> None:
         self._ground = ground
@@ -94,7 +94,7 @@ class _Process:
         return f"_ros2cli_{os.getpid()}_{next(self._ground.numbers)}"
 
     def start_thread(self, run: Callable[[], None]) -> None:
-        """Have the line carried out once the graph is known."""
+        """Run the line on a thread, once discovery has found the graph."""
 
         def begin() -> None:
             self._ground.discover()
@@ -103,7 +103,7 @@ class _Process:
         threading.Thread(target=begin, daemon=True).start()
 
     def on_own_time(self, deed: Callable[[], None]) -> None:
-        """Do it."""
+        """Run it at once."""
         deed()
 
     def leave(self) -> None:
@@ -134,11 +134,11 @@ class RealGround:
         self.unfound -= wanted
 
     def enter(self, _take: object) -> _Process:
-        """Have a line join."""
+        """Add a line to the graph."""
         return _Process(self)
 
     def want(self, name: str) -> None:
-        """Do nothing: everybody is there already."""
+        """Do nothing: all nodes run already."""
 
     def interface(self, kind: Kind, package: str, name: str) -> Any:
         """The class, as a program would import it; raises UnknownInterfaceError if there is none."""
@@ -182,7 +182,7 @@ class _Program:
         self.on_exit = on_exit
 
     def interrupt(self) -> None:
-        """Have the run end them as Ctrl-C would."""
+        """Ask the run to end them as Ctrl-C would."""
         telling.tell(Interrupted(now(), self._line))
 
 
@@ -194,28 +194,28 @@ class _RealStarter:
     lines: "_Lines"
 
     def say(self, text: str, error: bool) -> None:
-        """Tell a line of output."""
+        """Report a line of output."""
         telling.tell(LineSaid(now(), self.line, text, error))
 
     def ended(self, status: int) -> None:
-        """Tell the exit status."""
+        """Report the exit status."""
         self.lines.running.pop(self.line, None)
         telling.tell(LineEnded(now(), self.line, status))
 
     def packages(self) -> Packages:
-        """The packages at hand."""
+        """The packages that were found."""
         return self.lines.packages
 
     def start_executable(
         self, package: str, executable: str, arguments: Sequence[str], on_exit: OnExit
     ) -> _Program:
-        """Have the run start a program of a package."""
+        """Ask the run to start a program of a package."""
         return self._start((package, executable), arguments, on_exit, is_launch=False)
 
     def launch(
         self, package: str | None, launch_file: str, arguments: Sequence[str], on_exit: OnExit
     ) -> _Program:
-        """Have the run start a launch file."""
+        """Ask the run to start a launch file."""
         return self._start((package or "", launch_file), arguments, on_exit, is_launch=True)
 
     def _start(
@@ -236,7 +236,7 @@ class _RealStarter:
 
 
 class _Lines:
-    """The lines that are being carried out."""
+    """The lines that run."""
 
     def __init__(self, folders: Sequence[str]) -> None:
         self._ground = RealGround()
@@ -250,7 +250,7 @@ class _Lines:
         return ShellLine(self._ground, text, starter, starter.say, starter.ended)
 
     def obey(self, request: object) -> None:
-        """Do what the run asks for."""
+        """Carry out a request of the run."""
         match request:
             case commands.RunLine(line=number, text=text):
                 line = self.running[number] = self._line(number, text)
@@ -269,7 +269,7 @@ class _Lines:
 
 
 def main() -> None:
-    """Carry out lines until standard input ends."""
+    """Run lines until standard input ends."""
     rclpy.init()
     lines = _Lines(sys.argv[1:])
     for request in sys.stdin.buffer:

@@ -9,15 +9,15 @@ _PYTHON = """
     ament_index_python cv_bridge launch launch_ros message_filters rclpy rosbag2_py rosidl_runtime_py
     sensor_msgs_py tf2_geometry_msgs tf2_py tf2_ros tf2_sensor_msgs tf_transformations
 """.split()  # noqa: SIM905 -- as below
-"""Packages of Python; those of interfaces are known elsewhere."""
+"""Python packages; ``sim.interfaces`` knows those with message and service definitions."""
 _WHEELS = """
     action_msgs ament_index_python builtin_interfaces diagnostic_msgs geometry_msgs lifecycle_msgs nav_msgs
     rcl_interfaces rclpy sensor_msgs std_msgs std_srvs stereo_msgs test_msgs trajectory_msgs
     type_description_interfaces visualization_msgs
 """.split()  # noqa: SIM905 -- one to a line they would hide the rest
-"""Packages on PyPI; the others come only with an installed ROS 2."""
+"""Packages that PyPI has; the others need an installed ROS 2."""
 _DEBIAN = {"tf2_ros": "tf2-ros-py"}
-"""Names of Debian packages that differ from their module's."""
+"""Debian packages whose names differ from those of their modules."""
 
 
 def on_missing(said: str, distribution: str) -> str:

@@ -79,7 +79,7 @@ class ProbeLink:
 
     def __init__(self, selector: BaseSelector, take: Callable[[list[ProbeLine]], None]) -> None:
         self.hello: Hello | None = None
-        """Which process it is, once it has told."""
+        """The description of the process, once it has arrived."""
         self.uncaught: Uncaught | None = None
         """The exception that ended the program."""
         self.has_left = False

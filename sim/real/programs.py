@@ -113,11 +113,11 @@ class Start(NamedTuple):
     command: Sequence[str]
     environment: Mapping[str, str]
     folder: Path | None = None
-    """Where it works; None: where the run does."""
+    """The working directory; None: that of the run."""
     terminal: int | None = None
     """The terminal that it reads from; None: its input is empty."""
     owns_terminal: bool = False
-    """Whether the terminal is its ``/dev/tty``, too."""
+    """Whether the terminal is also its controlling terminal, ``/dev/tty``."""
 
 
 class Program:
@@ -141,7 +141,7 @@ class Program:
         self._show = show
         self._open = 2
         self.hear_output: Callable[[str, bool], None] | None = None
-        """Also gets every line, logged ones too: the launch file that started the program, and ends it."""
+        """Also gets every line of output, log lines included; set by a launch file."""
         self.reads = start.terminal is not None
         """Whether it has the keyboard."""
         self._last_error = ""
@@ -161,7 +161,7 @@ class Program:
             bufsize=0,
         )
         self.process = self._process.pid
-        """Its number in the operating system."""
+        """Its process id."""
         self._readers = [
             LineReader(selector, stream, partial(self._printed, error=error), self._one_less)
             for stream, error in ((self._process.stdout, False), (self._process.stderr, True))
@@ -208,20 +208,20 @@ class Program:
         return on_missing(error, self.link.hello.distribution if self.link.hello else "")
 
     def show_rest(self) -> None:
-        """Show all that it has written so far, even an unfinished line."""
+        """Show all output so far, even an unfinished line."""
         for reader in self._readers:
             reader.read_all()
 
     def interrupt(self) -> None:
-        """Have it, and what it started, end as Ctrl-C would."""
+        """Send SIGINT to it and its children, as Ctrl-C does."""
         self._signal(signal.SIGINT)
 
     def terminate(self) -> None:
-        """Have it, and what it started, end as SIGTERM would."""
+        """Send SIGTERM to it and its children."""
         self._signal(signal.SIGTERM)
 
     def kill(self) -> None:
-        """End it, and what it started, whatever they do."""
+        """Kill it and its children."""
         self._signal(signal.SIGKILL)
 
     def _signal(self, number: signal.Signals) -> None:
@@ -245,7 +245,7 @@ class Program:
 
 
 def ended_by(uncaught: Uncaught, name: str, advice: str = "") -> Cause:
-    """The end of the program that people call ``name`` by an exception."""
+    """The end by an exception of the program that people know as ``name``."""
     failure = Failure(
         uncaught.file, uncaught.line, f"{name} raised {uncaught.error}", advice, uncaught.exception
     )

@@ -1,9 +1,9 @@
 """The lessons' robot as a real ROS 2 node: ``python -m sim.real.robot RATE PHYSICS``, or ``cbtui robot``.
 
-"" is the usual rate or physics.
+"" stands for the default rate or physics.
 
-As a part of a run it tells on standard output what it publishes and where it is, as a probe tells what a
-program does. Its time is the machine's monotonic clock.
+As a part of a run it reports on standard output what it publishes and where it is, in the probe's format. Its
+time is the machine's monotonic clock.
 """
 
 import importlib
@@ -28,9 +28,9 @@ Tell = Callable[[ProbeLine], None]
 
 
 class RealPort:
-    """What the driver needs of real rclpy. ``tell`` gets what there is to know of the robot.
+    """What the driver needs of real rclpy. ``tell`` gets the robot's events.
 
-    With ``transforms`` odometry goes to ``/tf``, too.
+    With ``transforms`` odometry is also published to ``/tf``.
     """
 
     def __init__(self, tell: Tell, transforms: type | None = None) -> None:
@@ -45,7 +45,7 @@ class RealPort:
         return time.monotonic_ns() - self._begun
 
     def sleep(self, duration: int) -> None:
-        """Wait for so many nanoseconds."""
+        """Sleep for so many nanoseconds."""
         time.sleep(duration / 1e9)
 
     def message(self, package: str, name: str) -> Any:
@@ -57,7 +57,7 @@ class RealPort:
         return getattr(importlib.import_module(f"{package}.srv"), name)
 
     def sensor_publisher(self, message: Any, topic: str) -> Any:
-        """A publisher that sends without making sure, and keeps five messages."""
+        """A publisher with best-effort QoS and a depth of five."""
         qos = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
         return self.node.create_publisher(message, topic, qos)
 
@@ -66,7 +66,7 @@ class RealPort:
         self.node.create_subscription(message, "cmd_vel", callback, 10)
 
     def publish(self, publisher: Any, message: Any) -> int:
-        """Publish a message, and tell of it; returns its id on the trace."""
+        """Publish and report a message; returns its id on the trace."""
         if self._tf is not None and hasattr(message, "child_frame_id"):
             self._tf.publish(self._transforms_of(message))
         number, sent = telling.publish(publisher, publisher.publish, message)
@@ -74,7 +74,7 @@ class RealPort:
         return number
 
     def _transforms_of(self, odometry: Any) -> Any:
-        """From the odometry's frame to the robot, and from there to the laser, which is at its centre."""
+        """The transforms from odometry to the robot, and from there to the laser at its centre."""
         transform = self.message("geometry_msgs", "TransformStamped")
         robot = transform(header=odometry.header, child_frame_id=odometry.child_frame_id)
         position, where = odometry.pose.pose.position, robot.transform.translation
@@ -86,7 +86,7 @@ class RealPort:
         return self._transforms(transforms=[robot, laser])
 
     def record(self, event: AnyEvent) -> None:
-        """Tell something of the robot."""
+        """Report an event of the robot."""
         self._tell(msgspec.structs.replace(event, t=event.t + self._begun))
 
 
@@ -102,7 +102,7 @@ def transforms() -> type | None:
 def drive(
     tell: Tell, rate: float | None, transforms: type | None, physics: PhysicsChoice | None = None
 ) -> None:
-    """Drive until Ctrl-C; ``rate`` (Hz) is that of the sensors, None the usual one."""
+    """Drive until Ctrl-C; ``rate`` is that of the sensors in Hz, None for the default."""
     rclpy.init()
     port = RealPort(tell, transforms)
     driver = Driver(port, rate)

@@ -1,7 +1,7 @@
-"""The ``ros2`` lines of a run on real rclpy: carried out by ROS's own command, or by cbtui's on real rclpy.
+"""The ``ros2`` lines of a run on real rclpy.
 
-ROS's own is used where ``ros2`` can be found, as in a terminal where ROS is sourced. Else a process of
-cbtui's Python does it, which needs rclpy there.
+The command ``ros2`` runs them if it is found, as in a terminal where ROS is sourced. Otherwise a process of
+cbtui's own Python does, which needs rclpy there.
 """
 
 import shlex
@@ -26,18 +26,18 @@ if TYPE_CHECKING:
 _STARTING = ("run", "launch")
 """Commands whose programs are watched."""
 _FIRST_LAUNCHED = 1 << 40
-"""The first number of lines that launch files start, which are not told of on the trace."""
+"""The first number of the lines of launch files, which the trace does not show as lines."""
 
 
 class _Line(NamedTuple):
-    """What gets the output and the end of a line."""
+    """The receivers of a line's output and exit status."""
 
     show: Callable[[str, bool], None]
     end: OnExit
 
 
 class Ros2Lines:
-    """Every line that was given. ``take`` gets what lines send, ``record`` the events of the lines."""
+    """All ``ros2`` lines. ``take`` gets what the lines send, ``record`` the events of the lines."""
 
     def __init__(
         self,
@@ -62,19 +62,19 @@ class Ros2Lines:
         self._started: dict[int, Program | LaunchRun] = {}
         self._launched = count(_FIRST_LAUNCHED)
         self._nodes: list[str] = []
-        """The nodes that the companion has not been told of."""
+        """The nodes that the line process does not know yet."""
 
     def prepare(self) -> None:
-        """Have what carries lines out know the graph before the first."""
+        """Start the line process, so that it knows the graph before the first line."""
         if self._ros2 is None:
             self._companion.start()
 
     def hear(self, lines: Iterable[ProbeLine]) -> None:
-        """Note which nodes the programs have."""
+        """Note the nodes of the programs."""
         self._nodes += [line.name for line in lines if isinstance(line, NodeAppeared)]
 
     def begin(self, number: int, text: str) -> None:
-        """Carry out a line."""
+        """Run a line."""
 
         def show(said: str, error: bool) -> None:
             self._record(LineSaid(0, number, said, error))
@@ -88,7 +88,7 @@ class Ros2Lines:
     def begin_launched(
         self, words: Sequence[str], show: Callable[[str, bool], None], on_exit: OnExit
     ) -> Callable[[], None]:
-        """Carry out a line of a launch file; returns what interrupts it."""
+        """Run a line of a launch file; returns a function that interrupts it."""
         number = next(self._launched)
         self._begin(number, shlex.join(words), _Line(show, on_exit))
         return lambda: self.interrupt(number)
@@ -118,21 +118,21 @@ class Ros2Lines:
         self._processes[number] = Program(self._selector, start, "ros2", 0, _ignore, show)
 
     def interrupt(self, number: int) -> None:
-        """Have a line end as Ctrl-C would; nothing happens to one that has."""
+        """Interrupt a line as Ctrl-C would, if it still runs."""
         if number in self._processes:
             self._processes[number].interrupt()
         elif number in self._lines:
             self._companion.say(commands.InterruptLine(number))
 
     def complete(self, number: int, text: str, cursor: int) -> None:
-        """Tell what could stand at ``cursor``; ROS's own command is not asked, as it takes too long."""
+        """Report the completions at ``cursor``; none with the command ``ros2``, which takes too long."""
         if self._ros2 is not None or self._companion.is_over:
             self._record(LineCompleted(0, number, cursor, ()))
         else:
             self._companion.say(commands.CompleteLine(number, text, cursor))
 
     def look(self) -> None:
-        """Take note of lines that have ended, and of the end of what carries them out."""
+        """Notice lines that have ended, and the end of the line process."""
         for number, process in [*self._processes.items()]:
             if process.has_ended:
                 del self._processes[number]
@@ -142,7 +142,7 @@ class Ros2Lines:
                 self._say_and_end(number, self._why_not(), 1)
 
     def stop(self) -> None:
-        """End all lines by force."""
+        """Kill all lines."""
         for process in self._processes.values():
             process.kill()
         self._companion.stop()
@@ -180,7 +180,7 @@ class Ros2Lines:
         self._take(rest)
 
     def _start(self, wanted: ProgramWanted) -> None:
-        """Start what a line wants, and tell the line how that ends."""
+        """Start what a line asks for, and report its end to the line."""
         from sim.launch import LaunchError
         from sim.packages import PackageError
 
@@ -205,4 +205,4 @@ _WATCHED = "programs that others started are watched here: start more with cbtui
 
 
 def _ignore(_lines: object, process: int = 0) -> None:
-    """Take what a probe tells that nobody listens to."""
+    """Drop what a probe sends."""

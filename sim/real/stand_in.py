@@ -1,4 +1,4 @@
-"""Has ``sim.shell`` find real rclpy where it imports the model: the reverse of ``sim.ros.importing``."""
+"""Makes ``sim.shell`` import real rclpy instead of the model: the reverse of ``sim.ros.importing``."""
 
 import importlib
 import sys
@@ -21,10 +21,10 @@ _MODULES = {
     "scheduling.task": "task",
     "time.duration": "duration",
 }
-"""The modules of ``sim.ros`` that ``sim.shell`` uses, and those of rclpy that offer the same."""
+"""The modules of ``sim.ros`` that ``sim.shell`` uses, and their counterparts in rclpy."""
 
 
 def install() -> None:
-    """Put rclpy's modules in the place of the model's, before ``sim.shell`` is imported."""
+    """Replace the model's modules with rclpy's; call it before ``sim.shell`` is imported."""
     for model, real in _MODULES.items():
         sys.modules[f"sim.ros.{model}"] = importlib.import_module(f"rclpy.{real}")

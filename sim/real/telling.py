@@ -1,4 +1,4 @@
-"""What cbtui's own processes on a ROS graph tell on standard output: what they send, as a probe would."""
+"""Reports what cbtui's own processes send on a ROS graph: on standard output, in the probe's format."""
 
 import sys
 import time
@@ -15,21 +15,21 @@ _ids = Recorder()
 
 
 def tell(line: ProbeLine) -> None:
-    """Tell one thing. Thread-safe."""
+    """Write one event. Thread-safe."""
     told = finite(line) if isinstance(line, TraceEvent) else line
     sys.stdout.buffer.write(msgspec.json.encode([told]) + b"\n")
     sys.stdout.buffer.flush()
 
 
 def publish(publisher: Any, send: Callable[[Any], None], message: Any) -> tuple[int, Sent]:
-    """Have ``send`` publish a message; returns its id on the trace, and what is to be told of it."""
+    """Publish a message with ``send``; returns its id on the trace, and the event to report."""
     number, t, before = _ids.new_id(), time.monotonic_ns(), time.time_ns()
     send(message)
     return number, Sent(t, number, publisher.topic_name, 0, 0, before, time.time_ns())
 
 
 def call(client: Any, send: Callable[[Any], Any], request: Any) -> Any:
-    """Have ``send`` make a call, and tell of it and of its reply; returns the future."""
+    """Make a service call with ``send``, and report it and its reply; returns the future."""
     number, t, before = _ids.new_id(), time.monotonic_ns(), time.time_ns()
     future, service = send(request), client.service_name
     tell(Called(t, number, service, 0, repr(request), before, time.time_ns()))

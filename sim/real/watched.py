@@ -1,4 +1,4 @@
-"""Processes that a run only watches: it finds them by their probes' sockets, and never ends them."""
+"""Processes that a run only watches: it finds their probes' sockets, and never ends them."""
 
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -86,15 +86,15 @@ class WatchedProcesses:
         return next((each for each in self._outcomes.values() if each.failed), usual)
 
     def interrupt(self) -> None:
-        """Follow them no longer."""
+        """Stop following them."""
         self._left = True
 
     def kill(self) -> list[str]:
-        """Leave them as they are: they are not this run's."""
+        """Do nothing: watched processes are not ended."""
         return []
 
     def _told(self, number: int, lines: list[ProbeLine]) -> None:
-        """Take what one tells; it has appeared when what it tells first happened, which may be long ago."""
+        """Take lines of a process, which appears at the time of its first event; that may be long ago."""
         for line in lines:
             if isinstance(line, Hello):
                 self._unnamed[number] = label_of(line)
@@ -113,5 +113,5 @@ def _outcome(link: ProbeLink) -> Cause:
 
 
 def label_of(hello: Hello) -> str:
-    """What people call a process: its program's name, and its number."""
+    """The label of a process: its program's name and its process id."""
     return f"{Path(hello.command[1]).name if len(hello.command) > 1 else 'python'}-{hello.process}"

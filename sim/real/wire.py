@@ -29,16 +29,16 @@ from sim.trace.events.event import kinds
 
 
 class Hello(msgspec.Struct, frozen=True, array_like=True, tag="hello"):
-    """The first line: which process it is."""
+    """The first line: the description of the process."""
 
     t: int
     protocol: int
     process: int
-    """Its number in the operating system."""
+    """Its process id."""
     python: str
     """Version of its Python."""
     distribution: str
-    """Name of the ROS distribution, where its environment tells."""
+    """The ROS distribution, if the environment names it."""
     command: list[str]
     epoch: int
     """Nanoseconds since 1970 at ``t``."""
@@ -125,13 +125,13 @@ class Uncaught(msgspec.Struct, frozen=True, array_like=True, tag="uncaught"):
 
 
 class Left(msgspec.Struct, frozen=True, array_like=True, tag="left"):
-    """The process came to its own end."""
+    """The process ended by itself."""
 
     t: int
 
 
 class ProgramWanted(msgspec.Struct, frozen=True, array_like=True, tag="start"):
-    """A ``ros2`` line asks the run to start a package's program or a launch file, whose package may be ""."""
+    """A request of a ``ros2`` line to start a package's program or a launch file, whose package may be ""."""
 
     t: int
     line: int
@@ -143,7 +143,7 @@ class ProgramWanted(msgspec.Struct, frozen=True, array_like=True, tag="start"):
 
 
 class Interrupted(msgspec.Struct, frozen=True, array_like=True, tag="interrupt"):
-    """A ``ros2`` line asks the run to end what it started for it."""
+    """A request of a ``ros2`` line to end what the run started for it."""
 
     t: int
     line: int
@@ -181,7 +181,7 @@ def decode_lines(data: bytes) -> list[ProbeLine]:
 
 
 class ProgramEnded(msgspec.Struct, frozen=True, tag="program_ended"):
-    """What was started for a ``ros2`` line has ended."""
+    """The report that what was started for a ``ros2`` line has ended."""
 
     line: int
     status: int

@@ -10,7 +10,9 @@ from sim.real.wire import Called, MessageTaken, Sent, decode_lines, finite
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
+    CallbackResumed,
     CallbackStarted,
+    CallbackSuspended,
     CallBlocked,
     CallUnblocked,
     EntityAppeared,
@@ -90,6 +92,14 @@ def test_threads_belong_to_their_process() -> None:
     told = Told()
     told.tell(ThreadAppeared(START, 99, "MainThread"), process=3)
     assert [getattr(event, "process", None) for event in told.all(ThreadAppeared)] == [0, 3]
+
+
+def test_a_callback_that_went_on_on_another_thread_is_closed_there_once() -> None:
+    told = Told()
+    told.tell(appeared(90, EntityKind.TIMER, "", depth=0), process=2)
+    told.tell(CallbackStarted(START + 10, 90, THREAD, 0, 0, 0), CallbackSuspended(START + 11, 90, THREAD))
+    told.tell(CallbackResumed(START + 12, 90, 76), ProcessEnded(START + 20, 2, "it was killed", 1))
+    assert told.all(CallbackEnded) == [CallbackEnded(20, 90, 76)]
 
 
 def test_what_a_killed_process_was_at_is_over_with_it_and_others_go_on() -> None:
