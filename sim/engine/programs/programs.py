@@ -18,7 +18,7 @@ from sim.engine.programs.exit_functions import run_exit_functions
 from sim.engine.programs.program import ProgramOutcome, ProgramSpec, run_program
 from sim.engine.stdio.output import finish_lines
 from sim.ros.context.context import end_contexts_by_signal
-from sim.ros.context.signals import deliver_sigint
+from sim.ros.context.signals import deliver_sigint, deliver_sigterm
 from sim.ros.middleware.host import Host
 from sim.ros.middleware.process import Process
 from sim.trace.events import AnyEvent, Notice, ProcessAppeared, ProcessEnded, Severity
@@ -81,6 +81,7 @@ class ProgramSupervisor:
         process.enter()
         self._only.append(process)
         _set_handler(signal.SIGINT, partial(_at_ctrl_c, process))
+        _set_handler(signal.SIGTERM, partial(_at_sigterm, process))
         return run_program(program)
 
     def start(
@@ -209,3 +210,10 @@ def _at_ctrl_c(process: Process, number: int, frame: FrameType | None) -> None:
     """Handle a SIGINT that a program sends to itself: first as rclpy does, then as Python does."""
     deliver_sigint(process)
     signal.default_int_handler(number, frame)
+
+
+def _at_sigterm(process: Process, number: int, _frame: FrameType | None) -> None:
+    """Do what rclpy does at SIGTERM: the contexts end, and nothing is raised; unhandled, it kills."""
+    if not deliver_sigterm(process):
+        _set_handler(number, signal.SIG_DFL)
+        signal.raise_signal(number)

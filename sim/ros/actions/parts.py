@@ -57,13 +57,14 @@ class PartProbe(SilentProbe):
 class Part(Entity):
     """An entity that is served as part of a waitable."""
 
-    traced = False
+    traced = served = False
     _owner: ActionWaitable
     _queue: deque[Any]
 
     def become_ready(self, since: int) -> None:
         """The waitable has something to take. With the host's lock held."""
         self.pending = True
+        self._owner.arrived = self
         self._owner.become_ready(since)
 
     def nothing_left(self) -> None:

@@ -1,13 +1,15 @@
 """What action servers and clients have in common: several services and topics, served as one callback.
 
 An executor sees one waitable. What arrives at its parts makes it ready; a call takes the oldest of each part
-and handles them one after another, in the order in which the parts were added.
+that had something when the executor looked, and handles them one after another, in the order in which the
+parts were added: rclpy's ``is_ready`` keeps which these are for ``take_data``. An EventsExecutor has it take
+from one part for each arrival (``HandleWaitableReady``).
 """
 
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sim.interfaces import ActionType
@@ -59,6 +61,7 @@ class ActionWaitable(Entity):
         self._host = node.context.host
         self._probe = node.context.probe
         self._parts: list[tuple[Part, Handler]] = []
+        self._to_take: Container[Part] = ()
         # The parts are never served by themselves, so they are no members of the program's group.
         self.parts_group = ReentrantCallbackGroup()
 
@@ -115,12 +118,24 @@ class ActionWaitable(Entity):
         """How much waits in all parts together."""
         return sum(part.queued for part, _ in self._parts)
 
+    def noticed(self) -> None:
+        """A snapshot names it: what comes to other parts from here on is left for the next one."""
+        self._to_take = {part for part, _ in self._parts if part.pending}
+
+    def arrivals(self) -> list[Part | None]:
+        """What waits, part by part."""
+        return [part for part, _ in self._parts for _ in range(part.queued)]
+
+    def expect(self, arrived: Entity | None) -> None:
+        """Take from one part; None: from none, for a result was kept long enough."""
+        self._to_take = (arrived,)
+
     def take(self, now: int) -> Taken | None:
-        """Take the oldest of each part."""
+        """Take the oldest of each part that had something when the executor looked."""
         found = [
             (taken, handler)
             for part, handler in self._parts
-            if part.pending and (taken := part.take(now)) is not None
+            if part in self._to_take and part.pending and (taken := part.take(now)) is not None
         ]
         if any(part.pending for part, _ in self._parts):
             self.ready_since = now

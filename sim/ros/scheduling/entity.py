@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from types import GenericAlias
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, runtime_checkable
 
@@ -91,6 +91,12 @@ class Entity:
     traced = True
     """Whether the trace shows it."""
 
+    served = True
+    """Whether it is called by itself; if not, what it is a part of is."""
+
+    arrived: Entity | None = None
+    """What the latest arrived at, where several things make it ready."""
+
     due = NEVER
     """When it becomes ready by the passing of time alone, on the run's clock."""
 
@@ -174,6 +180,13 @@ class Entity:
     def queued(self) -> int:
         """How often there is something to take."""
         return int(self.pending)
+
+    def arrivals(self) -> Sequence[Entity | None]:
+        """For all that there is to take, what it arrived at."""
+        return [None] * self.queued
+
+    def expect(self, arrived: Entity | None) -> None:
+        """Have the next take be of what arrived there alone, where takes differ."""
 
     def become_ready(self, since: int) -> None:
         """There is something to take from now on, or more. With the host's lock held."""

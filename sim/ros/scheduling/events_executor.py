@@ -11,7 +11,7 @@ added, and timers that are due at the same moment.
 from __future__ import annotations
 
 import traceback
-from collections.abc import Coroutine, Iterable
+from collections.abc import Coroutine, Iterable, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
@@ -178,7 +178,7 @@ class EventsExecutor(Executor):
         with self._lock:
             self._update_queued = False
             if self._context.ok():
-                self._register(each for node in self._nodes for each in node._agenda.entities)
+                self._register(each for node in self._nodes for each in node._agenda.entities if each.served)
             else:
                 self._let_all_go()
 
@@ -213,7 +213,7 @@ class EventsExecutor(Executor):
                 )
             self._timers[timer.clock].add(timer)
         elif entity.queued:
-            self._queue.put(partial(self._serve, entity, entity.queued))
+            self._queue.put(partial(self._serve, entity, entity.arrivals()))
         elif entity.due < NEVER:
             self._timer_set(entity)
 
@@ -222,7 +222,7 @@ class EventsExecutor(Executor):
     def _entity_ready(self, entity: Entity) -> None:
         """Something arrived: one event each. Timers are looked at when they fall due, and when time jumps."""
         if entity in self._registered and entity.kind is not EntityKind.TIMER:
-            self._queue.put(partial(self._serve, entity, 1))
+            self._queue.put(partial(self._serve, entity, (entity.arrived,)))
 
     _entity_has_more = _entity_ready
 
@@ -256,13 +256,13 @@ class EventsExecutor(Executor):
 
     # Events
 
-    def _serve(self, entity: Entity, times: int) -> None:
-        """Run an entity's callback, as often as it was told of something that has not been dropped since."""
+    def _serve(self, entity: Entity, arrivals: Sequence[Entity | None]) -> None:
+        """Run the callback for each arrival that it was told of and that has not been dropped since."""
         if entity not in self._registered:
             return
         self._stop_if_one_is_enough()
-        for _ in range(times):
-            self._call(entity)
+        for arrived in arrivals:
+            self._call(entity, arrived)
         self._go_on_with_parked()
 
     def _call_timer(self, timer: ClockTimer) -> None:
@@ -272,9 +272,10 @@ class EventsExecutor(Executor):
             self._stop_if_one_is_enough()
         self._go_on_with_parked()
 
-    def _call(self, entity: Entity) -> None:
+    def _call(self, entity: Entity, arrived: Entity | None = None) -> None:
         with self._lock:
             self._taken = entity
+            entity.expect(arrived)
             self._queued_waitables.discard(entity)
             taken = self._runner.take(entity, self._clock.now())
             self._taken = None

@@ -336,3 +336,36 @@ def test_a_worker_that_is_busy_does_not_delay_the_end_of_a_run_whose_time_is_up(
     run = run_program(tmp_path, CTRL_C_OF_ITS_OWN.replace("OPTIONS", ""), seconds=0.75)
     assert run.ending.t == 750_000_000
     assert "worker done" not in printed(run)
+
+
+SIGTERM_OF_ITS_OWN = """
+import os
+import signal
+import rclpy
+from rclpy.executors import ExternalShutdownException
+from rclpy.signals import SignalHandlerOptions
+
+rclpy.init(OPTIONS)
+node = rclpy.create_node("busy")
+node.create_timer(0.5, lambda: os.kill(os.getpid(), signal.SIGTERM))
+try:
+    rclpy.spin(node)
+except ExternalShutdownException:
+    pass
+print("context", "lives" if rclpy.ok() else "ended")
+"""
+
+
+@pytest.mark.parametrize(
+    ("options", "reason", "last"),
+    first_row_daily(
+        ("", "the program returned", "context ended"), (LEFT_ALONE, "the program crashed by SIGTERM", "")
+    ),
+)
+def test_a_sigterm_that_a_program_sends_itself_ends_its_context_and_kills_it_only_if_that_is_not_handled(
+    tmp_path: Path, options: str, reason: str, last: str
+) -> None:
+    # Measured on Jazzy 7.1.5 and Kilted 9.1.2: ``spin`` returns or raises ExternalShutdownException.
+    run = run_program(tmp_path, SIGTERM_OF_ITS_OWN.replace("OPTIONS", options))
+    assert run.ending.reason == reason
+    assert (printed(run) or [""])[-1] == last

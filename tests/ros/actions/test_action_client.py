@@ -12,7 +12,8 @@ from sim.ros.actions.server import ServerGoalHandle
 from sim.ros.node.node import Node
 from sim.ros.rclpy import executors
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
-from sim.ros.scheduling.executors import MultiThreadedExecutor
+from sim.ros.scheduling.events_executor import EventsExecutor
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from sim.ros.scheduling.task import Future
 from sim.trace.events import CallBlocked, CallUnblocked, MessageDropped, ServiceCalled
 from tests.support.builder import ns
@@ -21,6 +22,7 @@ from tests.support.simulation import Simulation, simulate
 Fibonacci = action("example_interfaces", "Fibonacci")
 Impl = Fibonacci.Impl
 GoalStatus = message("action_msgs", "GoalStatus")
+Empty = message("std_msgs", "Empty")
 UUID = message("unique_identifier_msgs", "UUID")
 
 
@@ -354,3 +356,82 @@ def test_a_coroutine_callback_may_await_a_whole_goal() -> None:
         assert simulation.now == 3.0
 
     simulate(program)
+
+
+@pytest.mark.parametrize("kind", [SingleThreadedExecutor, EventsExecutor])
+def test_a_client_takes_what_was_there_when_its_executor_looked_and_nothing_that_came_since(
+    kind: type[Executor],
+) -> None:
+    # Measured on Jazzy 7.1.5 and Kilted 9.1.2: six runs of six with each executor.
+    said: list[str] = []
+
+    def program(_simulation: Simulation) -> None:
+        node = Node("n")
+        goals: list[ServerGoalHandle] = []
+
+        def accept(goal: ServerGoalHandle) -> None:
+            goals.append(goal)
+            if len(goals) == 2:
+                publisher.publish(Empty())
+
+        def send() -> None:
+            hear = client.send_goal_async(Fibonacci.Goal(), feedback_callback=lambda _: said.append("hears"))
+            hear.add_done_callback(lambda _: said.append("accepted"))
+
+        def send_another() -> None:
+            timer.cancel()
+            goals[0].publish_feedback(Fibonacci.Feedback())
+            send()
+
+        publisher = node.create_publisher(Empty, "t", 10)
+        node.create_subscription(Empty, "t", lambda _: said.append("arrived"), 10)
+        ActionServer(node, Fibonacci, "f", lambda _: None, handle_accepted_callback=accept)
+        client = ActionClient(node, Fibonacci, "f")
+        timer = node.create_timer(0.3, send_another)
+        executor = kind()
+        executor.add_node(node)
+        send()
+        executor.spin()
+
+    simulate(program, until=0.5)
+    assert said == ["accepted", "hears", "arrived", "accepted"]
+
+
+@pytest.mark.parametrize(
+    ("kind", "order"),
+    [
+        (SingleThreadedExecutor, ["1 at work", "hears", "1 accepted", "2 at work", "2 accepted"]),
+        (EventsExecutor, ["1 at work", "1 accepted", "hears", "2 at work", "2 accepted"]),
+    ],
+)
+def test_an_events_executor_has_a_client_take_from_one_part_for_each_arrival(
+    kind: type[Executor], order: list[str]
+) -> None:
+    # Measured on Jazzy 7.1.5, three runs of three with each executor.
+    said: list[str] = []
+
+    def program(_simulation: Simulation) -> None:
+        node = Node("n")
+
+        def execute(goal: ServerGoalHandle) -> Any:
+            said.append(f"{goal.request.order} at work")
+            if goal.request.order == 1:
+                send(2)
+                goal.publish_feedback(Fibonacci.Feedback())
+            goal.succeed()
+            return Fibonacci.Result()
+
+        def send(number: int) -> None:
+            goal = Fibonacci.Goal(order=number)
+            hear = client.send_goal_async(goal, feedback_callback=lambda _: said.append("hears"))
+            hear.add_done_callback(lambda _: said.append(f"{number} accepted"))
+
+        ActionServer(node, Fibonacci, "f", execute)
+        client = ActionClient(node, Fibonacci, "f")
+        executor = kind()
+        executor.add_node(node)
+        send(1)
+        executor.spin()
+
+    simulate(program, until=0.5)
+    assert said == order
