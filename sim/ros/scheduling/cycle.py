@@ -77,7 +77,8 @@ class Cycle:
         self.foreign_awaits: list[Task[Any]] = []
         """Tasks that await something unknown: they ask again after the executor is next woken."""
         self._following = _TASKS
-        self._held = False
+        self.held = False
+        """Whether what was found waits until it may be served."""
         self._found_all = False
         """Whether what ``next`` gave is of a snapshot of all that was ready when it was asked."""
         self._yielded = False
@@ -108,7 +109,7 @@ class Cycle:
         self._due_tasks.clear()
         self._snapshot.clear()
         self._following = _TASKS
-        self._held = self._yielded = False
+        self.held = self._yielded = False
 
     def _chosen(self, nodes: Iterable[OwnerNode]) -> list[OwnerNode]:
         chosen = list(nodes)
@@ -124,7 +125,7 @@ class Cycle:
     def next(self, now: int) -> Work | None:
         """The next to serve, an entity marked as handed out; None: nothing is ready, or may be served yet."""
         self._found_all = False
-        if self._held and not self._released():
+        if self.held and not self._released():
             return None
         for _ in _STAGES:
             work = self._serve(now)
@@ -139,12 +140,12 @@ class Cycle:
 
     def _released(self) -> bool:
         """Whether what was found may be served; else it is held until it may."""
-        self._held = self.may_serve is not None and not self.may_serve()
-        return not self._held
+        self.held = self.may_serve is not None and not self.may_serve()
+        return not self.held
 
     def rest(self, now: int) -> Work | None:
         """The next to serve of what is found already; None: that is served, or may not be served yet."""
-        return None if self._held else self._serve(now)
+        return None if self.held else self._serve(now)
 
     def ends(self, now: int) -> bool:
         """Whether a snapshot of which something was served has come to its end; asked once for each.
@@ -161,9 +162,14 @@ class Cycle:
         return ends
 
     def gather(self, now: int) -> bool:
-        """Gather at once if all that was found is served; whether something is to be served."""
+        """Gather at once if all that was found is served; whether something is to be served.
+
+        Tasks are served at once. What else is found is held until it may be served.
+        """
         if not (self._due_tasks or self._snapshot):
-            self._held = self._gather(deque()) if self._found_all and not self._tasks else self._find(now)
+            self._ask_again()
+            found = self._gather(deque()) if self._found_all and not self._tasks else self._find(now)
+            self.held = found and not self._due_tasks
         return self._following is not _WAITING
 
     def would_find(self, now: int) -> bool:
@@ -172,7 +178,7 @@ class Cycle:
 
     def hold(self) -> None:
         """Have the rest of what was found wait until it may be served."""
-        self._held = True
+        self.held = True
 
     def _serve(self, now: int) -> Work | None:
         if self._due_tasks:
@@ -200,8 +206,10 @@ class Cycle:
     def _find(self, now: int) -> bool:
         """Find what is served next: what was waited for, else tasks, else what a new gathering finds."""
         following, self._following = self._following, _TASKS
-        if following is _TASKS and self._take_tasks():
-            return True
+        if following is _TASKS:
+            self._ask_again()
+            if self._take_tasks():
+                return True
         found = self._ready(now)
         if following is _WAITING and not self._ended_in_vain():
             awaited = self._awaited(found)
@@ -275,7 +283,7 @@ class Cycle:
 
     def stop_waiting(self) -> None:
         """Wait no longer for what was gathered."""
-        self._held = False
+        self.held = False
         if self.waits:
             self._following = _TASKS
 
@@ -319,6 +327,15 @@ class Cycle:
     def add_task(self, task: Task[Any]) -> None:
         """Serve a task in the next cycle."""
         self._tasks.append(task)
+
+    def _ask_again(self) -> None:
+        """Where tasks that await are asked again, have each cycle of a pool begin with them.
+
+        So in the queue of the workers they come right behind the snapshot before, whose callbacks have not
+        begun: rclpy's ``_wait_for_ready_callbacks`` yields all of ``_tasks`` that do not run, then waits.
+        """
+        if self._asks_tasks_again and self.may_serve is not None:
+            self.recall_foreign_awaits()
 
     def recall_foreign_awaits(self) -> None:
         """The executor is woken: have the tasks that await something unknown ask again."""

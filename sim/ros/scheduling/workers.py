@@ -2,8 +2,9 @@
 
 Whatever is yielded goes into one queue and is begun in the order of yielding; if its group has let another
 one in by then, it is not taken. For each a free worker is called, the one that has been idle longest first; a
-new one starts only when none is idle. A worker that ends a callback looks for the next one itself, and takes
-over what the called ones are late for, so that a busy executor needs no hand-over between threads.
+new one starts only when none is idle. A worker that ends a callback takes the next of the queue, whoever was
+called for it, as Python's own pools do (``_worker`` in ``concurrent.futures.thread``): it has the interpreter
+still. If the queue is empty it looks for what is ready itself, so that a busy executor needs no hand-over.
 """
 
 from __future__ import annotations
@@ -59,7 +60,6 @@ class WorkerPool:
         self._idle: deque[Worker] = deque()
         self._queue: deque[Work] = deque()
         self._coming = 0
-        self._called_at = 0
         self._look_owed = False
         self._starting: Worker | None = None
         self._started = self._clock.auto_reset_event()
@@ -88,11 +88,11 @@ class WorkerPool:
     def _claimed(self) -> bool:
         return self._coming > 0 and len(self._queue) > 0
 
-    def submit(self, work: Work, now: int) -> None:
+    def submit(self, work: Work, _now: int) -> None:
         """Have yielded work wait for a worker, and call one if one is free. With the lock held."""
         self._queue.append(work)
         if len(self._queue) > self._coming:
-            self._call_worker(now)
+            self._call_worker()
         self._surface_errors()
 
     def looks_itself(self) -> bool:
@@ -102,14 +102,14 @@ class WorkerPool:
         if self._coming <= len(self._queue):
             if not self._idle or self.enough():
                 return False
-            self._call_worker(self._clock.now())
+            self._call_worker()
         return True
 
-    def _call_worker(self, now: int) -> None:
+    def _call_worker(self) -> None:
         if self._idle:
             worker = self._idle[self._clock.choose(len(self._idle))]
             self._idle.remove(worker)
-            self._expect(worker, now)
+            self._expect(worker)
             worker.signal.set()
         elif len(self._workers) < self._executor.threads:
             worker = Worker(self._clock.auto_reset_event())
@@ -117,7 +117,7 @@ class WorkerPool:
             self._living += 1
             self._starting = worker
             self._executor._cycle.hold()
-            self._expect(worker, now)
+            self._expect(worker)
             self._clock.start_thread(lambda: self._work(worker), f"{self._name}_{len(self._workers) - 1}")
 
     def await_start(self) -> None:
@@ -125,10 +125,9 @@ class WorkerPool:
         while self._starting is not None:
             self._started.wait(None)
 
-    def _expect(self, worker: Worker, now: int) -> None:
+    def _expect(self, worker: Worker) -> None:
         worker.called = True
         self._coming += 1
-        self._called_at = now
 
     def keep(self, error: BaseException) -> None:
         """Keep a callback's exception until the next callback is handed over. With the lock held."""
@@ -153,14 +152,14 @@ class WorkerPool:
         while True:
             with self._lock:
                 now = self._clock.now()
-                begun = self._begin_claimed(worker, now) or self._begin_queued(now)
+                begun = self._begin_queued(worker, now)
                 others_go_first = begun is None and not may_find and self._clock.able > self._coming
                 if begun is None and not others_go_first:
                     begun = self._begin_found(now)
                 if begun is not None:
                     return self._runner.start(begun)
                 if others_go_first:
-                    self._expect(worker, now)
+                    self._expect(worker)
                 elif self._dismissed:
                     return None
                 else:
@@ -175,19 +174,18 @@ class WorkerPool:
                 self._clock.sleep(0)  # the thread that spins raises before the next callback begins
             may_find = True
 
-    def _begin_claimed(self, worker: Worker, now: int) -> Begun | None:
-        """Begin what this worker was called for, or what others were called for and are late for."""
-        may_take = worker.called or self._others_are_late(now)
+    def _begin_queued(self, worker: Worker, now: int) -> Begun | None:
+        """Begin the next in the queue, whoever was called for it."""
         if worker.called:
             worker.called = False
             self._coming -= 1
         begun = None
-        while begun is None and may_take and self._queue:
-            work = self._queue.popleft()
-            begun = self._runner.begin(work, now)
-            may_take = self._others_are_late(now)
+        while begun is None and self._queue:
+            begun = self._runner.begin(self._queue.popleft(), now)
         if self._starting is not None or self._look_owed:
             self._tell_begun(worker)
+        if begun is not None and self._coming == 0 and self._executor._cycle.would_find(now):
+            self._executor._rouse()
         return begun
 
     def _tell_begun(self, worker: Worker) -> None:
@@ -199,19 +197,6 @@ class WorkerPool:
             self._started.set()
         if self._look_owed and self._starting is None and not self._claimed():
             self._executor._rouse()
-
-    def _others_are_late(self, now: int) -> bool:
-        """Whether time has passed since a worker was called that has not come yet."""
-        return self._coming > 0 and self._called_at < now
-
-    def _begin_queued(self, now: int) -> Begun | None:
-        """Begin what no worker was called for; what they were called for was yielded before it."""
-        begun = None
-        while begun is None and self._queue and self._coming == 0:
-            begun = self._runner.begin(self._queue.popleft(), now)
-        if begun is not None and self._executor._cycle.would_find(now):
-            self._executor._rouse()
-        return begun
 
     def _begin_found(self, now: int) -> Begun | None:
         """Begin the first of what is ready, and give the rest of its cycle to others."""
@@ -226,9 +211,12 @@ class WorkerPool:
             self._surface_errors()
             self._executor._rouse()
             return None
-        while not self._starting and (work := cycle.rest(now)) is not None:
-            self.submit(work, now)
-        if cycle.gather(now):
+        finds = True
+        while finds and not (self._starting or cycle.held):
+            while not self._starting and (work := cycle.rest(now)) is not None:
+                self.submit(work, now)
+            finds = cycle.gather(now)
+        if finds:
             self._executor._rouse()
         return self._runner.begin(own, now)
 

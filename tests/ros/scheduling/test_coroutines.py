@@ -21,6 +21,7 @@ from sim.trace.events import (
 )
 from tests.support.simulation import Simulation, simulate
 
+Trigger = service("std_srvs", "Trigger")
 SetBool = service("std_srvs", "SetBool")
 
 
@@ -318,6 +319,41 @@ def test_tasks_that_ask_at_each_wake_up_do_not_wake_the_pool_themselves() -> Non
 
     simulate(program, until=1.5, distro="jazzy@7.1.5")
     assert ended == [1.0, 1.0]
+
+
+@pytest.mark.parametrize("distro", ["jazzy@7.1.5", "kilted"])
+def test_what_awaits_is_asked_behind_the_reply_that_a_pool_serves_and_before_it_looks_again(
+    distro: str,
+) -> None:
+    # Measured on Jazzy 7.1.5 and Kilted 9.1.2: four runs of four on each.
+    said: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        async def ask() -> None:
+            await client.call_async(Trigger.Request())
+            said.append("goes on")
+
+        def begin() -> None:
+            timer.cancel()
+            simulation.sleep(0.2)
+            for _ in range(2):
+                executor.create_task(ask())
+
+        def serve(_request: Any, response: Any) -> Any:
+            said.append("serves")
+            return response
+
+        node.create_service(Trigger, "s", serve)
+        client = node.create_client(Trigger, "s")
+        timer = node.create_timer(0.3, begin)
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        executor.spin()
+
+    simulate(program, until=1.0, distro=distro)
+    assert said == ["serves", "goes on"] * 2
 
 
 def test_the_result_of_a_pending_future_is_none() -> None:

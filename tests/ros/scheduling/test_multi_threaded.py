@@ -3,11 +3,12 @@
 import os
 import warnings
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
 import sim.ros.rclpy as rclpy
-from sim.interfaces import message
+from sim.interfaces import message, service
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
@@ -15,6 +16,7 @@ from sim.trace.events import CallbackFailed
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")
+Trigger = service("std_srvs", "Trigger")
 
 
 def spin(node: Node, threads: int) -> None:
@@ -367,3 +369,40 @@ def test_the_number_of_threads_given_to_the_host_replaces_the_programs() -> None
 
 def _appending(to: list[str], text: str) -> Callable[[object], None]:
     return lambda _: to.append(text)
+
+
+@pytest.mark.parametrize("distro", ["jazzy@7.1.5", "kilted", "jazzy"])
+def test_a_worker_takes_the_next_of_the_queue_before_any_other_thread_goes_on(distro: str) -> None:
+    # Measured on Jazzy 7.1.5 and Kilted 9.1.2: seven runs of seven and three of three.
+    said: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node, server = Node("n"), Node("server")
+
+        async def ask() -> None:
+            said.append("asks")
+            await client.call_async(Trigger.Request())
+
+        def begin(_message: Any) -> None:
+            simulation.sleep(0.2)
+            for _ in range(2):
+                executor.create_task(ask())
+
+        def serve(_request: Any, response: Any) -> Any:
+            said.append("serves")
+            return response
+
+        server.create_service(Trigger, "s", serve)
+        publisher = server.create_publisher(Int32, "t", 10)
+        timer = server.create_timer(0.3, lambda: (timer.cancel(), publisher.publish(Int32())))
+        client = node.create_client(Trigger, "s")
+        node.create_subscription(Int32, "t", begin, 10)
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        other = SingleThreadedExecutor()
+        other.add_node(server)
+        simulation.start(other.spin, "other")
+        executor.spin()
+
+    simulate(program, until=1.0, distro=distro)
+    assert said == ["asks", "asks", "serves", "serves"]
