@@ -8,9 +8,8 @@ source and release notes alone.
 
 Known, but not modelled: before #1469 a callback that waits for a worker is handed over again whenever the
 executor wakes. A program notices this only by chance: an exception comes out twice or earlier, or a second
-worker takes a single timer. ``with`` blocks of ``rclpy.init()``, of nodes and of their entities came with
-Kilted (#1291 to #1298), and raise TypeError before; here every release has them. No release here has
-Kilted's content filters of subscriptions, introspection of actions and ``rosout_qos_profile``.
+worker takes a single timer. No release here has Kilted's content filters of subscriptions, introspection of
+actions and ``rosout_qos_profile``; a program that uses one is told so.
 """
 
 from __future__ import annotations
@@ -112,6 +111,20 @@ class Profile:
     def ends_nodes_with_context(self) -> bool:
         """``shutdown`` of a context destroys its nodes; a signal does not. Source: #1298."""
         return self._since(kilted="", lyrical="")
+
+    @property
+    def has_with_blocks(self) -> bool:
+        """``rclpy.init()``, nodes and their entities end with a ``with`` block; else it raises TypeError.
+
+        Source: #1291 to #1298.
+        """
+        return self._since(kilted="", lyrical="")
+
+    def require_with_blocks(self, entered: object) -> None:
+        """Raise the TypeError of ``with`` for what is no context manager in a release without them."""
+        if not self.has_with_blocks:
+            name = type(entered).__name__
+            raise TypeError(f"{name!r} object does not support the context manager protocol")
 
     @property
     def tells_missing_init(self) -> bool:

@@ -241,6 +241,7 @@ class Publisher:
                 subscription.lost(self)
 
     def __enter__(self) -> Publisher:
+        self.node.context.host.profile.require_with_blocks(self)
         return self
 
     def __exit__(self, *_error: object) -> None:

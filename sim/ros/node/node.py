@@ -302,6 +302,7 @@ class Node:
         publish_change(self._parameter_event_publisher, change)
 
     def __enter__(self) -> Node:
+        self._context.host.profile.require_with_blocks(self)
         return self
 
     def __exit__(self, *_error: object) -> None:

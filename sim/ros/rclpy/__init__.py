@@ -69,8 +69,10 @@ def init(
     context: Context | None = None,
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
-) -> InitContextManager:
+) -> Any:
     """Begin; ``args`` None means the program's own arguments.
+
+    Returns an ``InitContextManager``, None in releases without ``with`` blocks.
 
     ``signal_handler_options`` None means all for the default context, none for another.
 
@@ -84,7 +86,7 @@ def init(
         signal_handler_options = SignalHandlerOptions.ALL if chosen is default else SignalHandlerOptions.NO
     chosen.init(args, domain_id=domain_id)
     install_signal_handlers(signal_handler_options)
-    return InitContextManager(chosen)
+    return InitContextManager(chosen) if chosen.host.profile.has_with_blocks else None
 
 
 class InitContextManager:

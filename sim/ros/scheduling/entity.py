@@ -138,6 +138,7 @@ class Entity:
         """Its node has let it go. With the host's lock held."""
 
     def __enter__(self) -> Self:
+        self.node.context.host.profile.require_with_blocks(self)
         return self
 
     def __exit__(self, *_error: object) -> None:

@@ -143,7 +143,7 @@ def test_a_node_is_gone_after_its_with_block() -> None:
             assert node.get_node_names() == ["n"]
         assert Node("m").get_node_names() == ["m"]
 
-    simulate(program)
+    simulate(program, distro="kilted")
 
 
 @pytest.mark.parametrize("method", ["create_publisher", "declare_parameters", "count_publishers"])

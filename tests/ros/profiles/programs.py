@@ -340,6 +340,25 @@ finish()
         },
     ),
     Differing(
+        "has_with_blocks",
+        """
+def use(thing):
+    with thing:
+        return "ended with its block"
+
+attempt(lambda: use(node.create_publisher(Int32, "t", 10)))
+attempt(lambda: use(node.create_subscription(Int32, "t", print, 10)))
+attempt(lambda: use(rclpy.create_node("m")))
+attempt(lambda: use(rclpy.init(context=rclpy.Context())))
+finish()
+""",
+        {
+            "jazzy@7.1.5": ", ".join(["TypeError"] * 4),
+            "jazzy": ", ".join(["TypeError"] * 4),
+            "kilted@9.1.2": ", ".join(["ended with its block"] * 4),
+        },
+    ),
+    Differing(
         "tells_missing_init",
         """
 rclpy.shutdown()

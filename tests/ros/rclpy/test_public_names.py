@@ -96,7 +96,7 @@ def test_init_ends_its_context_after_a_with_block() -> None:
             raise ValueError("broken")
         assert not own.ok()
 
-    simulate(program)
+    simulate(program, distro="kilted")
 
 
 @pytest.mark.parametrize(

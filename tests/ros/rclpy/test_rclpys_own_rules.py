@@ -2,6 +2,7 @@
 
 from array import array
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -48,6 +49,13 @@ def context() -> Iterator[Context]:
     made.try_shutdown()
 
 
+@contextmanager
+def node_in(context: Context) -> Iterator[Node]:
+    node = Node("n", context=context)
+    yield node
+    node.destroy_node()
+
+
 @pytest.mark.parametrize(
     "ask",
     [
@@ -60,7 +68,7 @@ def context() -> Iterator[Context]:
     ],
 )
 def test_a_destroyed_node_answers_no_questions(context: Context, ask: Callable[[Node], object]) -> None:
-    with Node("n", context=context) as node:
+    with node_in(context) as node:
         ask(node)
     with pytest.raises(InvalidHandle):
         ask(node)
@@ -79,7 +87,7 @@ def test_the_nodes_of_a_context_that_has_ended_are_off_the_graph(context: Contex
 
 
 def test_a_client_knows_its_context(context: Context) -> None:
-    with Node("n", context=context) as node:
+    with node_in(context) as node:
         assert node.create_client(SetBool, "s").context is context
 
 
@@ -91,7 +99,7 @@ def test_type_variables_are_where_programs_import_them_from() -> None:
 
 
 def test_what_nobody_handles_has_handlers_that_warn(context: Context) -> None:
-    with Node("n", context=context) as node:
+    with node_in(context) as node:
         publisher = node.create_publisher(Int32, "t", 10)
         subscription = node.create_subscription(Int32, "t", lambda _: None, 10)
         assert len(publisher.event_handlers) == len(subscription.event_handlers) == 2
@@ -108,7 +116,7 @@ def test_types_and_policies_that_do_not_match_are_warned_of_while_spinning(
     context: Context, capsys: pytest.CaptureFixture[str]
 ) -> None:
     executor = executors.SingleThreadedExecutor(context=context)
-    with Node("n", context=context) as node:
+    with node_in(context) as node:
         executor.add_node(node)
         node.create_publisher(Int32, "numbers", 10)
         node.create_subscription(String, "numbers", lambda _: None, 10)
@@ -133,7 +141,7 @@ def test_only_a_value_that_was_there_is_told_as_deleted(context: Context) -> Non
     dynamic = message("rcl_interfaces", "ParameterDescriptor")(dynamic_typing=True)
     executor = executors.SingleThreadedExecutor(context=context)
     events: list[Any] = []
-    with Node("n", context=context) as node:
+    with node_in(context) as node:
         executor.add_node(node)
         node.declare_parameters("", [("full", 1, dynamic), ("empty", None, dynamic)])
         ParameterEventHandler(node).add_parameter_event_callback(events.append)

@@ -27,6 +27,7 @@ def run(folder: Path, *sources: str, seconds: float = 3.5) -> Run:
             speed=None,
             until=round(seconds * SECOND),
             robot=RobotUse.NEVER,
+            distro="kilted",  # the first with ``with rclpy.init():``
         )
     )
 

@@ -198,8 +198,7 @@ def test_nodes_are_named_fully_and_bad_names_are_refused() -> None:
             Node("a/b")
         with pytest.raises(InvalidNamespaceException):
             Node("n", namespace="a//b")
-        with rclpy.create_node("made") as made:
-            assert made.get_fully_qualified_name() == "/made"
+        assert rclpy.create_node("made").get_fully_qualified_name() == "/made"
 
     assert [each.name for each in simulate(program).of(NodeAppeared)] == ["/arm/left/n", "/made"]
 
