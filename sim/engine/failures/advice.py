@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from traceback import walk_tb
 from types import FrameType, ModuleType
 
-from sim.engine.failures.missing_names import on_missing_name
+from sim.engine.failures.missing_names import on_missing_name, on_newer
 from sim.probes.own_code import is_own
 from sim.ros.exceptions import NotInitializedException
 from sim.ros.middleware.process import current_process
@@ -23,7 +23,7 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
         case ModuleNotFoundError(name=str(name)):
             from sim.engine.failures.missing import on_missing
 
-            advice = on_missing(name)
+            advice = on_newer(name) or on_missing(name)
         case ImportError(name=str(module), msg=str(text)) if module in sys.modules:
             missing = text.split("'")[1]
             advice = on_missing_name(module, missing) or _nearest(missing, dir(sys.modules[module]))
@@ -32,7 +32,9 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
         case AttributeError(name=str(name), obj=ModuleType() as module):
             advice = on_missing_name(module.__name__, name) or _nearest(name, dir(module))
         case AttributeError(name=str(name), obj=obj):
-            advice = _on_unready_node(name, obj) or _nearest(name, dir(obj))
+            advice = on_newer(name) or _on_unready_node(name, obj) or _nearest(name, dir(obj))
+        case TypeError(args=[str(text)]) if "unexpected keyword argument '" in text:
+            advice = on_newer(text.split("'")[-2])
         case NotInitializedException():
             advice = "call rclpy.init() before the first node is made, at the beginning of main()"
         case _ if type(error).__module__ == "_curses":

@@ -49,6 +49,18 @@ _MISSING = (
         "a few lines of numpy do it",
     ),
 )
+_FILTER = "content filters came with Kilted and are not modelled here; have the callback pass over messages"
+_NEWER = {
+    "configure_introspection": "introspection came with Kilted for actions and is not modelled here; "
+    "ros2 topic echo /NAME/_action/feedback shows an action's progress",
+    "content_filter_options": _FILTER,
+    "get_content_filter": _FILTER,
+    "is_cft_enabled": _FILTER,
+    "rclpy.subscription_content_filter_options": _FILTER,
+    "rosout_qos_profile": "Kilted lets a node choose the QoS of /rosout, which is not modelled; leave it out",
+    "set_content_filter": _FILTER,
+}
+"""What Kilted's rclpy has and no release here: arguments, attributes and modules."""
 _INSTEAD = {f"{module}.{name}": instead for module, names, instead in _MISSING for name in names.split()}
 """The replacement of each missing name."""
 
@@ -57,6 +69,11 @@ def on_missing_name(module: str, name: str) -> str:
     """Return advice on a name that a module has in ROS 2 and lacks in the model, as a clause; else ""."""
     whole = f"{names_for_programs(module)}.{name}"
     return f"{whole} is not modelled here; {_INSTEAD[whole]}" if whole in _INSTEAD else ""
+
+
+def on_newer(name: str) -> str:
+    """What to do about an argument, attribute or module that came with Kilted; else empty."""
+    return _NEWER.get(name, "")
 
 
 def names_for_programs(text: str) -> str:

@@ -6,6 +6,8 @@ import pytest
 
 from sim.engine.failures.missing_names import _MISSING, on_missing_name
 from tests.ros_packages.node_programs import printed
+from tests.support.daily import first_row_daily
+from tests.support.engine_runs import run_program
 
 NAMES = [(module, name) for module, names, _ in _MISSING for name in names.split()]
 
@@ -28,3 +30,35 @@ def test_what_is_said_to_be_missing_is(tmp_path: Path) -> None:
 
 def test_other_names_are_left_to_spelling() -> None:
     assert on_missing_name("sim.ros_packages.tf2_ros", "Transformer") == ""
+
+
+@pytest.mark.parametrize(
+    ("line", "advice"),
+    first_row_daily(
+        ("Node('n', rosout_qos_profile=3)", "Kilted lets a node"),
+        (
+            "import rclpy.subscription_content_filter_options",
+            "content filters came",
+        ),
+        (
+            "node.create_subscription(String, 't', print, 1, content_filter_options=0)",
+            "content filters came",
+        ),
+        ("node.create_subscription(String, 't', print, 1).is_cft_enabled", "content filters came"),
+        (
+            "ActionClient(node, Fibonacci, 'f').configure_introspection()",
+            "introspection came with Kilted",
+        ),
+    ),
+)
+@pytest.mark.parametrize("distro", ["jazzy", "kilted"])
+def test_what_only_kilted_has_is_told_in_a_sentence(
+    tmp_path: Path, line: str, advice: str, distro: str
+) -> None:
+    head = (
+        "import rclpy\nfrom rclpy.action import ActionClient\nfrom rclpy.node import Node\n"
+        "from std_msgs.msg import String\nfrom example_interfaces.action import Fibonacci\nrclpy.init()\n"
+        "node = Node('m')\n"
+    )
+    run = run_program(tmp_path, head + line, distro=distro)
+    assert f"; {advice}" in run.ending.reason
