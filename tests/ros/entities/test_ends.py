@@ -112,7 +112,8 @@ def test_a_removed_node_still_names_its_last_executor_and_is_not_served() -> Non
     ],
 )
 def test_a_destroyed_timer_is_an_invalid_handle(use: Callable[[Timer], object]) -> None:
-    with Context() as context, Node("n", context=context) as node:
+    with Context() as context:
+        node = Node("n", context=context)
         timer = node.create_timer(1.0, None)
         with timer.handle:
             node.destroy_timer(timer)
@@ -122,7 +123,8 @@ def test_a_destroyed_timer_is_an_invalid_handle(use: Callable[[Timer], object]) 
 
 
 def test_a_destroyed_client_or_guard_condition_is_an_invalid_handle() -> None:
-    with Context() as context, Node("n", context=context) as node:
+    with Context() as context:
+        node = Node("n", context=context)
         client = node.create_client(SetBool, "s")
         guard = node.create_guard_condition(None)
         client.destroy()
@@ -175,7 +177,8 @@ def test_a_future_of_an_executor_has_its_callbacks_run_there() -> None:
 
 
 def test_a_subscription_tells_what_its_callback_takes() -> None:
-    with Context() as context, Node("n", context=context) as node:
+    with Context() as context:
+        node = Node("n", context=context)
         plain = node.create_subscription(Empty, "t", lambda _: None, 1)
         informed = node.create_subscription(Empty, "t", lambda _message, _info: None, 1)
         assert plain._callback_type is Subscription.CallbackType.MessageOnly

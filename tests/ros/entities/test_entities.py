@@ -53,7 +53,7 @@ def test_a_handle_demands_that_its_entity_lives() -> None:
         with pytest.raises(InvalidHandle, match="destruction was requested"), timer.handle:
             pass
 
-    simulate(program)
+    simulate(program, distro="kilted")
 
 
 def test_a_subscription_may_ask_for_the_info_of_a_message() -> None:
