@@ -16,9 +16,15 @@ from std_srvs.srv import Trigger
 warnings.simplefilter("ignore")
 rclpy.init()
 said, calls, sent, there, timers, clients, goals, unanswered = [], {}, {}, {}, [], {}, {}, {}
+overslept = []
 
 def say(what):
     said.append((time.monotonic() - began, what))
+
+def sleep(seconds):
+    since = time.monotonic()
+    time.sleep(seconds)
+    overslept.append(time.monotonic() - since - seconds)
 
 def called(name):
     calls[name] = calls.get(name, 0) + 1
@@ -174,15 +180,19 @@ for timer in timers:
 for name, executor in executors.items():
     threading.Thread(target=spin, args=(executor, name), daemon=True).start()
 time.sleep({end:.6f})
+ended = time.monotonic() - began
 lines = [f"{{at:.6f}} {{what}}" for at, what in said]
 chosen_among = globals().get("choices", ())
 falls_due = [at / 1e9 - began for at in globals().get("moments", ())]
 moments = sorted(at for at in falls_due if at > 1e-4)
 choices = [f"choice {{place}} {{number}} {{preempts:d}}" for place, number, preempts in chosen_among]
-late = max((late for at, late in globals().get("late", ()) if at > began), default=0)
+late_at = [late for at, late in globals().get("late", ()) if at > began]
+late = max(ended - {end:.6f}, sum(overslept) * {of_gap}, *late_at)
 print(*lines, "moments", *moments, *choices, f"late {{late:.6f}}", sep="\\n", flush=True)
 os._exit(0)
 """
+_LATE_OF_GAP = 0.4
+"""How much delays of sleeps count that add up: together they may come to the gap between two moments."""
 _EXECUTORS = {0: "SingleThreadedExecutor()", EVENTS: "EventsExecutor()"}
 _GROUPS = {
     "default": "None",
@@ -190,7 +200,7 @@ _GROUPS = {
     "reentrant": "ReentrantCallbackGroup()",
 }
 _STEPS = {
-    "sleep": "time.sleep({what:.6f})",
+    "sleep": "sleep({what:.6f})",
     "publish": 'publish("t{what:.0f}")',
     "ask": 'request("client_{place}_{what:.0f}")',
     "await": 'await ask("client_{place}_{what:.0f}", called("client_{place}_{what:.0f}"))',
@@ -244,7 +254,7 @@ def program(system: System) -> str:
     lines += [f"g{place} = {_GROUPS[group]}" for place, group in enumerate(system.groups)]
     for each in system.callbacks:
         lines += _callback(each)
-    return "\n".join([*lines, *_entities(system)]) + _TAIL.format(end=system.end)
+    return "\n".join([*lines, *_entities(system)]) + _TAIL.format(end=system.end, of_gap=_LATE_OF_GAP)
 
 
 def _callback(each: Callback) -> list[str]:
