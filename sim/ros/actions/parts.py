@@ -64,7 +64,7 @@ class Part(Entity):
     def become_ready(self, since: int) -> None:
         """The waitable has something to take. With the host's lock held."""
         self.pending = True
-        self._owner.arrived = self
+        self._owner.arrived_at = self
         self._owner.become_ready(since)
 
     def nothing_left(self) -> None:

@@ -299,7 +299,7 @@ class ActionServer(ActionWaitable):
         with self._host.lock:
             now = self._host.clock.now()
             if not self.destroyed and self._expired(now):
-                self.arrived = None
+                self.arrived_at = None
                 self.become_ready(now)
 
     def _expired(self, now: int) -> list[ServerGoalHandle]:

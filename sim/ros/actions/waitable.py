@@ -61,7 +61,7 @@ class ActionWaitable(Entity):
         self._host = node.context.host
         self._probe = node.context.probe
         self._parts: list[tuple[Part, Handler]] = []
-        self._to_take: Container[Part] = ()
+        self._to_take: Container[Entity | None] = ()
         # The parts are never served by themselves, so they are no members of the program's group.
         self.parts_group = ReentrantCallbackGroup()
 

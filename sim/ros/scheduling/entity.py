@@ -94,7 +94,7 @@ class Entity:
     served = True
     """Whether it is called by itself; if not, what it is a part of is."""
 
-    arrived: Entity | None = None
+    arrived_at: Entity | None = None
     """What the latest arrived at, where several things make it ready."""
 
     due = NEVER

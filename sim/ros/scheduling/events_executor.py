@@ -222,7 +222,7 @@ class EventsExecutor(Executor):
     def _entity_ready(self, entity: Entity) -> None:
         """Something arrived: one event each. Timers are looked at when they fall due, and when time jumps."""
         if entity in self._registered and entity.kind is not EntityKind.TIMER:
-            self._queue.put(partial(self._serve, entity, (entity.arrived,)))
+            self._queue.put(partial(self._serve, entity, (entity.arrived_at,)))
 
     _entity_has_more = _entity_ready
 

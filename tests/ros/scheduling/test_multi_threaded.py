@@ -394,7 +394,7 @@ def test_a_worker_takes_the_next_of_the_queue_before_any_other_thread_goes_on(di
 
         server.create_service(Trigger, "s", serve)
         publisher = server.create_publisher(Int32, "t", 10)
-        timer = server.create_timer(0.3, lambda: (timer.cancel(), publisher.publish(Int32())))
+        simulation.at(0.3, lambda: publisher.publish(Int32()))
         client = node.create_client(Trigger, "s")
         node.create_subscription(Int32, "t", begin, 10)
         executor = MultiThreadedExecutor(2)
