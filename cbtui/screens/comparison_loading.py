@@ -1,5 +1,6 @@
 """Loads two runs for a comparison, shows the progress, and opens the comparison."""
 
+from dataclasses import dataclass
 from threading import Event
 from time import monotonic
 from typing import ClassVar
@@ -44,26 +45,23 @@ class ComparisonLoadingScreen(SizedScreen[None]):
     CSS_PATH = "comparison_loading.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.COMPARE)]
 
+    @dataclass
     class Progressed(Message):
         """Loading has progressed."""
 
-        def __init__(self, progress: RunProgress) -> None:
-            super().__init__()
-            self.progress = progress
+        progress: RunProgress
 
+    @dataclass
     class Ready(Message):
         """Both runs are loaded."""
 
-        def __init__(self, found: RunPair) -> None:
-            super().__init__()
-            self.found = found
+        found: RunPair
 
+    @dataclass
     class GatheringFailed(Message):
         """The runs cannot be compared; ``sentence`` says why."""
 
-        def __init__(self, sentence: str) -> None:
-            super().__init__()
-            self.sentence = sentence
+        sentence: str
 
     def __init__(
         self, first: ComparedRun, second: ComparedRun, terms: ComparisonTerms, charset: Charset

@@ -1,6 +1,7 @@
 """A scrolling view that draws its visible lines in inks and component classes."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from rich.segment import Segment
 from rich.style import Style
@@ -19,12 +20,11 @@ class InkedView(ScrollView):
 
     ALLOW_SELECT = False
 
+    @dataclass
     class MomentPicked(Message):
         """The person picked a line about the moment ``at``, in nanoseconds of the run."""
 
-        def __init__(self, at: Nanoseconds) -> None:
-            super().__init__()
-            self.at = at
+        at: Nanoseconds
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id)

@@ -2,6 +2,7 @@
 
 from bisect import bisect_right
 from collections.abc import Collection, Iterator
+from dataclasses import dataclass
 from os.path import commonprefix
 from typing import ClassVar, NamedTuple
 
@@ -130,23 +131,21 @@ class Prompt(Input):
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.PROMPT)]
 
+    @dataclass
     class LineSubmitted(Message):
         """The user has entered a line."""
 
-        def __init__(self, text: str) -> None:
-            super().__init__()
-            self.text = text
+        text: str
 
     class LineInterrupted(Message):
         """The user wants to interrupt the running line."""
 
+    @dataclass
     class CompletionWanted(Message):
         """The user wants completions at the cursor."""
 
-        def __init__(self, text: str, cursor: int) -> None:
-            super().__init__()
-            self.text = text
-            self.cursor = cursor
+        text: str
+        cursor: int
 
     def __init__(self) -> None:
         super().__init__(compact=True, select_on_focus=False)
@@ -221,12 +220,11 @@ class ProgramKeyboard(Input):
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.KEYBOARD)]
     reads: reactive[Reading] = reactive(Reading.NOTHING)
 
+    @dataclass
     class TextTyped(Message):
         """Text was typed."""
 
-        def __init__(self, text: str) -> None:
-            super().__init__()
-            self.text = text
+        text: str
 
     def __init__(self) -> None:
         super().__init__(compact=True, select_on_focus=False)

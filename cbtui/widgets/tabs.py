@@ -1,6 +1,7 @@
 """The tabs of a layout that shows one pane at a time."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 from rich.cells import cell_len
@@ -34,12 +35,11 @@ class Tabs(PaintedWidget):
     note: reactive[str] = painted("")
     """The current pane's note at the right, its most important part first."""
 
+    @dataclass
     class TabPicked(Message):
         """A pane was clicked."""
 
-        def __init__(self, pane: str) -> None:
-            super().__init__()
-            self.pane = pane
+        pane: str
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the line."""

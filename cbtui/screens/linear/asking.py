@@ -95,13 +95,13 @@ class AskedExport(ScreenPart):
         self.host.ask(self._ask())
 
     def _ask(self) -> Dialogue:
-        choices = [choice for choice in CHOICES.values() if not choice[0].on_screen]
-        texts = [f"{title}, {meaning}" for _, title, meaning in choices]
+        choices = [choice for choice in CHOICES.values() if not choice.on_screen]
+        texts = [f"{choice.title}, {choice.meaning}" for choice in choices]
         place = yield from choose(self.host, "format", "Export the run so far as what?", texts)
         if place is None:
             return
         try:
-            export = LiveExport(self.runs.run.material(), choices[place][0].form, None)
+            export = LiveExport(self.runs.run.material(), choices[place].form, None)
         except FileNotFoundError:
             self.host.tell("The current folder is gone; start the console in another one.")
             return

@@ -11,7 +11,7 @@ from cbtui.screens.parts.finishing import FileFinisher
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
-from cbtui.screens.windows.export import ExportChoice, ExportScreen
+from cbtui.screens.windows.export import CHOICES, ExportScreen
 
 PROGRESS_INTERVAL = 0.25
 """Seconds between two updates of an export's progress."""
@@ -65,9 +65,10 @@ class Exports(ScreenPart):
             done = int(100 * self._export.share)
             self.host.tell(f"An export is being written, {done} % of it so far; the next can begin after it")
 
-    def _begin(self, choice: ExportChoice | None) -> None:
-        if choice is None:
+    def _begin(self, name: str | None) -> None:
+        if name is None:
             return
+        choice = CHOICES[name]
         window = self.navigation.window if choice.on_screen else None
         try:
             self._export = LiveExport(self.runs.run.material(), choice.form, window)

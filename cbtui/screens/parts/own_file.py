@@ -17,12 +17,11 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.guide import Guide
 
 
+@dataclass
 class FileRead(Message):
     """The file was read; ``content`` may be unchanged, None if the file is missing."""
 
-    def __init__(self, content: bytes | None) -> None:
-        super().__init__()
-        self.content = content
+    content: bytes | None
 
 
 async def read_when_saved(file: Path, post: Callable[[Message], object], tell: Callable[[str], None]) -> None:

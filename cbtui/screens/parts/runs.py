@@ -3,6 +3,7 @@
 import threading
 import time
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from typing import Generic, TypeAlias, TypeVar
 
 from textual.message import Message
@@ -34,22 +35,20 @@ class RunController(Generic[RunT_co]):
     the thread of a run's source, everything else on the UI thread.
     """
 
+    @dataclass
     class Delivered(Message):
         """A batch of events of the run with this number."""
 
-        def __init__(self, run: int, events: list[AnyEvent]) -> None:
-            super().__init__()
-            self.run = run
-            self.events = events
-            self.taken = threading.Event()
+        run: int
+        events: list[AnyEvent]
+        taken: threading.Event = field(default_factory=threading.Event, init=False)
 
+    @dataclass
     class Over(Message):
         """The run with this number delivers no more; ``trouble`` is a sentence if that was unexpected."""
 
-        def __init__(self, run: int, trouble: str | None) -> None:
-            super().__init__()
-            self.run = run
-            self.trouble = trouble
+        run: int
+        trouble: str | None
 
     def __init__(self, make: MakeRun[RunT_co], post: Callable[[Message], None]) -> None:
         self.number = 0

@@ -25,12 +25,11 @@ _TIMEOUT = 1.0
 class Predictions(ScreenPart):
     """Asks for predictions, and unlocks the true answers once enough of the run was watched."""
 
+    @dataclass
     class Found(Message):
         """The run that predictions are compared with has ended."""
 
-        def __init__(self, outcome: PredictionOutcome) -> None:
-            super().__init__()
-            self.outcome = outcome
+        outcome: PredictionOutcome
 
     screen: Screen[None]
     host: ScreenHost

@@ -7,11 +7,10 @@ from textual.widgets import Static
 
 from cbtui.keys.action import Scope
 from cbtui.looks.theme import Charset
-from cbtui.screens.windows.typed_line import TypedLine
-from cbtui.screens.windows.window import WindowScreen
+from cbtui.screens.windows.typed_line import LineScreen, TypedLine
 
 
-class ChainScreen(WindowScreen[tuple[str, ...]]):
+class ChainScreen(LineScreen[tuple[str, ...]]):
     """Its result are the names of the chain, none to follow nothing; None if it was closed.
 
     ``names`` are those that were followed before, ``known`` all that something was sent on. ``follow`` raises
@@ -43,10 +42,6 @@ class ChainScreen(WindowScreen[tuple[str, ...]]):
         yield line
         yield Static(f"There is {', '.join(self._known)}.", markup=False)
         yield line.refusal
-
-    async def action_go(self) -> None:
-        """Take what was typed."""
-        await self.query_one(TypedLine).action_submit()
 
     def _take(self, text: str) -> None:
         names = names_in(text)

@@ -19,7 +19,7 @@ from cbtui.keys.keymap import Keymap
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.judged.cures import Cure
 from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
-from cbtui.screens.windows.window import WindowScreen
+from cbtui.screens.windows.window import PlainOptionList, WindowScreen
 from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
 from lessons.lesson import Lesson
@@ -121,7 +121,7 @@ class DiagnosesScreen(WindowScreen[Chosen]):
 
     def content(self) -> ComposeResult:
         """Lay out the list, and what there is to say of the highlighted one."""
-        yield FindingList(*self._options())
+        yield PlainOptionList(*self._options())
         with VerticalScroll(can_focus=False):
             yield Static(classes="told")
         yield Static(_ALL_IS_WELL, classes="well", markup=False)
@@ -134,7 +134,7 @@ class DiagnosesScreen(WindowScreen[Chosen]):
 
     def _begin(self) -> None:
         some = bool(self._findings)
-        listed, told = self.query_one(FindingList), self.query_one(VerticalScroll)
+        listed, told = self.query_one(OptionList), self.query_one(VerticalScroll)
         listed.display, told.display, self.query_one(".well").display = some, some, not some
         listed.highlighted = 0 if some else None
         if self._trial is not None:
@@ -193,8 +193,8 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         self._rows = tuple(self._ways())
         self._show_options().highlighted = 0 if chosen is None else self._rows.index(chosen)
 
-    def _show_options(self) -> "FindingList":
-        listed = self.query_one(FindingList)
+    def _show_options(self) -> OptionList:
+        listed = self.query_one(OptionList)
         listed.clear_options()
         listed.add_options(self._options())
         return listed
@@ -248,14 +248,6 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         self.query_one(VerticalScroll).scroll_home(animate=False)
         self.call_after_refresh(self.query_one(KeyBar).changed)
 
-    def action_previous(self) -> None:
-        """Highlight the one above."""
-        self.query_one(FindingList).action_cursor_up()
-
-    def action_next(self) -> None:
-        """Highlight the one below."""
-        self.query_one(FindingList).action_cursor_down()
-
     def action_go(self) -> None:
         """Go where the highlighted row leads."""
         if self._chosen is not None:
@@ -269,12 +261,8 @@ class DiagnosesScreen(WindowScreen[Chosen]):
 
     @property
     def _chosen(self) -> _ListedWay | None:
-        highlighted = next((listed.highlighted for listed in self.query(FindingList)), None)
+        highlighted = next((listed.highlighted for listed in self.query(OptionList)), None)
         return None if highlighted is None else self._rows[highlighted]
-
-
-class FindingList(OptionList, inherit_bindings=False):
-    """The list of findings; its highlight is moved by the screen's keys and by clicks."""
 
 
 def _problems(findings: Sequence[ExplainedFinding]) -> frozenset[object]:

@@ -10,7 +10,7 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.setup.changeable import ChangeableCallback
 from cbtui.runs.setup.changes import GROUP_CHOICES
 from cbtui.runs.setup.equivalent_code import code_of_group
-from cbtui.screens.windows.window import WindowScreen
+from cbtui.screens.windows.window import ChoiceScreen
 from cbtui.widgets.pageable_option_list import PageableOptionList
 
 UNCHANGED = ""
@@ -26,17 +26,17 @@ _MEANINGS = {
 }
 
 
-class GroupScreen(WindowScreen[str]):
-    """Its result is one of ``GROUP_CHOICES``, or ``UNCHANGED``; None if it was closed."""
+class GroupScreen(ChoiceScreen[str]):
+    """Asks for one of ``GROUP_CHOICES``, or ``UNCHANGED``; the result is None if the window was closed."""
 
     SCOPE = Scope.GROUP
     heading = "Callback group"
+    choices = (*GROUP_CHOICES, UNCHANGED)
 
     def __init__(self, callback: ChangeableCallback, chosen: str | None, charset: Charset) -> None:
         super().__init__(charset)
         self._callback = callback
-        self._choices = (*GROUP_CHOICES, UNCHANGED)
-        self._chosen = chosen or UNCHANGED
+        self.highlighted = chosen or UNCHANGED
 
     def content(self) -> ComposeResult:
         """Lay out the question."""
@@ -46,28 +46,16 @@ class GroupScreen(WindowScreen[str]):
         yield PageableOptionList(
             *(
                 self.option(choice, f"  {choice or _OWN:<14} ", (_MEANINGS[choice], "$text-muted"))
-                for choice in self._choices
+                for choice in self.choices
             )
         )
         yield Static(classes="code")
 
-    def on_mount(self) -> None:
-        """Highlight the current choice."""
-        self.query_one(OptionList).highlighted = self._choices.index(self._chosen)
-
     @on(OptionList.OptionHighlighted)
     def _show_code(self, event: OptionList.OptionHighlighted) -> None:
-        choice = self._choices[event.option_index]
+        choice = self.choices[event.option_index]
         if choice == UNCHANGED:
             code = ["# as it is written"]
         else:
             code = code_of_group(self._callback.name, self._callback.kind, choice)
         self.query_one(".code", Static).update(Content("\n".join(code)))
-
-    @on(OptionList.OptionSelected)
-    def _take(self, event: OptionList.OptionSelected) -> None:
-        self.dismiss(self._choices[event.option_index])
-
-    def action_choose(self, choice: str) -> None:
-        """Take a group."""
-        self.dismiss(choice)

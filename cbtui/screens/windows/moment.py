@@ -7,14 +7,13 @@ from textual.widgets import Static
 
 from cbtui.keys.action import Scope
 from cbtui.looks.theme import Charset
-from cbtui.screens.windows.typed_line import TypedLine
-from cbtui.screens.windows.window import WindowScreen
+from cbtui.screens.windows.typed_line import LineScreen, TypedLine
 from sim.quantities.durations import timestamp
 from sim.quantities.nanoseconds import nearest_ns
 from sim.trace.model import Nanoseconds
 
 
-class MomentScreen(WindowScreen[Nanoseconds]):
+class MomentScreen(LineScreen[Nanoseconds]):
     """Its result is the moment in nanoseconds; None if it was closed."""
 
     SCOPE = Scope.MOMENT
@@ -32,10 +31,6 @@ class MomentScreen(WindowScreen[Nanoseconds]):
         line = TypedLine(f"{self._now / 1e9:.3f}", self._take, "seconds, such as 12.5")
         yield line
         yield line.refusal
-
-    async def action_go(self) -> None:
-        """Take what was typed."""
-        await self.query_one(TypedLine).action_submit()
 
     def _take(self, text: str) -> None:
         seconds = seconds_in(text)

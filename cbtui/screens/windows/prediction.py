@@ -12,7 +12,7 @@ from cbtui.keys.action import Scope
 from cbtui.keys.keymap import keymap_of
 from cbtui.keys.named_keys import with_keys_in_force
 from cbtui.looks.theme import Charset
-from cbtui.screens.windows.window import WindowScreen
+from cbtui.screens.windows.window import PlainOptionList, WindowScreen
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.prose import Prose
 from lessons.description import Prediction
@@ -54,7 +54,7 @@ class PredictionScreen(WindowScreen[PredictionExit]):
         with VerticalScroll(can_focus=False):
             yield Prose(with_keys_in_force(self._introduction, keymap_of(self.app)))
         yield Static(classes="question", markup=False)
-        yield Answers()
+        yield PlainOptionList()
 
     def on_mount(self) -> None:
         """Ask the first question."""
@@ -67,7 +67,7 @@ class PredictionScreen(WindowScreen[PredictionExit]):
                 place = parameters[0]
                 return isinstance(place, int) and place <= len(self._prediction.answers)
             case "take":
-                return self.is_mounted and self.query_one(Answers).highlighted is not None
+                return self.is_mounted and self.query_one(OptionList).highlighted is not None
             case "page_up" | "page_down":
                 return self.is_mounted and self.query_one(VerticalScroll).max_scroll_y > 0
         return True
@@ -82,7 +82,7 @@ class PredictionScreen(WindowScreen[PredictionExit]):
         window = self.query_one(".window")
         window.border_title, window.border_subtitle = f"What do you expect?{number}", "your answer is final"
         self.query_one(".question", Static).update(self._prediction.question)
-        answers = self.query_one(Answers)
+        answers = self.query_one(OptionList)
         answers.set_options(
             self.option(number, f"  {answer}")
             for number, answer in enumerate(self._prediction.answers, start=1)
@@ -98,23 +98,15 @@ class PredictionScreen(WindowScreen[PredictionExit]):
     @on(OptionList.OptionSelected)
     def _highlight_clicked(self, event: OptionList.OptionSelected) -> None:
         """Highlight a clicked answer without giving it."""
-        self.query_one(Answers).highlighted = event.option_index
+        self.query_one(OptionList).highlighted = event.option_index
 
     def action_choose(self, number: int) -> None:
         """Highlight an answer."""
-        self.query_one(Answers).highlighted = number - 1
-
-    def action_previous(self) -> None:
-        """Highlight the answer above."""
-        self.query_one(Answers).action_cursor_up()
-
-    def action_next(self) -> None:
-        """Highlight the answer below."""
-        self.query_one(Answers).action_cursor_down()
+        self.query_one(OptionList).highlighted = number - 1
 
     def action_take(self) -> None:
         """Take the highlighted answer, for good, and ask the next question."""
-        chosen = self.query_one(Answers).highlighted
+        chosen = self.query_one(OptionList).highlighted
         if chosen is None:
             return
         self._answer(self._place, chosen)
@@ -131,7 +123,3 @@ class PredictionScreen(WindowScreen[PredictionExit]):
     def action_close(self) -> None:
         """Go back to where the person came from."""
         self.dismiss(PredictionExit.BACK)
-
-
-class Answers(OptionList, inherit_bindings=False):
-    """The list of answers; its highlight is moved by the screen's keys and by clicks."""

@@ -9,23 +9,24 @@ from cbtui.keys.action import Scope
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.changeable import ChangeableSetup
 from cbtui.runs.setup.equivalent_code import code_of_threads
-from cbtui.screens.windows.window import WindowScreen
+from cbtui.screens.windows.window import ChoiceScreen
 from cbtui.widgets.pageable_option_list import PageableOptionList
 from sim.quantities.plural import counted
 
 MOST = 8
 
 
-class ThreadsScreen(WindowScreen[int]):
-    """Its result is the number, or 0 for the program's own; None if it was closed."""
+class ThreadsScreen(ChoiceScreen[int]):
+    """Asks for a number of threads, 0 for the program's own; the result is None if the window was closed."""
 
     SCOPE = Scope.THREADS
     heading = "Threads"
+    choices = range(MOST + 1)
 
     def __init__(self, about: ChangeableSetup, chosen: int | None, charset: Charset) -> None:
         super().__init__(charset)
         self._about = about
-        self._chosen = chosen or 0
+        self.highlighted = chosen or 0
 
     def content(self) -> ComposeResult:
         """Lay out the question."""
@@ -35,20 +36,8 @@ class ThreadsScreen(WindowScreen[int]):
         yield PageableOptionList(*(self.option(number, text) for number, text in enumerate(texts)))
         yield Static(classes="code")
 
-    def on_mount(self) -> None:
-        """Highlight the current choice."""
-        self.query_one(OptionList).highlighted = self._chosen
-
     @on(OptionList.OptionHighlighted)
     def _show_code(self, event: OptionList.OptionHighlighted) -> None:
         number = event.option_index
         code = code_of_threads(number, self._about) if number else "# as it is written"
         self.query_one(".code", Static).update(Content(code))
-
-    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Take the number that was clicked or confirmed."""
-        self.dismiss(event.option_index)
-
-    def action_choose(self, number: int) -> None:
-        """Take a number."""
-        self.dismiss(number)

@@ -1,9 +1,12 @@
-"""The line that a window asks for, and why it cannot be taken."""
+"""Windows that ask for a line of text, and say why they refuse one."""
 
 from collections.abc import Callable
 
 from textual.content import Content
 from textual.widgets import Input, Static
+
+from cbtui.screens.sized import Result
+from cbtui.screens.windows.window import WindowScreen
 
 
 class TypedLine(Input):
@@ -21,3 +24,11 @@ class TypedLine(Input):
             self._take(self.value)
         except ValueError as error:
             self.refusal.update(Content(f"{error}."))
+
+
+class LineScreen(WindowScreen[Result]):
+    """A window with one ``TypedLine``."""
+
+    async def action_go(self) -> None:
+        """Submit the line."""
+        await self.query_one(TypedLine).action_submit()

@@ -11,11 +11,10 @@ from textual.widgets import Input, Static
 from cbtui.keys.action import Scope
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.quantities import TypedValue, Value
-from cbtui.screens.windows.typed_line import TypedLine
-from cbtui.screens.windows.window import WindowScreen
+from cbtui.screens.windows.typed_line import LineScreen, TypedLine
 
 
-class ValueScreen(WindowScreen[tuple[Value | None]], Generic[Value]):
+class ValueScreen(LineScreen[tuple[Value | None]], Generic[Value]):
     """Its result is a tuple with the value, or with None for the program's own; None if it was closed.
 
     ``now`` is the text to begin with; ``code`` returns the line of a program for a value.
@@ -39,10 +38,6 @@ class ValueScreen(WindowScreen[tuple[Value | None]], Generic[Value]):
         yield line
         yield Static(classes="code")
         yield line.refusal
-
-    async def action_go(self) -> None:
-        """Take what was typed."""
-        await self.query_one(TypedLine).action_submit()
 
     @on(Input.Changed)
     def _show_code(self, event: Input.Changed) -> None:

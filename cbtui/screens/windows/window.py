@@ -1,12 +1,15 @@
-"""A window: a modal screen with a frame and the keys of its scope."""
+"""Windows: modal screens with a frame and the keys of their scope; some list choices or take a line."""
 
+from collections.abc import Sequence
 from typing import Any, ClassVar
 
+from textual import on
 from textual.app import ComposeResult
 from textual.containers import Container, VerticalScroll
 from textual.content import Content
 from textual.screen import ModalScreen
 from textual.types import CSSPathType
+from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
 from cbtui.keys.action import Scope
@@ -50,6 +53,14 @@ class WindowScreen(ModalScreen[Result], SizedScreen[Result]):
         key = keymap_of(self.app).sign(self.SCOPE, f"choose({choice!r})", self._charset)
         return Option(Content.assemble((key, "bold $text-accent"), *text))
 
+    def action_previous(self) -> None:
+        """Highlight the option above."""
+        self.query_one(OptionList).action_cursor_up()
+
+    def action_next(self) -> None:
+        """Highlight the option below."""
+        self.query_one(OptionList).action_cursor_down()
+
     def action_page_up(self) -> None:
         """Scroll the text up."""
         self.query_one(VerticalScroll).scroll_page_up(animate=False)
@@ -61,3 +72,27 @@ class WindowScreen(ModalScreen[Result], SizedScreen[Result]):
     def action_close(self) -> None:
         """Close the window without a result."""
         self.dismiss(None)
+
+
+class PlainOptionList(OptionList, inherit_bindings=False):
+    """A list whose highlight is moved by the window's keys and by clicks."""
+
+
+class ChoiceScreen(WindowScreen[Result]):
+    """A window with a list of ``choices``; its result is the one that is clicked, confirmed or typed."""
+
+    choices: Sequence[Result]
+    highlighted: Result
+    """The choice that is highlighted first."""
+
+    def on_mount(self) -> None:
+        """Highlight the first choice."""
+        self.query_one(OptionList).highlighted = self.choices.index(self.highlighted)
+
+    @on(OptionList.OptionSelected)
+    def _choose_selected(self, event: OptionList.OptionSelected) -> None:
+        self.action_choose(self.choices[event.option_index])
+
+    def action_choose(self, choice: Result) -> None:
+        """Close the window with a choice."""
+        self.dismiss(choice)

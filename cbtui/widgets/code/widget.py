@@ -1,6 +1,7 @@
 """The source pane: it scrolls, follows running callbacks, and draws only visible lines."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
@@ -80,20 +81,18 @@ class CodeView(InkedView):
     class EditorWanted(Message):
         """The user wants to open the file in an editor."""
 
+    @dataclass
     class ModuleSaved(Message):
         """Another file of the program than its own, of this name, differs from what runs."""
 
-        def __init__(self, name: str) -> None:
-            super().__init__()
-            self.name = name
+        name: str
 
+    @dataclass
     class CallbackPicked(Message):
         """The user picked a line of ``entity``'s callback; with ``leaves`` the focus moves to its lane."""
 
-        def __init__(self, entity: EntityId, leaves: bool) -> None:
-            super().__init__()
-            self.entity = entity
-            self.leaves = leaves
+        entity: EntityId
+        leaves: bool
 
     def __init__(
         self,

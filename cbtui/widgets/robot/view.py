@@ -2,6 +2,7 @@
 
 import asyncio
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Protocol
 
 from rich.segment import Segment
@@ -54,19 +55,17 @@ class RobotView(PaintedWidget):
     """The figures of the lesson's scene, which come before the robot."""
     shows_robot: reactive[bool] = painted(False)
 
+    @dataclass
     class PictureTaken(Message):
         """The camera took a picture."""
 
-        def __init__(self, picture: Picture) -> None:
-            super().__init__()
-            self.picture = picture
+        picture: Picture
 
+    @dataclass
     class CameraLost(Message):
         """The camera failed and takes no more pictures."""
 
-        def __init__(self, why: str) -> None:
-            super().__init__()
-            self.why = why
+        why: str
 
     def __init__(self, *, id: str | None = None, open_camera: OpenCamera = Camera) -> None:  # noqa: A002
         super().__init__(id=id)

@@ -86,7 +86,7 @@ async def test_the_window_offers_every_format(size: tuple[int, int]) -> None:
         await press(pilot, "x")
         assert isinstance(app.screen, ExportScreen)
         picture = text_of(app)
-        assert all(meaning in picture for _, _, meaning in CHOICES.values())
+        assert all(choice.meaning in picture for choice in CHOICES.values())
         await press(pilot, "escape")
         assert messages(app) == []
 
