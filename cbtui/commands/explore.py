@@ -1,7 +1,6 @@
 """``cbtui explore``: runs a program under other thread schedules and reports the outcomes."""
 
 import argparse
-import shlex
 from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -17,7 +16,7 @@ from cbtui.text.output import complain, say
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping
 
-    from cbtui.runs.judged.exploration_text import Shrunk
+    from cbtui.runs.judged.exploration_text import ReplayCommand, Shrunk
     from cbtui.runs.judged.exploring import Exploration, ScheduleResult, SeedT
     from cbtui.runs.judged.shards import Shard
     from lessons.lesson import Lesson
@@ -240,13 +239,15 @@ def _of_files_only(options: argparse.Namespace) -> dict[str, object]:
     }
 
 
-def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
+def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[ReplayCommand]]":
     """The exploration of a file, and the commands that repeat one schedule."""
+    from cbtui.runs.judged.exploration_text import ReplayCommand
+
     path = file_of(options.target)
     if options.check is not None:
         lesson = exercise_of(options.check)
-        words = ["cbtui", "check", lesson.id, options.target]
-        return _judged(lesson, options, options.target), [shlex.join(words)]
+        again = ReplayCommand(("cbtui", "check", lesson.id, options.target))
+        return _judged(lesson, options, options.target), [again]
 
     from cbtui.runs.judged.exploring import Exploration
     from cbtui.runs.setup.lesson_setup import RunRequest
@@ -264,17 +265,17 @@ def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
     )
     given = inputs.words(options.calls, options.lines)
     different = changes.words(changed)
-    behind = ["--", *options.arguments] if options.arguments else []
-    replays = [
-        ["cbtui", "run", options.target, "--for", f"{seconds:.12g}", *given, *different, *behind],
-        ["cbtui", "open", options.target, *different, *behind],
-    ]
-    return Exploration(request.setup(), path.name, None, options.limit), [
-        shlex.join(each) for each in replays
-    ]
+    ways = (
+        ("cbtui", "run", options.target, "--for", f"{seconds:.12g}", *given, *different),
+        ("cbtui", "open", options.target, *different),
+    )
+    replays = [ReplayCommand(words, tuple(options.arguments)) for words in ways]
+    return Exploration(request.setup(), path.name, None, options.limit), replays
 
 
-def _of_lesson(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
+def _of_lesson(options: argparse.Namespace) -> "tuple[Exploration, list[ReplayCommand]]":
+    from cbtui.runs.judged.exploration_text import ReplayCommand
+
     lesson = lesson_of(options.target)
     if lesson.setup.clock == "real":
         refuse(f"{lesson.id} runs on the real clock, where the machine alone chooses the order of threads")
@@ -282,7 +283,8 @@ def _of_lesson(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
     words = ["cbtui", "run", lesson.id, "--for", f"{run.seconds:g}"]
     words += [] if run.threads is None else ["--threads", str(run.threads)]
     words += inputs.words(run.calls, sorted(run.lines))
-    return _judged(lesson, options, None), [shlex.join(words), shlex.join(["cbtui", "open", lesson.id])]
+    replays = [ReplayCommand(tuple(words)), ReplayCommand(("cbtui", "open", lesson.id))]
+    return _judged(lesson, options, None), replays
 
 
 def _judged(lesson: "Lesson", options: argparse.Namespace, file: str | None) -> "Exploration":

@@ -2,13 +2,17 @@
 
 import argparse
 from itertools import groupby
+from typing import TYPE_CHECKING
 
 from cbtui.text.output import say
+
+if TYPE_CHECKING:
+    from cbtui.learning.stage import StageNote
 
 
 def list_lessons(_options: argparse.Namespace) -> int:
     """Print the lessons."""
-    from cbtui.learning.stage import Stage, puzzle_text, stage_of, stage_text
+    from cbtui.learning.stage import Stage, puzzle_note, stage_note, stage_of
     from lessons.catalogue import lessons
     from lessons.progress import Progress
     from lessons.puzzles import puzzles_of
@@ -22,14 +26,13 @@ def list_lessons(_options: argparse.Namespace) -> int:
         for (lesson, came), stage in zip(of_unit, stages, strict=True):
             exercise = ", with an exercise" if lesson.exercise is not None else ""
             about = f"{lesson.id:{width}}  {lesson.title}: {lesson.executor}{exercise}"
-            _say_row(stage_text(lesson, came, stage), f"{lesson.number:2}", about)
+            _say_row(stage_note(lesson, came, stage), f"{lesson.number:2}", about)
             for puzzle in puzzles_of(lesson.id):
                 about = f"{puzzle.id:{width}}  puzzle: {puzzle.title}"
-                _say_row(puzzle_text(progress.of(puzzle.id)), "", about)
+                _say_row(puzzle_note(progress.of(puzzle.id)), "", about)
     return 0
 
 
-def _say_row(stage: str, number: str, about: str) -> None:
-    """Print an entry, with the sign of its stage in front and what that means behind."""
-    sign, _, words = stage.partition(" ")
-    say(f" {sign:1} {number:2}  {about}{f'; {words}' if words else ''}\n")
+def _say_row(note: "StageNote", number: str, about: str) -> None:
+    """Print an entry between the sign and the words of its note."""
+    say(f" {note.sign:1} {number:2}  {about}{f'; {note.words}' if note.words else ''}\n")

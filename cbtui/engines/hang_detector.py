@@ -41,8 +41,9 @@ class HangDetector:
         self._polls_left -= 1
         if self._polls_left != 0:
             return []
-        text = f"the engine does not answer: {why()}"
-        return [Notice(self._t, Severity.WARN, text, kind=NoticeKind.ENGINE_SILENT)]
+        problem = f"engine does not answer: {why()}"
+        kind = NoticeKind.ENGINE_SILENT
+        return [Notice(self._t, Severity.WARN, f"the {problem}", kind=kind, problem=problem)]
 
     def received(self, events: list[AnyEvent]) -> list[AnyEvent]:
         """Return the batch that came, which may be empty, after a notice if the engine had been silent."""

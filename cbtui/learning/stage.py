@@ -46,11 +46,23 @@ def stage_of_puzzle(progress: LessonProgress) -> Stage:
     return Stage.DONE if progress.passed else Stage.WATCHED if progress.solution else Stage.UNTOUCHED
 
 
-def puzzle_text(progress: LessonProgress) -> str:
-    """Return the sign of a puzzle's stage and what it means; "" for one that is untouched."""
+class StageNote(NamedTuple):
+    """The sign of a stage and what it means, or what is left to do; both empty if there is nothing to say."""
+
+    sign: str = ""
+    words: str = ""
+
+    @property
+    def text(self) -> str:
+        """Both, with a blank between them."""
+        return f"{self.sign} {self.words}".strip()
+
+
+def puzzle_note(progress: LessonProgress) -> StageNote:
+    """Return the note on a puzzle; an empty one if it is untouched."""
     stage = stage_of_puzzle(progress)
     words = {Stage.DONE: "solved", Stage.WATCHED: "solution seen, not solved yet"}
-    return f"{stage.value} {words[stage]}" if stage in words else ""
+    return StageNote(stage.value, words[stage]) if stage in words else StageNote()
 
 
 _MEANINGS = {
@@ -67,8 +79,8 @@ def meaning_of(stage: Stage) -> str:
     return _MEANINGS[stage]
 
 
-def stage_text(lesson: Lesson, progress: LessonProgress, stage: Stage) -> str:
-    """Return a stage's sign and what is left to do; "" for the stages before a prediction."""
+def stage_note(lesson: Lesson, progress: LessonProgress, stage: Stage) -> StageNote:
+    """Return the note on a lesson; an empty one for the stages before a prediction."""
     match stage:
         case Stage.PREDICTED:
             text = "predicted, not watched yet"
@@ -83,8 +95,8 @@ def stage_text(lesson: Lesson, progress: LessonProgress, stage: Stage) -> str:
         case Stage.DONE:
             text = "done"
         case _:
-            return ""
-    return f"{stage.value} {text}"
+            return StageNote()
+    return StageNote(stage.value, text)
 
 
 def next_lesson(lessons: Iterable[Lesson], stages: Mapping[str, Stage]) -> Lesson | None:

@@ -19,7 +19,7 @@ from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.learning.lesson_page import short_description
 from cbtui.learning.preview import CALLS, LENGTH, why_no_preview
-from cbtui.learning.stage import Stage, is_revealed, puzzle_text, stage_of, stage_of_puzzle, stage_text
+from cbtui.learning.stage import Stage, is_revealed, puzzle_note, stage_note, stage_of, stage_of_puzzle
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import RecentEntry, RecentList
 from cbtui.screens.console import console_of
@@ -177,11 +177,11 @@ class MenuScreen(SizedScreen[None]):
             text = short_description(chosen, self._progress.of(chosen.id))
             opened = self._recents.lessons.get(chosen.id)
             progress = self._progress.of(chosen.id)
-            so_far = stage_text(chosen, progress, self._stages[chosen.id])
+            so_far = stage_note(chosen, progress, self._stages[chosen.id]).text
             described = of_lesson(chosen, text, opened, self._now(), so_far, keymap_of(self.app))
             return described if is_revealed(chosen, progress) else replace(described, keys=())
         if isinstance(chosen, Puzzle):
-            so_far = puzzle_text(self._progress.of(chosen.id))
+            so_far = puzzle_note(self._progress.of(chosen.id)).text
             return of_puzzle(chosen, find(chosen.lesson).title, so_far)
         if chosen is not None:
             forget = keymap_of(self.app).sign(Scope.MENU, "forget", self.charset)

@@ -117,8 +117,8 @@ def _of_a_loss(loss: str, key: str) -> Diagnosis:
 
 
 def _of_silence(timeline: Timeline, key: str) -> Diagnosis:
-    what = timeline.notices[-1].text.removeprefix("the ")
-    return Diagnosis(f"{what}; {key} runs again", DiagnosisLevel.TROUBLE, stays=True)
+    silent = (each for each in reversed(timeline.notices) if each.kind is NoticeKind.ENGINE_SILENT)
+    return Diagnosis(f"{next(silent).problem}; {key} runs again", DiagnosisLevel.TROUBLE, stays=True)
 
 
 def _of_the_end(timeline: Timeline, way_on: str) -> Diagnosis:

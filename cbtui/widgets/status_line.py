@@ -33,7 +33,8 @@ _WORTH_TELLING = 10_000_000
 class RunStatus:
     """The content of the status line.
 
-    ``back`` is the distance of the moment on screen from the end, 0 for live; ``recorded`` how many events
+    ``pace`` names the clock and the speed, ``brief_pace`` the speed alone on virtual time. ``back`` is the
+    distance of the moment on screen from the end, 0 for live; ``recorded`` how many events
     have been recorded, None if nothing is being recorded, ``unrecorded`` how many came too fast for that,
     ``recorded_bytes`` how large the recording is;
     ``exported`` is how many per cent of an export are done, None if there is none.
@@ -42,6 +43,7 @@ class RunStatus:
     title: str
     state: RunState
     pace: str
+    brief_pace: str
     at: Nanoseconds
     back: Nanoseconds
     executor: str
@@ -72,10 +74,13 @@ def status_of(
     """
     timeline, recording = run.timeline, run.recording
     at = playhead.now(timeline.end)
+    speed = "max" if run.speed is None else f"×{run.speed:.1f}"
+    pace = _pace(run, speed)
     return RunStatus(
         title=title,
         state=run.state,
-        pace=_pace(run),
+        pace=pace,
+        brief_pace=speed if run.virtual else pace,
         at=at,
         back=timeline.end - at if playhead.at is not None else 0,
         executor=executor_label(timeline) or usual_executor,
@@ -90,12 +95,12 @@ def status_of(
     )
 
 
-def _pace(run: ShownRun) -> str:
+def _pace(run: ShownRun, speed: str) -> str:
     if run.setup.real is not None:
         return "real ROS 2"
     if not run.virtual:
-        return "real: computing goes on" if run.state is RunState.PAUSED else f"real ×{run.speed:.1f}"
-    return "virtual max" if run.speed is None else f"virtual ×{run.speed:.1f}"
+        return "real: computing goes on" if run.state is RunState.PAUSED else f"real {speed}"
+    return f"virtual {speed}"
 
 
 class StatusLine(PaintedWidget):
@@ -126,7 +131,7 @@ def status_row(status: RunStatus, width: int, turn: int = 0) -> list[TextRun]:
     title = TextRun(f" {status.title}", _STRONG)
     state = _state(status, turn)
     pace = TextRun(f"  {status.pace}", _PLAIN)
-    brief = TextRun(f"  {status.pace.removeprefix('virtual ')}", _PLAIN)
+    brief = TextRun(f"  {status.brief_pace}", _PLAIN)
     steps, step = _steps(status.steps), _steps(_about_current(status.steps))
     time = TextRun(f"t {timestamp(status.at)}", _STRONG)
     executor = TextRun(status.executor, _PLAIN)

@@ -15,7 +15,7 @@ import pytest
 from cbtui import cli
 from cbtui.commands import explore as command
 from cbtui.runs.judged import exploring
-from cbtui.runs.judged.exploration_text import Shrunk, exploration_text
+from cbtui.runs.judged.exploration_text import ReplayCommand, Shrunk, exploration_text
 from cbtui.runs.judged.exploring import Exploration, ScheduleFailure, ScheduleResult
 from cbtui.runs.judged.shards import Shard
 from lessons.catalogue import find
@@ -190,7 +190,9 @@ WELL = ScheduleResult()
 
 def test_outcomes_that_failed_come_first_each_with_its_first_seed() -> None:
     later = ScheduleResult((ScheduleFailure("deadlock", "b waits for a"),), ("no-free-worker",))
-    text = exploration_text("mine.py", {5: WELL, 6: DEADLOCK, 7: later}, ["cbtui run mine.py -- -x"])
+    text = exploration_text(
+        "mine.py", {5: WELL, 6: DEADLOCK, 7: later}, [ReplayCommand(("cbtui", "run", "mine.py"), ("-x",))]
+    )
     assert text == (
         "mine.py: 3 schedules, 2 outcomes, 2 schedules failed\n"
         "\n"
@@ -208,7 +210,9 @@ def test_outcomes_that_failed_come_first_each_with_its_first_seed() -> None:
 
 
 def test_it_is_told_how_many_schedules_were_tried_in_vain_for_a_simpler_order() -> None:
-    text = exploration_text("mine.py", {6: DEADLOCK}, ["cbtui run mine.py"], shrunk=Shrunk(50, "", None))
+    text = exploration_text(
+        "mine.py", {6: DEADLOCK}, [ReplayCommand(("cbtui", "run", "mine.py"))], shrunk=Shrunk(50, "", None)
+    )
     assert "\nNo simpler order that fails was found in 50 further schedules.\n" in text
     assert text.endswith("  cbtui run mine.py --seed 6\n")
 

@@ -15,6 +15,7 @@ LIVE = RunStatus(
     title="2/6 One shared group",
     state=RunState.LIVE,
     pace="virtual ×1.0",
+    brief_pace="×1.0",
     at=14_250_000_000,
     back=0,
     executor="SingleThreadedExecutor",

@@ -12,6 +12,7 @@ LIVE = RunStatus(
     title="2/6 One shared group",
     state=RunState.LIVE,
     pace="virtual ×1.0",
+    brief_pace="×1.0",
     at=ns(12.48),
     back=0,
     executor="SingleThreadedExecutor",

@@ -1,15 +1,30 @@
 """Results of an exploration as plain text for a terminal."""
 
+import shlex
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import fill
 from typing import NamedTuple
+
+import msgspec
 
 from cbtui.runs.judged.check_text import FAILED, PASSED
 from cbtui.runs.judged.exploring import ScheduleResult, SeedT
 from sim.clock.schedule import Seed
 from sim.diagnosis.text import WIDTH
 from sim.quantities.plural import counted
+
+
+class ReplayCommand(msgspec.Struct, frozen=True):
+    """A command line that runs a schedule again; ``arguments`` are the program's own, behind ``--``."""
+
+    words: tuple[str, ...]
+    arguments: tuple[str, ...] = ()
+
+    def with_seed(self, seed: Seed) -> str:
+        """Return the line for a shell that runs the schedule of a seed."""
+        behind = ("--", *self.arguments) if self.arguments else ()
+        return shlex.join([*self.words, "--seed", str(seed), *behind])
 
 
 class Shrunk(NamedTuple):
@@ -23,15 +38,15 @@ class Shrunk(NamedTuple):
 def exploration_text(
     name: str,
     found: Mapping[SeedT, ScheduleResult],
-    replays: Sequence[str],
+    replays: Sequence[ReplayCommand],
     proof: str = "",
     shrunk: Shrunk | None = None,
 ) -> str:
     """Summarise the different outcomes of a program's schedules, each with an example seed.
 
-    ``found`` has the result of each seed, the simplest first, ``replays`` the commands that repeat a
-    schedule, without its seed. ``proof`` says what was searched, "" for nothing in particular. ``shrunk`` is
-    what the search for a simpler schedule came to, if there was one.
+    ``found`` has the result of each seed, the simplest first. ``replays`` are the commands that repeat a
+    schedule. ``proof`` says what was searched, "" for nothing in particular. ``shrunk`` is the outcome of the
+    search for a simpler schedule, None if there was no search.
     """
     return "\n".join([*_lines(name, found, replays, proof, shrunk), ""])
 
@@ -54,7 +69,7 @@ def proof_text(found: Mapping[str, ScheduleResult], preemptions: int, *, is_comp
 def _lines(
     name: str,
     found: Mapping[SeedT, ScheduleResult],
-    replays: Sequence[str],
+    replays: Sequence[ReplayCommand],
     proof: str,
     shrunk: Shrunk | None,
 ) -> Iterator[str]:
@@ -82,7 +97,7 @@ def _lines(
         shown = shrunk.seed or shown
     yield "To see one again:"
     for command in replays:
-        yield f"  {_with_seed(command, shown)}"
+        yield f"  {command.with_seed(shown)}"
 
 
 def _simplest(shrunk: Shrunk) -> Iterator[str]:
@@ -127,9 +142,3 @@ def _wrapped(text: str, indent: int) -> str:
         break_long_words=False,
         break_on_hyphens=False,
     )
-
-
-def _with_seed(command: str, seed: Seed) -> str:
-    """The command with the seed inserted before the program's own arguments."""
-    own, dashes, behind = command.partition(" -- ")
-    return f"{own} --seed {seed}{dashes}{behind}"

@@ -6,6 +6,7 @@ from pathlib import Path
 import msgspec
 
 from cbtui.runs.judged.bounded_search import Branch, of_all_parts
+from cbtui.runs.judged.exploration_text import ReplayCommand
 from cbtui.runs.judged.exploring import ScheduleResult
 from sim.files.untrusted import read_bytes
 
@@ -19,13 +20,13 @@ class BadShardError(Exception):
 class Shard(msgspec.Struct, frozen=True, kw_only=True):
     """The results of some seeds; ``first`` and ``schedules`` are the seeds of the whole exploration.
 
-    ``replays`` are the commands that repeat a schedule, without its seed. Of a search within a bound of
-    ``preemptions`` there are so many ``parts``; the results are of those that are ``done``, each to its end,
-    and ``preempted`` has the preemptions of each seed, ``branches`` where the search could go on from it.
+    ``replays`` are the commands that repeat a schedule. A search with at most ``preemptions`` preemptions may
+    have several ``parts``; the results are those of the parts that are ``done``. Of each seed, ``preempted``
+    has the number of preemptions, and ``branches`` where the search could continue from it.
     """
 
     program: str
-    replays: tuple[str, ...]
+    replays: tuple[ReplayCommand, ...]
     first: int
     schedules: int
     strategy: str

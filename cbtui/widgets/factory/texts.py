@@ -1,5 +1,6 @@
 """The factory's texts: why something waits, who sits where, and a headline of the scene."""
 
+from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -49,11 +50,10 @@ def headlines(scene: FactoryScene) -> tuple[Headline, ...]:
     counts = counts_text(scene)
     if not scene.areas:
         return (Headline(counts),)
-    trouble = _trouble(scene)
+    trouble, brief = _trouble(scene), _trouble(scene, is_brief=True)
     if not trouble:
         return Headline(f"{counts}, no callback waits for another"), Headline(counts)
     idle = [f"{trouble}, {counted(scene.idle, 'worker')} idle"] if scene.idle else []
-    brief = trouble.replace(" callbacks wait", " wait").replace(" callback waits", " waits")
     return (*(Headline(counts, each) for each in (*idle, trouble, brief)), Headline(counts))
 
 
@@ -69,26 +69,20 @@ def _places(scene: FactoryScene) -> str:
     return counted(len(areas), "area")
 
 
-def _trouble(scene: FactoryScene) -> str:
-    waits = list(scene.waits())
-    held = sum(wait.reason is Reason.GROUP_HELD for wait in waits)
-    short_of_workers = sum(wait.reason is Reason.NO_FREE_WORKER for wait in waits)
-    queued = sum(wait.reason is Reason.EVENT_QUEUE for wait in waits)
-    unattended = len(waits) - held - short_of_workers - queued
-    parts = []
-    if held:
-        parts.append(f"{_waiting(held)} for {'it' if len(scene.areas) == 1 else 'a seat'}")
-    if short_of_workers:
-        parts.append(f"{_waiting(short_of_workers)} for a worker")
-    if queued:
-        parts.append(f"{_waiting(queued)} in the event queue")
-    if unattended:
-        parts.append(f"{_waiting(unattended)}, nobody spins")
-    return ", ".join(parts)
-
-
-def _waiting(number: int) -> str:
-    return f"{counted(number, 'callback')} wait{'s' if number == 1 else ''}"
+def _trouble(scene: FactoryScene, *, is_brief: bool = False) -> str:
+    """Say how many callbacks wait for what."""
+    waits = Counter(wait.reason for wait in scene.waits())
+    objects = {
+        Reason.GROUP_HELD: f" for {'it' if len(scene.areas) == 1 else 'a seat'}",
+        Reason.NO_FREE_WORKER: " for a worker",
+        Reason.EVENT_QUEUE: " in the event queue",
+        Reason.NOBODY_SPINS: ", nobody spins",
+    }
+    return ", ".join(
+        f"{number if is_brief else counted(number, 'callback')} wait{'s' if number == 1 else ''}{what}"
+        for reason, what in objects.items()
+        if (number := waits[reason])
+    )
 
 
 def wait_texts(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, ...]:
