@@ -5,7 +5,7 @@ import sys
 
 _INTERRUPTED = 130
 _GARBAGE_THRESHOLD = 100_000
-"""How many new objects are looked through for garbage at a time; Python's 700 make the menu 15 ms later."""
+"""New objects that cause a garbage collection; with Python's own 700 the menu appears 15 ms later."""
 
 
 def command() -> int:

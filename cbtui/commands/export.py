@@ -1,6 +1,7 @@
 """``cbtui export``: converts a recording for trace viewers, spreadsheets and paper."""
 
 import argparse
+from functools import partial
 from pathlib import Path
 
 from cbtui.commands.options.targets import same_file
@@ -23,14 +24,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def export_command(options: argparse.Namespace) -> int:
     """Export; returns the exit code: 0 on success, 2 for wrong arguments or a file in the way."""
-    from cbtui.runs.recorded.reading_progress import ReadingProgress
+    from cbtui.runs.recorded.reading_progress import batches_with_progress
     from sim.recording import RecordingError, read
 
     source = Path(options.file)
     try:
         request = _request(options, source)
         recording = read(source)
-        export(ReadingProgress(recording), request)
+        export(partial(batches_with_progress, recording), request)
     except (ExportError, RecordingError) as error:
         complain(str(error))
         return 2

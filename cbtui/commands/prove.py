@@ -45,19 +45,19 @@ def prove(options: argparse.Namespace) -> int:
     from dataclasses import replace
 
     from cbtui.runs.compared_runs import CannotCompareError, ComparedRun, ComparisonTerms, load_runs
-    from cbtui.runs.judged.proving import GROUNDS, differences
+    from cbtui.runs.judged.proving import RUN_NAMES, differences
     from cbtui.terminal.progress_line import ProgressLine
 
     program = targets_of(options.targets)
     request = _request(program, options)
     assert request.seconds is not None
     inputs.check(options, request.seconds)
-    ground = changes.chosen_ros(options.python)
-    release = request.changes.distro or changes.release_of(ground.python)
+    run = changes.chosen_ros(options.python)
+    release = request.changes.distro or changes.release_of(run.python)
     request = replace(request, changes=replace(request.changes, distro=release))
     terms = ComparisonTerms(end=request.seconds, calls=tuple(request.calls), lines=tuple(request.lines))
-    real = replace(request, changes=replace(request.changes, real=ground, distro=None))
-    model, rclpy = (ComparedRun(*each) for each in zip(GROUNDS, (request, real), strict=True))
+    real = replace(request, changes=replace(request.changes, real=run, distro=None))
+    model, rclpy = (ComparedRun(*each) for each in zip(RUN_NAMES, (request, real), strict=True))
     try:
         with ProgressLine() as line:
             pair = load_runs(model, rclpy, terms, lambda at: line.show(at.text), Event())

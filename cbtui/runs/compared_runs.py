@@ -85,7 +85,7 @@ class ComparedSide:
 
     @property
     def failure(self) -> str | None:
-        """How the run failed, if it did."""
+        """A sentence on how the run failed; None if it did not."""
         ended = self.timeline.ended
         return f"{self.name}: {ended.reason}" if ended is not None and ended.failed else None
 
@@ -101,7 +101,7 @@ class RunProgress:
 
     @property
     def text(self) -> str:
-        """It as one line."""
+        """The progress as one line."""
         until = "" if self.until is None else f" of {self.until / SECOND:g} s"
         return f"{self.doing} {self.name}: {self.at / SECOND:.1f} s{until}"
 
@@ -132,7 +132,7 @@ def compared_side(run: ShownRun, changes: Changes) -> ComparedSide:
 def compare_runs(
     first: ComparedRun, second: ComparedRun, terms: ComparisonTerms, *, in_lines: bool = False
 ) -> int:
-    """Print the comparison as a table, or ``in_lines``, none of which is written over.
+    """Print the comparison as a table; with ``in_lines`` as sentences, and without a progress line.
 
     Returns the exit code: 0 on success, 1 if a run failed, 2 if there is no comparison.
     """

@@ -8,8 +8,8 @@ from typing import IO, Any, cast
 
 from textual.drivers.linux_driver import LinuxDriver
 
-_LOOK = 1.0
-"""Seconds between two looks whether the terminal is still there."""
+_CHECK_INTERVAL = 1.0
+"""Seconds between two checks whether the terminal is still there."""
 
 
 class TerminalDriver(LinuxDriver):
@@ -22,15 +22,15 @@ class TerminalDriver(LinuxDriver):
         self._next_look: TimerHandle | None = None
 
     def start_application_mode(self) -> None:
-        """Take the terminal, and look whether it stays: without job control (``su -c``) no SIGHUP comes."""
+        """Take the terminal, and check that it stays: without job control (``su -c``) no SIGHUP comes."""
         super().start_application_mode()  # type: ignore[no-untyped-call]
-        self._look()
+        self._check_terminal()
 
-    def _look(self) -> None:
+    def _check_terminal(self) -> None:
         if self._next_look is not None:
             self._next_look.cancel()
         if os.isatty(self.fileno):
-            self._next_look = self._loop.call_later(_LOOK, self._look)
+            self._next_look = self._loop.call_later(_CHECK_INTERVAL, self._check_terminal)
         else:
             self._app.exit(None, 128 + signal.SIGHUP)
 

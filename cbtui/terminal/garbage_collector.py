@@ -13,7 +13,7 @@ from cbtui.terminal.textual_internals import forget_drawn_styles
 _FULL = 2
 """The oldest generation, whose collection is a full one."""
 _USUAL_THRESHOLDS = 700, 10, 10
-"""Those of Python; while modules are imported, which stay, collections are fewer."""
+"""Python's own thresholds; ``cbtui.__main__`` raises them, as imported modules are no garbage."""
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""A line on standard error that says how far a command has come, and goes when it is done."""
+"""A line on standard error that shows the progress of a command, and is removed at its end."""
 
 import sys
 from contextlib import suppress
@@ -6,7 +6,7 @@ from typing import Self
 
 
 class ProgressLine:
-    """Shows one line that is written over again and again; nothing where standard error is no terminal.
+    """Shows one line that each text overwrites; shows nothing if standard error is no terminal.
 
     Leaving the context removes it. Not thread-safe.
     """
@@ -22,7 +22,7 @@ class ProgressLine:
         self.show("")
 
     def show(self, text: str) -> None:
-        """Put a text in the place of the one before."""
+        """Replace the shown text."""
         if self._is_seen and text != self._text:
             self._text = text
             with suppress(OSError):

@@ -1,4 +1,4 @@
-"""Colours of what commands print: on a terminal alone, and never the only sign."""
+"""Colours in the output of commands, on terminals only; they repeat what signs and words say."""
 
 import os
 import re
@@ -20,7 +20,7 @@ _SIGN = re.compile(rf"^ *([{''.join(_SIGNS)}])(?= )", re.MULTILINE)
 
 
 def coloured(text: str, colour: Colour | None, stream: TextIO) -> str:
-    """The text as the stream shall have it: coloured if that is a terminal and NO_COLOR is not set."""
+    """Return the text, coloured if the stream is a terminal and NO_COLOR is not set."""
     if (
         colour is None
         or os.environ.get("NO_COLOR")
@@ -32,5 +32,5 @@ def coloured(text: str, colour: Colour | None, stream: TextIO) -> str:
 
 
 def with_coloured_signs(text: str, stream: TextIO) -> str:
-    """The text with what says well, bad or problem at the beginning of a line in its colour."""
+    """Return the text with the signs at the beginnings of its lines coloured."""
     return _SIGN.sub(lambda sign: coloured(sign[0], _SIGNS[sign[1]], stream), text)

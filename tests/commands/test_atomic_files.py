@@ -51,7 +51,7 @@ def test_an_export_that_fails_leaves_the_folder_as_it_was(
     if there:
         target.write_text("before")
     with pytest.raises((ExportError, KeyboardInterrupt)):
-        export(Broken(error), ExportRequest({form: target}))
+        export(Broken(error).batches, ExportRequest({form: target}))
     assert [path.read_text() for path in tmp_path.iterdir()] == ["before"] * there
 
 
@@ -63,7 +63,7 @@ def test_a_full_disk_or_ctrl_c_at_the_last_moment_leaves_the_folder_as_it_was(
     target.write_text("before")
     monkeypatch.setattr(os, "fsync", fails)
     with pytest.raises((ExportError, KeyboardInterrupt)):
-        export(Whole(), ExportRequest({"csv": target}))
+        export(Whole().batches, ExportRequest({"csv": target}))
     assert [path.read_text() for path in tmp_path.iterdir()] == ["before"]
 
 

@@ -149,16 +149,16 @@ def test_a_cut_recording_gives_what_it_holds_and_one_sentence(
 def test_events_without_their_beginning_are_exported(tmp_path: Path) -> None:
     beginnings = (RunStarted, ThreadAppeared, GroupAppeared, EntityAppeared)
     events = [event for event in small_run() if not isinstance(event, beginnings)]
-    export(Events(events), ExportRequest({name: tmp_path / file for name, file in OUTPUTS.items()}))
+    export(Events(events).batches, ExportRequest({name: tmp_path / file for name, file in OUTPUTS.items()}))
     assert_all_readable(tmp_path)
 
 
 def test_a_source_that_breaks_off_is_told_of(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="the recording cannot be read: Input/output error"):
-        export(Events(small_run(), breaks_after=2), ExportRequest({"csv": tmp_path / "out.csv"}))
+        export(Events(small_run(), breaks_after=2).batches, ExportRequest({"csv": tmp_path / "out.csv"}))
 
 
 def test_a_recording_without_events_is_told_of(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="no events"):
-        export(Events([]), ExportRequest({"csv": tmp_path / "out.csv"}))
+        export(Events([]).batches, ExportRequest({"csv": tmp_path / "out.csv"}))
     assert not (tmp_path / "out.csv").exists()

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from mcap.writer import CompressionType, Writer
 
-from cbtui.runs.recorded.reading_progress import ReadingProgress
+from cbtui.runs.recorded.reading_progress import batches_with_progress
 from sim.recording import batch, chunk, read
 from sim.recording.metadata import NAME, RecordingMetadata, to_metadata
 from sim.trace.events import AnyEvent, Notice, RunStarted, Severity
@@ -85,7 +85,7 @@ def test_reading_for_more_than_a_second_shows_how_far_it_is(
     monkeypatch.setattr("cbtui.runs.recorded.reading_progress._PERIOD", -1.0)
     path = tmp_path / "run.mcap"
     write(path, [[batch.pack_batch(NOTICES)]] * 4)
-    list(ReadingProgress(read(path)).batches())
+    list(batches_with_progress(read(path)))
     shown = capsys.readouterr().err
     assert ("reading run.mcap: 4" in shown) is terminal
     assert shown == "" or shown.endswith("\r\x1b[K")

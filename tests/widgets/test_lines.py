@@ -86,7 +86,9 @@ def test_in_80_columns_the_last_step_tells_that_all_is_done() -> None:
 
 def test_in_80_columns_the_pace_makes_room_for_the_checks_that_pass() -> None:
     title = "1/6 Spin inside a callback"
-    starting = replace(LIVE, title=title, state=RunState.STARTING, pace="virtual max", at=0, dropped=0)
+    starting = replace(
+        LIVE, title=title, state=RunState.STARTING, pace="virtual max", brief_pace="max", at=0, dropped=0
+    )
     row = text(status_row(replace(starting, steps=EXERCISE), 80))
     assert row.startswith(f" {title}   Exercise 2/5 ")
     assert "STARTING   t 0.000 s   dropped 0" in row

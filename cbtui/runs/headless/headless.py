@@ -69,7 +69,7 @@ def run_headless(
             code = run.run()
             return code if summary_path is None else max(code, run.save_summary(Path(summary_path)))
         except (BrokenPipeError, CannotSayError):
-            raise  # about standard output, not about the run
+            raise  # warns about standard output, not about the run
         except OSError as error:
             complain(f"the run was cut short: {error.strerror}")
             return 1

@@ -1,4 +1,4 @@
-"""Keeps the last seconds of what a command does on real ROS 2, and writes them when there is trouble."""
+"""Keeps the last seconds of a command's run on real ROS 2, and records them when a problem occurs."""
 
 import signal
 import subprocess
@@ -22,7 +22,7 @@ from sim.trace.events import AnyEvent, ProcessEnded
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
-_TROUBLE = (
+_RECORDED_RULES = (
     "group-starvation",
     "no-free-worker",
     "behind-others",
@@ -33,16 +33,16 @@ _TROUBLE = (
     "still-computing",
     "service-never-comes",
 )
-"""The rules whose problems are worth a recording: a callback starves, or waits for ever."""
-_RENEWED: Nanoseconds = 600 * SECOND
-"""After so long what is looked at begins anew with what is kept: a command may run for days."""
+"""Ids of the rules whose problems are recorded: a callback starves, or waits for ever."""
+_REDUCE_AFTER: Nanoseconds = 600 * SECOND
+"""After this time the examined timeline is reduced to the kept events: a command may run for days."""
 
 _LAST_EVENTS = 1.0
 """Seconds after the command's end for which the end of its processes is waited for."""
 
 
 class KeptEvents:
-    """The last ``seconds`` of a run, and what one must know of the time before. Not thread-safe."""
+    """The last ``seconds`` of a run, and a snapshot of the state before them. Not thread-safe."""
 
     def __init__(self, seconds: float) -> None:
         self._length = round(seconds * SECOND)
@@ -50,25 +50,25 @@ class KeptEvents:
         self._batches: deque[list[AnyEvent]] = deque()
 
     def take(self, events: list[AnyEvent]) -> None:
-        """Keep a batch of events, and let those go that are too old."""
+        """Add a batch of events, and drop those that are too old."""
         self._batches.append(events)
         while self._batches[0][-1].t < events[-1].t - self._length:
             self._before.take(self._batches.popleft())
 
     def events(self) -> list[AnyEvent]:
-        """All that is kept, in order."""
+        """The snapshot and the kept events, in order."""
         return [*self._before.events(), *(event for batch in self._batches for event in batch)]
 
 
 class Keeper:
-    """Follows one run, and writes a recording for each trouble that it has not written one for."""
+    """Follows one run, and writes a recording at each new problem."""
 
     def __init__(self, setup: RunSetup, seconds: float) -> None:
         self._setup = setup
         self._seconds = seconds
         self._kept = KeptEvents(seconds)
         self._known: set[tuple[str, int]] = set()
-        self._look_anew()
+        self._reduce_timeline()
 
     def take(self, events: list[AnyEvent]) -> None:
         """Take a batch of the run's events."""
@@ -77,22 +77,22 @@ class Keeper:
         troubles = list(self._troubles(events))
         if troubles:
             complain(f"{'; '.join(troubles)} ({self._write()})")
-        if self._timeline.end > self._begun + _RENEWED:
-            self._look_anew()
+        if self._timeline.end > self._begun + _REDUCE_AFTER:
+            self._reduce_timeline()
 
-    def _look_anew(self) -> None:
+    def _reduce_timeline(self) -> None:
         self._timeline = Timeline()
         self._timeline.extend(self._kept.events())
         self._begun = self._timeline.end
         self._monitor = FindingsMonitor(self._timeline)
 
     def _troubles(self, events: Sequence[AnyEvent]) -> Iterator[str]:
-        """The troubles in these events that were not reported yet, as sentences."""
+        """The problems in these events that were not reported yet, as sentences."""
         yield from (event.reason for event in events if isinstance(event, ProcessEnded) and event.status)
         if self._monitor.look_when_due():
             for each in self._monitor.findings:
                 key = each.finding.rule.id, each.finding.subject
-                if each.is_problem and each.finding.rule.id in _TROUBLE and key not in self._known:
+                if each.is_problem and each.finding.rule.id in _RECORDED_RULES and key not in self._known:
                     self._known.add(key)
                     yield _sentence(each)
 
@@ -118,8 +118,8 @@ def _sentence(found: ExplainedFinding) -> str:
 def run_and_keep(command: Sequence[str], environment: dict[str, str], setup: RunSetup, seconds: float) -> int:
     """Run a command to its end, and follow its processes by ``setup``.
 
-    Returns its exit status as a shell does. Ctrl-C goes to the command, which has the terminal; other signals
-    are handed on to it.
+    Returns its exit status as a shell does. Ctrl-C reaches the command through the terminal; other signals
+    are forwarded to it.
     """
     with subprocess.Popen(command, env=environment) as child:
         over = Event()
@@ -129,12 +129,12 @@ def run_and_keep(command: Sequence[str], environment: dict[str, str], setup: Run
             time.sleep(_LAST_EVENTS)
             over.set()
 
-        def hand_on(number: signal.Signals) -> None:
+        def forward(number: signal.Signals) -> None:
             if number != signal.SIGINT:
                 child.send_signal(number)
 
         Thread(target=wait, name="wait-for-command", daemon=True).start()
-        with ending_signals(hand_on):
+        with ending_signals(forward):
             while child.poll() is None:
                 _follow(setup, seconds, over)
     return child.returncode if child.returncode >= 0 else 128 - child.returncode

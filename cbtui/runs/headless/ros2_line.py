@@ -21,7 +21,7 @@ ItemT = TypeVar("ItemT")
 
 _ABORTED = 1
 _LINE = 1
-"""The number of the line in an engine of its own."""
+"""The line's number in an engine of its own."""
 
 
 def run_line(words: Sequence[str], process: int | None) -> int:

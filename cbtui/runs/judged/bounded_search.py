@@ -1,4 +1,4 @@
-"""The search through all schedules of a program that have at most so many preemptions."""
+"""The search through all schedules of a program with a bounded number of preemptions."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from heapq import heappop, heappush
@@ -18,13 +18,13 @@ class Branch(NamedTuple):
 
 
 class BoundedSearch:
-    """An iterator of seeds; ``take`` brings the choices of each run, and with them further seeds.
+    """An iterator of seeds; ``take`` receives the choices of each run, which lead to further seeds.
 
-    It may have a next seed again after it had none. Those with fewer preemptions come first, and of two runs
-    that come to the same state only one is followed further: the other can find nothing new. At most
-    ``limit`` seeds are given out. Of several ``parts``, each follows its share of the first run's choices; a
-    run that several parts come to is in each of them, and what follows from it; ``of_all_parts`` says which
-    of these runs a search in one part makes.
+    It may have a next seed again after StopIteration. Seeds with fewer preemptions come first. Of two runs
+    that reach the same state only one is continued: the other can find nothing new. At most ``limit`` seeds
+    are returned. Each of several ``parts`` follows its share of the first run's choices. A run that several
+    parts reach is in each of them, with all that follows from it; ``of_all_parts`` returns those of these
+    runs that a search in one part makes.
     """
 
     def __init__(self, preemptions: int, limit: int, part: int = 1, parts: int = 1) -> None:
@@ -40,7 +40,7 @@ class BoundedSearch:
 
     @property
     def is_complete(self) -> bool:
-        """Whether no seed is left, once the runs of all that were given out are over."""
+        """Whether no seed is left; final once the runs of all returned seeds are over."""
         return not self._waiting
 
     def __iter__(self) -> Iterator[str]:
@@ -54,11 +54,11 @@ class BoundedSearch:
         return seed
 
     def preempted(self, seed: str) -> int:
-        """How many preemptions a seed that was given out has."""
+        """The number of preemptions of a returned seed."""
         return self._given[seed][0]
 
     def take(self, seed: str, _failures: object, choices: Sequence[ThreadChosen]) -> None:
-        """Add what can be chosen otherwise behind the last move of a run."""
+        """Add the seeds that choose differently after the last move of a run."""
         last = max(self._given[seed][1], default=-1)
         self.follow(
             seed,
@@ -70,7 +70,7 @@ class BoundedSearch:
         )
 
     def follow(self, seed: str, branches: tuple[Branch, ...]) -> None:
-        """Do what ``take`` does, from the branches behind the last move of a run."""
+        """Do what ``take`` does, from the branches after the last move of a run."""
         self.branches[seed] = branches
         used, moves = self._given[seed]
         found: list[tuple[int, Moves]] = []

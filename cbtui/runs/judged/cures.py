@@ -1,4 +1,4 @@
-"""Tries a cure out of sight: the run as it is and with the cure, on virtual time at full speed."""
+"""Tries a cure in the background: runs with and without it, on virtual time at full speed."""
 
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
@@ -30,9 +30,9 @@ Problem: TypeAlias = tuple[str, str, str]
 
 @dataclass(frozen=True)
 class TriedRun:
-    """What is wrong in a run, and whether for ever; ``is_whole`` if it came to its end.
+    """The problems of a run, each with whether it lasts for ever; ``is_whole`` if the run reached its end.
 
-    ``effects`` are the rules that found nothing but what a problem brings about.
+    ``effects`` are the ids of the rules that found only effects of a problem.
     """
 
     problems: Mapping[Problem, bool]
@@ -41,13 +41,13 @@ class TriedRun:
 
     @property
     def badness(self) -> tuple[int, int]:
-        """How bad it is: fewer problems that last for ever make up for others, and so does no crash."""
+        """A rank, greater for worse: first endless problems and an early end count, then all problems."""
         return sum(self.problems.values()) + (not self.is_whole), len(self.problems)
 
 
 @dataclass(frozen=True)
 class Cure:
-    """A change of a run that can be tried: in words, and what it edits, as ``diff -u`` writes it."""
+    """A change of a run that can be tried, and its description; ``diff`` is what ``diff -u`` writes about it."""
 
     changes: Changes
     words: str
@@ -55,7 +55,7 @@ class Cure:
 
 
 def problem_of(found: Finding, timeline: Timeline) -> Problem:
-    """Return what identifies a finding in other runs: of a deadlock, either side may be the last to wait."""
+    """Return what identifies a finding in other runs; in a deadlock either side may be the subject."""
     one, other = sorted(
         known.spoken_name if (known := timeline.entities.get(each)) is not None else ""
         for each in (found.subject, found.culprit)
@@ -64,7 +64,7 @@ def problem_of(found: Finding, timeline: Timeline) -> Problem:
 
 
 def cures_of(told: Explanation, setup: RunSetup, before: Changes, timeline: Timeline) -> Iterator[Cure]:
-    """Yield what can be tried of an explanation's cure, for a run of a set-up with changes.
+    """Yield the remedies of an explanation that can be tried on a run of a set-up with changes.
 
     A program's own file may be edited, not a module that it imports.
     """
@@ -98,14 +98,14 @@ def _text_of(path: Path) -> str:
 
 
 def with_inputs(setup: RunSetup, inputs: tuple[TimedInput, ...]) -> RunSetup:
-    """Return the set-up of a run that also gets the inputs of the one before."""
+    """Return the set-up with the inputs of an earlier run."""
     return msgspec.structs.replace(setup, inputs=inputs) if inputs else setup
 
 
 def helps(problem: Problem, before: TriedRun, after: TriedRun) -> bool:
-    """Whether a run has a problem, and the same run with a cure has not, nor a worse one in its place.
+    """Tell whether a cure ends a problem of the run ``before`` without a worse one in its place.
 
-    What was an effect of the problem before, and is told for itself without it, is none in its place.
+    An effect of the problem before does not count if it remains as a problem of its own.
     """
     left = {each: lasts for each, lasts in after.problems.items() if each[0] not in before.effects}
     return (
@@ -119,7 +119,7 @@ def helps(problem: Problem, before: TriedRun, after: TriedRun) -> bool:
 def tried(
     setup: RunSetup, until: Nanoseconds, given_up: Event, note: Callable[[Nanoseconds], object] = lambda _: 0
 ) -> TriedRun:
-    """Return what is wrong in a run. ``note`` gets how far it is.
+    """Make a run and return its problems. ``note`` gets its progress in nanoseconds.
 
     Raises:
         GivenUpError: ``given_up`` was set meanwhile.

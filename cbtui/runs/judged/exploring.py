@@ -32,7 +32,7 @@ _STUCK = ("self-made-deadlock", "needs-one-more-worker", "still-computing", "ser
 """Ids of the diagnosis rules on callbacks that wait for ever."""
 
 
-Looked = TypeVar("Looked")
+Judged = TypeVar("Judged")
 SeedT = TypeVar("SeedT", bound=Seed)
 
 
@@ -41,24 +41,24 @@ def each_schedule(
     name: str,
     limit: float,
     seeds: Iterable[SeedT],
-    look: Callable[[ObservedRun], Looked],
+    judge: Callable[[ObservedRun], Judged],
     processes: int | None = None,
-) -> Generator[tuple[SeedT, Looked], None, None]:
-    """Run the schedules of some seeds and yield what ``look`` makes of them, in order of completion.
+) -> Generator[tuple[SeedT, Judged], None, None]:
+    """Run the schedules of some seeds; yield each seed with what ``judge`` returns, in order of completion.
 
-    ``seeds`` is asked for more whenever a run is over, even where there was none left before. ``processes``
-    run at once, by default one per core; ``look`` is called on their threads. ``limit`` is in real seconds
-    for each run. Closing the iterator ends all of them.
+    ``seeds`` is asked for more after each run, even if it had none left before. ``processes`` run at once, by
+    default one per core; ``judge`` is called on other threads. ``limit`` is in real seconds for each run.
+    Closing the iterator ends all runs.
     """
     given_up = Event()
     session = partial(ProcessSession, context=forking_context(PRELOADED))
     coming, at_once = iter(seeds), processes or _cores()
 
-    def result(seed: SeedT) -> Looked:
-        return look(observe(msgspec.structs.replace(setup, seed=seed), name, limit, given_up, session))
+    def result(seed: SeedT) -> Judged:
+        return judge(observe(msgspec.structs.replace(setup, seed=seed), name, limit, given_up, session))
 
     with ThreadPoolExecutor(at_once) as pool:
-        running: dict[Future[Looked], SeedT] = {}
+        running: dict[Future[Judged], SeedT] = {}
         try:
             while True:
                 running |= {
@@ -106,15 +106,15 @@ class ScheduleResult:
 
 
 class Search(Protocol):
-    """Gives out seeds, depending on the runs of those before."""
+    """Returns seeds that depend on the runs of the seeds before."""
 
     def __iter__(self) -> Iterator[str]:
-        """The next seeds; there may be some again where there were none left."""
+        """Iterate over the seeds; there may be a next one again after StopIteration."""
 
     def take(
         self, seed: str, failures: Sequence[ScheduleFailure], choices: Sequence[ThreadChosen], /
     ) -> None:
-        """Take what came of a run."""
+        """Receive the failures and choices of a run."""
 
 
 @dataclass(frozen=True)
@@ -187,7 +187,7 @@ def _warnings(observed: ObservedRun) -> Iterator[str]:
 
 
 def _raised(observed: ObservedRun) -> Iterator[ScheduleFailure]:
-    """The exceptions that callbacks raised, by callback and class; one that ended the run has its place."""
+    """The exceptions of callbacks, by callback and class; with its place if one ended the run."""
     timeline, trouble = observed.timeline, observed.trouble
     ended_by = None if timeline.ended is None else timeline.ended.error
     whole = Window(0, timeline.end + 1)

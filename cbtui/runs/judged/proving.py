@@ -1,8 +1,8 @@
-"""Whether a program did the same on the model and on real rclpy: what each callback did, aligned by order.
+"""Compares a program's runs on the model and on real rclpy: the calls of each callback, in order.
 
-On a machine nothing comes exactly when it is due, computing takes time, and publishers and subscriptions
-first have to find each other. None of these is a difference: a callback counts from its first call on, times
-may differ by some ``JITTER``, and one run may have come one call further than the other.
+On a machine nothing happens exactly when it is due, computing takes time, and publishers and subscriptions
+first have to discover each other. None of this is a difference: a callback counts from its first call on,
+times may differ by some ``JITTER``, and one run may be one call ahead of the other.
 """
 
 import re
@@ -23,21 +23,21 @@ from sim.trace.figures.comparison import CallbackInRun, CallbackPair, compare
 from sim.trace.model import Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
-GROUNDS = ("the model", "real rclpy")
-"""What the two runs are called in sentences."""
+RUN_NAMES = ("the model", "real rclpy")
+"""The names of the two runs in sentences."""
 JITTER: Nanoseconds = SECOND // 20
 _LONG: Nanoseconds = SECOND // 2
-"""How long a callback has to wait, or not to return, for that to be compared."""
-_TO_FIND: Nanoseconds = 3 * SECOND
-"""How much later a callback's first call may be: discovery has to find its publisher first."""
-_PACE = 50
-"""One call in so many may be missing: a machine publishes a little more slowly than the rate says."""
+"""Waits and calls are compared from this length on."""
+_DISCOVERY: Nanoseconds = 3 * SECOND
+"""Allowed delay of a callback's first call: discovery has to find its publisher first."""
+_CALLS_PER_MISSING = 50
+"""One call in this number may be missing: a machine publishes a little more slowly than the rate says."""
 _NUMBER = re.compile(r"\d+(\.\d+)?")
 
 
 @dataclass(frozen=True, slots=True, order=True)
 class Difference:
-    """Something that happened on one ground alone, or otherwise there: when, and a clause that says what."""
+    """Something that happened in one run only, or differently: ``what`` is a clause."""
 
     at: Nanoseconds
     what: str
@@ -45,14 +45,14 @@ class Difference:
 
 @dataclass(frozen=True)
 class _Calls:
-    """What one callback did in one run; ``ground`` is what the run is called."""
+    """The calls of one callback in one run; ``run`` is the run's name."""
 
-    ground: str
+    run: str
     figures: CallbackInRun
     timeline: Timeline
     window: Window
     settled: Nanoseconds
-    """When every subscription had heard something."""
+    """When every subscription had received a message."""
 
     @cached_property
     def spans(self) -> Sequence[Span]:
@@ -61,12 +61,12 @@ class _Calls:
 
     @property
     def count(self) -> int:
-        """How often it was called."""
+        """The number of its calls."""
         return len(self.spans)
 
     @property
     def first(self) -> Nanoseconds:
-        """When it was called first; the end of the run if it never was."""
+        """The time of its first call; the end of the run if there was none."""
         return self.spans[0].start if self.spans else self.window.end
 
     @cached_property
@@ -94,12 +94,12 @@ class _Calls:
 
     @property
     def error(self) -> tuple[Nanoseconds, str]:
-        """When it raised first, and what; 0 and "" for never."""
+        """The time and text of its first exception; 0 and "" if there was none."""
         return next(((span.start, span.error) for span in self.spans if span.error), (0, ""))
 
     @property
     def logged(self) -> list[tuple[Nanoseconds, str]]:
-        """What it wrote to the log once all was settled, with numbers left out: measurements differ."""
+        """Its log lines since ``settled``, without their numbers: measurements differ."""
         entity = self.figures.figures.entity.id
         lines = (line for line in self.timeline.logs if getattr(line, "entity", 0) == entity)
         return [
@@ -109,7 +109,7 @@ class _Calls:
         ]
 
     def why_silent(self, gap: Window) -> str:
-        """Why it waited most of a gap, in brackets; "" if it did not."""
+        """The reason of its longest wait in a gap, in brackets; "" if it did not wait."""
         waits = self.timeline.waits_of(self.figures.figures.entity.id, gap)
         longest = max(waits, key=lambda wait: _length(wait, self.window.end), default=None)
         return "" if longest is None else f" ({why_waiting(longest, self.timeline)})"
@@ -118,28 +118,32 @@ class _Calls:
 def differences(model: Timeline, real: Timeline, window: Window) -> list[Difference]:
     """Compare a program's runs on the model and on real rclpy; returns what differs, in order of time.
 
-    Of each callback the most telling difference counts: the others follow from it.
+    Only the most important difference of each callback counts: the others follow from it.
     """
-    found = [*_of_ends(model, real), *_of_diagnoses(model, real), *_of_orders(model, real, window)]
+    found = [
+        *_ends_differ(model, real),
+        *_diagnoses_differ(model, real),
+        *_orders_differ(model, real, window),
+    ]
     settled = [_settled(timeline, window) for timeline in (model, real)]
     for pair in compare(model, real, window).callbacks:
         known = pair.first or pair.second
         if known is not None and not is_models(known.figures.entity):
-            found += list(_of_callback(pair, known, (model, real), settled, window))[:1]
+            found += list(_callback_differs(pair, known, (model, real), settled, window))[:1]
     return sorted(found)
 
 
 def _settled(timeline: Timeline, window: Window) -> Nanoseconds:
-    """When every subscription had heard something that it heard soon, or else at all."""
+    """When every subscription that received something within ``_DISCOVERY`` had received it."""
     firsts = (
         calls[0].start
         for each in timeline.entities.values()
         if each.kind is EntityKind.SUBSCRIPTION and (calls := timeline.calls_begun(each.id, window))
     )
-    return max((first for first in firsts if first < _TO_FIND), default=0)
+    return max((first for first in firsts if first < _DISCOVERY), default=0)
 
 
-def _of_callback(
+def _callback_differs(
     pair: CallbackPair,
     known: CallbackInRun,
     runs: tuple[Timeline, Timeline],
@@ -147,51 +151,49 @@ def _of_callback(
     window: Window,
 ) -> Iterator[Difference]:
     if pair.first is None or pair.second is None:
-        ground, other = GROUNDS if pair.second is None else GROUNDS[::-1]
+        run, other = RUN_NAMES if pair.second is None else RUN_NAMES[::-1]
         calls = counted(known.figures.calls, "call")
-        yield Difference(0, f"{pair.name} is there on {ground} alone ({calls}), not on {other}")
+        yield Difference(0, f"{pair.name} is there on {run} alone ({calls}), not on {other}")
         return
-    one = _Calls(GROUNDS[0], pair.first, runs[0], window, settled[0])
-    other_one = _Calls(GROUNDS[1], pair.second, runs[1], window, settled[1])
-    for look in _LOOKS:
-        yield from look(pair.name, one, other_one)
+    one = _Calls(RUN_NAMES[0], pair.first, runs[0], window, settled[0])
+    other_one = _Calls(RUN_NAMES[1], pair.second, runs[1], window, settled[1])
+    for compared in _COMPARISONS:
+        yield from compared(pair.name, one, other_one)
 
 
-def _of_first_calls(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
+def _first_calls_differ(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     early, late = sorted((one, other), key=lambda calls: calls.first)
     if late.count == 0 < early.count and early.first < early.window.end - JITTER:
         calls = counted(early.count, "call")
-        yield Difference(
-            early.first, f"on {late.ground} {name} never runs, on {early.ground} it does ({calls})"
-        )
-    elif late.first - early.first > _TO_FIND:
-        text = f"on {late.ground} {name} first runs at {duration(late.first)}"
-        yield Difference(early.first, f"{text}, on {early.ground} at {duration(early.first)}")
+        yield Difference(early.first, f"on {late.run} {name} never runs, on {early.run} it does ({calls})")
+    elif late.first - early.first > _DISCOVERY:
+        text = f"on {late.run} {name} first runs at {duration(late.first)}"
+        yield Difference(early.first, f"{text}, on {early.run} at {duration(early.first)}")
 
 
-def _of_returns(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
+def _returns_differ(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     for hung, fine in ((one, other), (other, one)):
         if hung.unfinished.length - fine.longest > _LONG > fine.unfinished.length:
             at = hung.unfinished.start
-            text = f"on {hung.ground} {name} does not return from its call at {duration(at)}"
-            yield Difference(at, f"{text}, on {fine.ground} it does")
+            text = f"on {hung.run} {name} does not return from its call at {duration(at)}"
+            yield Difference(at, f"{text}, on {fine.run} it does")
 
 
-def _of_errors(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
+def _errors_differ(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     if one.error[1] != other.error[1]:
-        said = (f"on {each.ground} it raises {each.error[1] or 'nothing'}" for each in (one, other))
+        said = (f"on {each.run} it raises {each.error[1] or 'nothing'}" for each in (one, other))
         yield Difference(max(one.error[0], other.error[0]), f"{name}: {', '.join(said)}")
 
 
-def _of_gaps(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
-    """A time in which it was not called on one ground, and was on the other."""
+def _gaps_differ(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
+    """Yield the first time in which the callback was silent in one run only."""
     usual = max(one, other, key=lambda calls: calls.count).usual_gap
     slack = usual + 4 * JITTER + abs(one.settled - other.settled)
     found = [
         Difference(
             gap.start,
-            f"on {silent.ground} {name} does not run for {duration(gap.length)} from {duration(gap.start)} on"
-            f"{silent.why_silent(gap)}, on {busy.ground} it does",
+            f"on {silent.run} {name} does not run for {duration(gap.length)} from {duration(gap.start)} on"
+            f"{silent.why_silent(gap)}, on {busy.run} it does",
         )
         for silent, busy in ((one, other), (other, one))
         for gap in silent.gaps
@@ -202,89 +204,87 @@ def _of_gaps(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     yield from sorted(found)[:1]
 
 
-def _of_counts(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
+def _counts_differ(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     fewer, more = sorted((one, other), key=lambda calls: calls.count)
-    if more.count - fewer.count > 1 + _begun_between(fewer, more) + more.count // _PACE:
+    if more.count - fewer.count > 1 + _begun_between(fewer, more) + more.count // _CALLS_PER_MISSING:
         times = counted(more.count - fewer.count, "time")
-        counts = f"{more.count} against {fewer.count} on {fewer.ground}"
-        yield Difference(fewer.window.end, f"on {more.ground} {name} runs {times} more: {counts}")
+        counts = f"{more.count} against {fewer.count} on {fewer.run}"
+        yield Difference(fewer.window.end, f"on {more.run} {name} runs {times} more: {counts}")
 
 
-def _of_lengths(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
+def _durations_differ(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     lengths = [each.figures.figures.duration for each in (one, other)]
     if lengths[0] is None or lengths[1] is None:
         return
     first, second = lengths[0].median, lengths[1].median
     if abs(first - second) > 2 * JITTER + max(first, second) // 10:
-        text = f"{name} takes {duration(first)} on {one.ground} and {duration(second)} on {other.ground}"
+        text = f"{name} takes {duration(first)} on {one.run} and {duration(second)} on {other.run}"
         yield Difference(max(one.first, other.first), text)
 
 
-def _of_reasons(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
+def _reasons_differ(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     waits = [each.figures.waits for each in (one, other)]
     if waits[0] is None or waits[1] is None or min(each.longest for each in waits if each) < _LONG:
         return
     if waits[0].why != waits[1].why:
         said = (
-            f"on {each.ground} {waited.why}"
-            for each, waited in zip((one, other), waits, strict=True)
-            if waited
+            f"on {each.run} {waited.why}" for each, waited in zip((one, other), waits, strict=True) if waited
         )
         yield Difference(max(one.first, other.first), f"{name} waits for other reasons: {', '.join(said)}")
 
 
-def _of_losses(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
+def _losses_differ(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     fewer, more = sorted((one, other), key=lambda calls: calls.figures.figures.drops)
     lost, kept = more.figures.figures.drops, fewer.figures.figures.drops
     if lost - kept > 2 + _begun_between(fewer, more) + lost // 20:
-        text = f"on {more.ground} {name} loses {counted(lost, 'message')}, on {fewer.ground} {kept}"
+        text = f"on {more.run} {name} loses {counted(lost, 'message')}, on {fewer.run} {kept}"
         yield Difference(more.timeline.losses_of(more.figures.figures.entity.id, more.window)[0], text)
 
 
-def _of_logs(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
+def _logs_differ(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     for (at, first), (_, second) in zip(one.logged, other.logged, strict=False):
         if first != second:
-            text = f"{name} logs {first!r} on {one.ground} where it logs {second!r} on {other.ground}"
+            text = f"{name} logs {first!r} on {one.run} where it logs {second!r} on {other.run}"
             yield Difference(at, text)
             return
 
 
-_LOOKS: tuple[Callable[[str, _Calls, _Calls], Iterator[Difference]], ...] = (
-    _of_first_calls,
-    _of_returns,
-    _of_errors,
-    _of_gaps,
-    _of_counts,
-    _of_lengths,
-    _of_reasons,
-    _of_losses,
-    _of_logs,
+_COMPARISONS: tuple[Callable[[str, _Calls, _Calls], Iterator[Difference]], ...] = (
+    _first_calls_differ,
+    _returns_differ,
+    _errors_differ,
+    _gaps_differ,
+    _counts_differ,
+    _durations_differ,
+    _reasons_differ,
+    _losses_differ,
+    _logs_differ,
 )
-"""The most telling first."""
+"""The most important comparison first."""
 
 
-def _of_ends(model: Timeline, real: Timeline) -> Iterator[Difference]:
+def _ends_differ(model: Timeline, real: Timeline) -> Iterator[Difference]:
     ends = [timeline.ended for timeline in (model, real)]
     if ends[0] is None or ends[1] is None:
         return
     if (ends[0].failed, ends[0].time_was_up) != (ends[1].failed, ends[1].time_was_up):
-        said = (f"on {ground}: {end.reason}" for ground, end in zip(GROUNDS, ends, strict=True) if end)
+        said = (f"on {run}: {end.reason}" for run, end in zip(RUN_NAMES, ends, strict=True) if end)
         yield Difference(min(end.t for end in ends if end), f"the run ends {'; '.join(said)}")
 
 
-def _of_diagnoses(model: Timeline, real: Timeline) -> Iterator[Difference]:
-    """What is wrong on one ground alone."""
+def _diagnoses_differ(model: Timeline, real: Timeline) -> Iterator[Difference]:
+    """Yield the problems of one run only."""
     found = [dict(_problems(timeline)) for timeline in (model, real)]
-    for ground, ours, theirs in zip(GROUNDS, found, found[::-1], strict=True):
+    for run, ours, theirs in zip(RUN_NAMES, found, found[::-1], strict=True):
         for key in ours.keys() - theirs.keys():
             at, what = ours[key]
-            yield Difference(at, f"the diagnosis finds on {ground} alone: {what}")
+            yield Difference(at, f"the diagnosis finds on {run} alone: {what}")
 
 
 def _problems(timeline: Timeline) -> Iterator[tuple[tuple[str, str], tuple[Nanoseconds, str]]]:
-    """Rules and the callbacks in which they find a problem, with when and what.
+    """Yield each rule and callback with a problem, and the problem's time and text.
 
-    Those of a deadlock wait for each other, and several may wait for one: who is named first may differ.
+    Callbacks in a deadlock are not named: which one is found first may differ.
     """
     for each in diagnose(timeline):
         entity = timeline.entities.get(each.subject)
@@ -296,20 +296,19 @@ def _problems(timeline: Timeline) -> Iterator[tuple[tuple[str, str], tuple[Nanos
             yield (each.rule.id, name), (each.at, told.what)
 
 
-def _of_orders(model: Timeline, real: Timeline, window: Window) -> Iterator[Difference]:
-    """In which order the only thread of an executor served callbacks that it had kept waiting."""
+def _orders_differ(model: Timeline, real: Timeline, window: Window) -> Iterator[Difference]:
+    """Yield the first time at which a single-threaded executor ran waiting callbacks in another order."""
     for (at, first), (_, second) in zip(_served(model, window), _served(real, window), strict=False):
         if first != second and set(first) == set(second):
             said = (
-                f"on {ground} {', '.join(names)}"
-                for ground, names in zip(GROUNDS, (first, second), strict=True)
+                f"on {run} {', '.join(names)}" for run, names in zip(RUN_NAMES, (first, second), strict=True)
             )
             yield Difference(at, f"what has waited runs in another order: {'; '.join(said)}")
             return
 
 
 def _served(timeline: Timeline, window: Window) -> Iterator[tuple[Nanoseconds, list[str]]]:
-    """What such a thread ran, one after the other, when all had waited for long, and from when on."""
+    """Yield the callbacks that such a thread ran in succession after long waits, and when it began."""
     waited = [
         (span.thread, span, timeline.entities[entity].spoken_name)
         for entity in timeline.entities
@@ -334,7 +333,7 @@ def _served(timeline: Timeline, window: Window) -> Iterator[tuple[Nanoseconds, l
 
 
 def _begun_between(one: _Calls, other: _Calls) -> float:
-    """How many calls usually begin during the delay of its first call on the slower ground."""
+    """The usual number of calls in the time between the first calls of both runs."""
     usual = max(one, other, key=lambda calls: calls.count).usual_gap
     return abs(one.first - other.first) / max(JITTER, usual)
 

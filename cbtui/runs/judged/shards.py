@@ -1,4 +1,4 @@
-"""Parts of an exploration that were run apart, as on the machines of a CI matrix, in files to be merged."""
+"""Files with parts of an exploration, as from the machines of a CI matrix, which can be merged."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -39,7 +39,7 @@ class Shard(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def missing(self) -> str:
-        """What of the whole exploration has no result here, with its verb; "" for nothing."""
+        """A clause on the seeds or parts of the exploration that have no result here; "" if there are none."""
         if self.preemptions is not None:
             open_parts = [str(part) for part in range(1, self.parts + 1) if part not in self.done]
             return f"part {', '.join(open_parts)} of {self.parts}, run to its end, is" if open_parts else ""
@@ -94,7 +94,7 @@ def merged(paths: Sequence[Path]) -> Shard:
 
 
 def _of_all_parts(shard: Shard) -> Shard:
-    """What all parts of an exploration have in common."""
+    """The fields that are equal in all parts of an exploration."""
     return msgspec.structs.replace(shard, results={}, done=(), preempted={}, branches={})
 
 

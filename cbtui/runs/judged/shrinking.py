@@ -1,4 +1,4 @@
-"""The search for a simple schedule that fails as one did that was found by sampling."""
+"""The search for a simple schedule with the same failure as one that was found by sampling."""
 
 from collections.abc import Collection, Hashable, Iterator, Sequence
 from itertools import count
@@ -9,11 +9,11 @@ from sim.trace.events import ThreadChosen
 
 
 class Shrinking:
-    """An iterator of seeds; ``take`` gets the failures and choices of each run.
+    """An iterator of seeds; ``take`` receives the failures and choices of each run.
 
-    Moves at random come first, until one of them brings about one of ``failures``. Then moves are left out,
-    many at a time at first, as long as it comes about (delta debugging). It may have a next seed again after
-    it had none. At most ``limit`` seeds are given out.
+    Random moves come first, until a run has one of ``failures``. Then moves are left out, many at a time at
+    first, as long as the failure remains (delta debugging). There may be a next seed again after
+    StopIteration. At most ``limit`` seeds are returned.
     """
 
     def __init__(self, failures: Collection[Hashable], limit: int) -> None:

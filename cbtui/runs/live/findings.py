@@ -17,7 +17,7 @@ _MAX_GROWTH: Nanoseconds = 20_000_000_000
 """Growth after which an update is not delayed: a recording grows by minutes while it is read, and one update
 for all of that would block the keys."""
 _STANDS_STILL: Nanoseconds = 1_000_000_000
-"""How long nothing has run but what is stuck until a program counts as standing still."""
+"""A program stands still if nothing but stuck callbacks has run for this time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +103,7 @@ class FindingsMonitor:
         return self.findings != before
 
     def look(self) -> None:
-        """Update now."""
+        """Update the findings now."""
         began = self._clock()
         timeline = self._timeline
         self._looked_to, self._notices = timeline.end, len(timeline.notices)

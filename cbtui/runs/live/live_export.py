@@ -19,7 +19,7 @@ class ExportableRun:
     """A run's title, events and end, and a sentence on missing events."""
 
     title: str
-    source: EventSource
+    batches: EventSource
     end: Nanoseconds
     missing: str = ""
 
@@ -49,7 +49,7 @@ class LiveExport:
     def write(self) -> str:
         """Write the file; returns a sentence on its path, or on why it could not be written."""
         try:
-            export(self._material.source, self._wish, self._reach)
+            export(self._material.batches, self._wish, self._reach)
         except _GivenUpError:
             return f"The export was cancelled, and {self._path.name} was not written"
         except (ExportError, RecordingError) as error:

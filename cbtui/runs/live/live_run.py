@@ -264,7 +264,7 @@ class LiveRun:
 
     def material(self) -> ExportableRun:
         """The run so far, for an export."""
-        return ExportableRun(self.setup.title, self._events, self.timeline.end, self._events.missing)
+        return ExportableRun(self.setup.title, self._events.batches, self.timeline.end, self._events.missing)
 
     def call(self, data: bool) -> None:
         """Call the SetBool service that the run was set up with, or else the program's first."""
@@ -299,7 +299,7 @@ class LiveRun:
         self._session.send(Resume())
 
     def choose(self, option: int) -> None:
-        """Have one of the threads go on that the run asks for, by its number from 0."""
+        """Let the thread with this number in the run's question go on; numbers begin with 0."""
         self._session.send(Choose(option))
 
     def step(self) -> None:

@@ -1,7 +1,6 @@
 """A recording on screen: its reader, its run, and the program that it shows."""
 
 import threading
-from collections.abc import Iterator
 from pathlib import Path
 
 from cbtui.engines.session import Deliver, Ended
@@ -85,22 +84,6 @@ class RecordingReader:
             self._deliver(waiting)
 
 
-class _ReadAgain:
-    """The events of a recording, read again on each call."""
-
-    def __init__(self, path: Path) -> None:
-        self._path = path
-
-    def batches(self) -> Iterator[list[AnyEvent]]:
-        """Yield the batches of events.
-
-        Raises:
-            RecordingError: the recording is no longer readable.
-            OSError: it cannot be read to its end.
-        """
-        yield from read(self._path).batches()
-
-
 class RecordedRun:
     """A recorded run. It is played by moving the cursor; there is no engine.
 
@@ -158,7 +141,7 @@ class RecordedRun:
 
     def material(self) -> ExportableRun:
         """The whole recording, for an export."""
-        return ExportableRun(self.setup.title, _ReadAgain(self._path), self.timeline.end)
+        return ExportableRun(self.setup.title, lambda: read(self._path).batches(), self.timeline.end)
 
     def pause(self) -> None:
         """Pause playback."""
@@ -221,7 +204,7 @@ _NO_SOURCE = "# The recording holds no source of this program, and this machine 
 
 
 def facts_on(recording: Recording) -> list[str]:
-    """Return what a recording is of, as a list in Markdown."""
+    """Return the facts about a recorded run as a list in Markdown."""
     about = recording.about
     facts = [f"- file: {_escaped(_plain(str(recording.path)))}"]
     if about.recorded:

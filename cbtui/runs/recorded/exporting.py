@@ -7,7 +7,7 @@ from io import TextIOWrapper
 from itertools import chain
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, NamedTuple, Self, TypeAlias
 
 from sim.quantities.nanoseconds import SECOND, nearest_ns
 
@@ -30,11 +30,8 @@ FORMATS = {
 WIDTH = 1100
 
 
-class EventSource(Protocol):
-    """A source of events: an open recording, or the event store of a live run."""
-
-    def batches(self) -> "Iterator[list[AnyEvent]]":
-        """The events, in batches."""
+EventSource: TypeAlias = "Callable[[], Iterator[list[AnyEvent]]]"
+"""Yields the events of an open recording, or of a live run's event store, in batches."""
 
 
 class ExportError(Exception):
@@ -56,16 +53,12 @@ class ExportRequest(NamedTuple):
     """What a report follows, from the first topic to the last; a picture frames their critical paths."""
 
 
-def _go_on(_: "Nanoseconds") -> None:
-    """Ignore the progress of an export."""
-
-
 def export(
-    source: EventSource, wish: ExportRequest, reached: "Callable[[Nanoseconds], None]" = _go_on
+    source: EventSource, wish: ExportRequest, reached: "Callable[[Nanoseconds], object]" = lambda _: None
 ) -> None:
-    """Write the wanted files in one pass over the events; ``reached`` gets the progress.
+    """Write the wanted files in one pass over the events.
 
-    What ``reached`` raises ends the export.
+    ``reached`` gets the time of the last written event after each batch; what it raises ends the export.
 
     Raises:
         ExportError: an output cannot be written, the source cannot be read, or the picture cannot be drawn.
@@ -172,7 +165,7 @@ def _page(name: str, timeline: "Timeline", wish: ExportRequest) -> str:
 
 
 def _critical_steps(timeline: "Timeline", chains: Sequence[Sequence[str]]) -> "list[ChainStep]":
-    """The steps of the critical paths of those chains that there are; a report says why of the others."""
+    """The steps of the critical paths of the existing chains; a report says why the others do not exist."""
     from sim.trace.figures.chains import ChainError, chain
 
     steps: list[ChainStep] = []
@@ -203,6 +196,6 @@ def _picture_beside(wish: ExportRequest) -> str | None:
 
 def _read(source: EventSource) -> "Iterator[list[AnyEvent]]":
     try:
-        yield from source.batches()
+        yield from source()
     except OSError as error:
         raise ExportError(f"the recording cannot be read: {error.strerror}") from None

@@ -10,20 +10,18 @@ from sim.trace.events import AnyEvent
 _QUIET_TIME = 1.0
 """Seconds before progress is shown."""
 _PERIOD = 0.2
+"""Seconds between two updates."""
 
 
-class ReadingProgress:
-    """The batches of a recording; progress goes to standard error if that is a terminal."""
+def batches_with_progress(recording: Recording) -> Iterator[list[AnyEvent]]:
+    """Yield the events of a recording in batches, and show the progress where standard error is a terminal.
 
-    def __init__(self, recording: Recording) -> None:
-        self._recording = recording
-
-    def batches(self) -> Iterator[list[AnyEvent]]:
-        """The events, in batches. Raises what the recording raises."""
-        due = time.monotonic() + _QUIET_TIME
-        with ProgressLine() as line:
-            for events in self._recording.batches():
-                if time.monotonic() > due:
-                    due = time.monotonic() + _PERIOD
-                    line.show(f"reading {self._recording.path.name}: {self._recording.share:.0%}")
-                yield events
+    Raises what the recording raises.
+    """
+    due = time.monotonic() + _QUIET_TIME
+    with ProgressLine() as line:
+        for events in recording.batches():
+            if time.monotonic() > due:
+                due = time.monotonic() + _PERIOD
+                line.show(f"reading {recording.path.name}: {recording.share:.0%}")
+            yield events

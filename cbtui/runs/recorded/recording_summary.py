@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from cbtui.runs.recorded.reading_progress import ReadingProgress
+from cbtui.runs.recorded.reading_progress import batches_with_progress
 from cbtui.runs.recorded.recording_file import date_text, setup_of
 from cbtui.runs.setup.changes import changes_in
 from cbtui.text.output import complain, say, say_data, shown
@@ -19,7 +19,7 @@ _LABEL = "{:<11}{}\n"
 
 
 def tell(path: Path, chains: Sequence[Sequence[str]] = (), *, as_json: bool = False) -> int:
-    """Print what a recording has, and chains; or its run's summary and diagnosis, ``as_json``.
+    """Print the content of a recording and its chains, or with ``as_json`` its run's summary and diagnosis.
 
     Returns the exit code: 0 all can be read, 1 some of it, 2 nothing.
     """
@@ -84,7 +84,7 @@ class _Tally:
 
 def _tally_of(recording: Recording, timeline: Timeline | None) -> _Tally:
     tally = _Tally()
-    for events in ReadingProgress(recording).batches():
+    for events in batches_with_progress(recording):
         tally.take(events)
         if timeline is not None:
             timeline.extend(events)

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from cbtui.runs.recorded.reading_progress import ReadingProgress
+from cbtui.runs.recorded.reading_progress import batches_with_progress
 from cbtui.runs.recorded.recording_file import setup_of
 from cbtui.runs.setup.lesson_setup import RunRequest
 from sim.engine.inputs import UnknownInputError, inputs_of, stops
@@ -42,7 +42,7 @@ def repeated_setup(path: Path, request: RunRequest, *, tell: Callable[[str], Non
     try:
         recording = read(path)
         known = _RecordedFacts()
-        inputs = inputs_of(map(known.seen, chain.from_iterable(ReadingProgress(recording).batches())))
+        inputs = inputs_of(map(known.seen, chain.from_iterable(batches_with_progress(recording))))
     except (RecordingError, UnknownInputError) as error:
         raise CannotRepeatError(str(error)) from None
     except OSError as error:

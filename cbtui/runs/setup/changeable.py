@@ -97,7 +97,7 @@ def place_of(entity: EntityInfo, timeline: Timeline) -> CallbackPlace:
 
 
 def programs_own(entity: EntityInfo) -> bool:
-    """Tell whether an entity is one of the programs' own code, and not rclpy's."""
+    """Tell whether an entity was created by the programs' own code rather than by rclpy."""
     named = bool(entity.callback or entity.name)
     return named and entity.kind is not EntityKind.WAITABLE and entity.label not in HOUSEKEEPING
 

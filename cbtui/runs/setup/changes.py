@@ -50,15 +50,15 @@ class Changes:
     texts: Mapping[str, str] = field(default_factory=dict)
 
     def with_group(self, place: CallbackPlace, wish: str | None) -> Changes:
-        """The same with another group for a callback."""
+        """Return the changes with another group for a callback."""
         return replace(self, groups=_changed(self.groups, place, wish))
 
     def with_period(self, place: CallbackPlace, period: int | None) -> Changes:
-        """The same with another period for a timer, in nanoseconds."""
+        """Return the changes with another period for a timer, in nanoseconds."""
         return replace(self, periods=_changed(self.periods, place, period))
 
     def with_setting(self, argument: str, number: float | None) -> Changes:
-        """The same with another number for an argument of the program."""
+        """Return the changes with another number for an argument of the program."""
         left = {name: value for name, value in self.settings.items() if name != argument}
         return replace(self, settings=left if number is None else left | {argument: number})
 
@@ -71,7 +71,7 @@ class Changes:
         return self.periods.get(place, self.periods.get(("", place[1])))
 
     def without(self, others: Changes) -> Changes:
-        """The changes that are not among others."""
+        """Return the changes that ``others`` do not contain."""
         return Changes(
             None if self.threads == others.threads else self.threads,
             _without(self.groups, others.groups),

@@ -32,7 +32,7 @@ class PathCompletion(NamedTuple):
 
 
 def entry_for(text: str, at: float) -> RecentEntry:
-    """Return what the person means by a path; ``at`` is now, in seconds since 1970.
+    """Return the entry for a typed path; ``at`` is the current time in seconds since 1970.
 
     Raises:
         CannotOpenError: there is no such file, or it is nothing that can be opened.
@@ -51,10 +51,10 @@ def entry_for(text: str, at: float) -> RecentEntry:
 
 
 def check(path: Path) -> None:
-    """See whether there is a file that can be read.
+    """Check that there is a readable file.
 
     Raises:
-        CannotOpenError: there is not.
+        CannotOpenError: there is none.
     """
     try:
         mode = mode_of(path)
@@ -115,5 +115,5 @@ def _kind_of(path: Path) -> RecentKind | None:
 def _expanded(text: str) -> Path:
     try:
         return Path(text).expanduser()
-    except RuntimeError:  # a person nobody knows
+    except RuntimeError:  # the user has no home folder
         return Path(text)

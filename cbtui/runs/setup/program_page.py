@@ -14,7 +14,7 @@ from sim.trace.timeline import Timeline
 _SET_BOOL = "std_srvs/srv/SetBool"
 
 MOST = 20
-"""Nodes, groups, and callbacks of one group, that are listed: a program may make them without end."""
+"""The most nodes, groups, and callbacks of one group that are listed: a program may create any number."""
 
 _ABOUT = """# {name}
 
@@ -73,7 +73,7 @@ def _callback(entity: EntityInfo) -> str:
 
 
 def _tries(timeline: Timeline, problems: Sequence[str]) -> Iterator[str]:
-    """What may be done with this program, the most useful first."""
+    """Suggestions for this program, the most useful first."""
     own = [each for each in timeline.entities.values() if programs_own(each)]
     if problems:
         yield f"`d` shows {counted(len(problems), 'problem')}, at which line, and a cure: {problems[0]}."

@@ -32,7 +32,7 @@ class TypedValue(Protocol[Value]):
         """
 
     def shown(self, value: Value) -> str:
-        """The value as a person reads it."""
+        """Return the value for display."""
 
 
 class Quantity(NamedTuple):
@@ -64,7 +64,7 @@ class Quantity(NamedTuple):
         return number
 
     def shown(self, number: float) -> str:
-        """The number with its unit."""
+        """Return the number with its unit."""
         return f"{number:g} {self.unit}"
 
 

@@ -14,7 +14,7 @@ FILE_NAME = "recent.jsonl"
 FILES_KEPT = 20
 """Programs and recordings that are remembered."""
 LESSONS_KEPT = 500
-"""Lessons that are remembered; more than there are."""
+"""Lessons that are remembered; there are fewer."""
 _CLOCKS = ("real", "virtual")
 _WORDS = StateFileTexts("entry", "what you open is not remembered", "the list goes on")
 

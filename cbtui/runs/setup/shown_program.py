@@ -27,7 +27,7 @@ SetUp: TypeAlias = Callable[[int | None, float | None], RunSetup]
 """Makes a run for a number of threads (None: the program's own) and a speed (None: as fast as possible)."""
 
 _FROM_MOMENT = 10 * SECOND
-"""How long a run goes on whose threads the learner schedules from a moment on."""
+"""Length of a run from the moment on at which the learner begins to schedule its threads."""
 
 _CHOOSING_GUIDE = """# {title}
 
@@ -171,7 +171,7 @@ def of_puzzle(puzzle: Puzzle) -> ShownProgram:
 def of_moment(
     subject: ShownProgram, run: RunSetup, events: Iterable[AnyEvent], at: Nanoseconds
 ) -> ShownProgram:
-    """Return a program from a moment of its run on, of which these are the events; it goes on for a while."""
+    """Return a program as the learner schedules it from the moment ``at`` of a run with these ``events``."""
     setup = msgspec.structs.replace(
         run,
         speed=None,

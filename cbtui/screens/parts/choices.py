@@ -186,5 +186,5 @@ class TakeOver(ScreenPart):
     def action_take_over(self) -> None:
         """Open the screen for choosing."""
         run = self.runs.run
-        events = chain.from_iterable(run.material().source.batches())
+        events = chain.from_iterable(run.material().batches())
         self.open_choosing(of_moment(self.subject, run.setup, events, run.timeline.end))

@@ -88,7 +88,7 @@ class CureTrial:
     @cached_property
     def inputs(self) -> tuple[TimedInput, ...]:
         """What was told to the run from outside."""
-        events = chain.from_iterable(self.run.material().source.batches())
+        events = chain.from_iterable(self.run.material().batches())
         given = inputs_of(takewhile(lambda event: event.t <= self.until, events))
         return tuple(each for each in given if not stops(each))
 

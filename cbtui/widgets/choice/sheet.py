@@ -33,7 +33,7 @@ class ChoiceSheet:
 
 
 def options_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[ChoiceOption]:
-    """The threads that may go on; the first one does if nobody wants otherwise."""
+    """Yield the threads that may go on; the first one does if nobody chooses another."""
     callbacks = {
         timeline.threads[span.thread].name: name_of(span.entity, timeline)
         for span in timeline.moment(timeline.end).running.values()
@@ -55,7 +55,7 @@ def kept_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[str]:
         free = wait.reason is Reason.NO_FREE_WORKER and "" in question.functions
         why = "for a thread that looks for work" if free else why_waiting(wait, timeline)
         yield f"{name_of(wait.entity, timeline)} is ready{' ' if free else ': '}{why}"
-    yield from (each.replace("ThreadPoolExecutor", "Pool") for each in question.others)
+    yield from (short_thread(each) for each in question.others)
     busy = {*moment.waiting, *(span.entity for span in moment.running.values())}
     idle = [each for each in timeline.entities.values() if each.callback and each.id not in busy]
     if idle:

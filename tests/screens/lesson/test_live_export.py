@@ -167,7 +167,7 @@ async def test_no_file_is_ever_replaced(folder: Path, monkeypatch: pytest.Monkey
 def test_a_file_that_comes_in_between_is_left_alone(folder: Path) -> None:
     store = EventStore()
     store.take(EVENTS)
-    export = LiveExport(ExportableRun("run", store, EVENTS[-1].t), "csv", None)
+    export = LiveExport(ExportableRun("run", store.batches, EVENTS[-1].t), "csv", None)
     taken = export._path
     taken.write_text("precious")
     assert export.write() == f"Nothing was exported: cannot write {taken}: File exists"
@@ -177,7 +177,7 @@ def test_a_file_that_comes_in_between_is_left_alone(folder: Path) -> None:
 def test_a_folder_that_takes_no_file_is_told_of(folder: Path) -> None:
     store = EventStore()
     store.take(EVENTS)
-    export = LiveExport(ExportableRun("run", store, EVENTS[-1].t), "svg", None)
+    export = LiveExport(ExportableRun("run", store.batches, EVENTS[-1].t), "svg", None)
     folder.rmdir()
     assert export.write() == f"Nothing was exported: cannot write {export._path}: No such file or directory"
 
@@ -201,7 +201,9 @@ async def test_a_full_disk_is_told_of_and_leaves_no_file(
 def test_what_a_tape_does_not_hold_is_said_with_the_file() -> None:
     store = EventStore()
     store.take(EVENTS)
-    export = LiveExport(ExportableRun("run", store, EVENTS[-1].t, "what came later is missing"), "csv", None)
+    export = LiveExport(
+        ExportableRun("run", store.batches, EVENTS[-1].t, "what came later is missing"), "csv", None
+    )
     assert export.write() == f"Exported to {export._path}; what came later is missing"
 
 
