@@ -1,4 +1,4 @@
-"""The screen on which the learner is the scheduler: in a puzzle, or from a moment of a run on."""
+"""The screen on which the learner schedules the threads: of a puzzle, or of a run from a moment on."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -59,20 +59,20 @@ class ChoosingScreen(RunScreen[LiveRun]):
         return LiveRun(self._choices.set_up(self.subject, speed), self._open_session, deliver, ended)
 
     def compose_panes(self) -> Iterator[Widget]:
-        """Yield the panes, the choice first: it stands before the code."""
+        """Yield the panes, the choice before the code."""
         yield ChoiceView(id=CHOICE)
         yield from super().compose_panes()
 
     def draw_pane(self, pane: Widget) -> None:
         """Show the moment on screen on one pane."""
         if isinstance(pane, ChoiceView):
-            self._choices.look()  # before it says that a run that is over has missed the goal
+            self._choices.look()  # first, as the sheet says that a finished run has missed the goal
             pane.show(self._choices.sheet)
         else:
             super().draw_pane(pane)
 
     def drawn(self) -> None:
-        """Show the code beside the choice, and look whether the goal is reached."""
+        """Show the code beside the choice, and check whether the goal is reached."""
         self.set_class(self.panes.current == CHOICE, "-choosing")
         self._choices.look()
 

@@ -194,7 +194,7 @@ class CompareScreen(SizedScreen[None]):
         self._rest_until = monotonic() + _REST_FACTOR * (worked + monotonic() - turn)
 
     def _look_at_first_difference(self) -> None:
-        """Show the verdict on whole runs, and where they differ, unless the person has gone elsewhere."""
+        """Show the verdict on whole runs, and their first difference unless the cursor was moved."""
         if not self._verdict:
             return
         at = self._first_difference
@@ -285,7 +285,7 @@ class CompareScreen(SizedScreen[None]):
         self.draw()
 
     def action_window(self) -> None:
-        """Switch the table between the whole of both runs and the stretch on screen."""
+        """Switch the table between the whole runs and the window on screen."""
         self._whole = not self._whole
         self._forget_comparison()
         self.draw()
@@ -299,11 +299,11 @@ class CompareScreen(SizedScreen[None]):
         self.query_one(ComparisonTable).scroll_relative(y=_ROWS_A_KEY, animate=False)
 
     def action_maximise(self) -> None:
-        """Let the table fill the screen, or give the lanes their room back."""
+        """Let the table fill the screen, or undo that."""
         self._enlarge("" if self.has_class(_TABLE_ALONE) else _TABLE_ALONE)
 
     def action_enlarge_lanes(self) -> None:
-        """Let the lanes fill the screen, or give the table its room back."""
+        """Let the lanes fill the screen, or undo that."""
         self._enlarge("" if self.has_class(_LANES_ALONE) else _LANES_ALONE)
 
     def _enlarge(self, alone: str) -> None:
@@ -335,7 +335,7 @@ def _shorter(first: ComparedSide, second: ComparedSide) -> str:
 
 
 def _at_the_end_of(bounds: Window, end: Nanoseconds) -> Playhead:
-    """The playhead that shows the bounds, in runs that go to ``end``."""
+    """The playhead that shows the bounds, in runs of length ``end``."""
     span = next((span for span in SPANS if span >= bounds.length), SPANS[-1])
     return Playhead(span, start=bounds.start).moved_to(bounds.end, end)
 

@@ -9,7 +9,7 @@ from sim.trace.events import ThreadChosen
 
 
 class Branch(NamedTuple):
-    """A choice of a run, as ``ThreadChosen`` has it, at which the search can go on with other runs."""
+    """A choice of a run at which the search can continue; the fields are those of ``ThreadChosen``."""
 
     number: int
     able: int

@@ -47,7 +47,7 @@ class TriedRun:
 
 @dataclass(frozen=True)
 class Cure:
-    """A change of a run that can be tried, and its description; ``diff`` is what ``diff -u`` writes about it."""
+    """A change of a run that can be tried, in words; ``diff`` is what ``diff -u`` writes about it."""
 
     changes: Changes
     words: str

@@ -39,7 +39,7 @@ class Shard(msgspec.Struct, frozen=True, kw_only=True):
 
     @property
     def missing(self) -> str:
-        """A clause on the seeds or parts of the exploration that have no result here; "" if there are none."""
+        """A clause on the seeds or parts of the exploration without a result here; "" if there are none."""
         if self.preemptions is not None:
             open_parts = [str(part) for part in range(1, self.parts + 1) if part not in self.done]
             return f"part {', '.join(open_parts)} of {self.parts}, run to its end, is" if open_parts else ""

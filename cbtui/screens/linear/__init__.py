@@ -1,1 +1,1 @@
-"""The console for screen readers: plain lines of what happens, appended and never repainted."""
+"""The console for screen readers: it prints lines on what happens, and never repaints."""

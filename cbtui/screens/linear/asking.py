@@ -1,4 +1,4 @@
-"""What a console in lines asks for before it follows a chain, exports, records or changes the run."""
+"""Parts of the console in lines that ask before they act: chains, exports, and changes of the set-up."""
 
 import asyncio
 from collections.abc import Callable, Generator
@@ -25,14 +25,14 @@ from sim.trace.figures.chains import ChainError, chain
 
 
 class PostingHost(LineHost, Protocol):
-    """What asks for lines, and is told by other threads."""
+    """A line host that other threads can post to."""
 
     def post(self, do: Callable[[], object]) -> None:
-        """Have something done on the console's thread; from any thread."""
+        """Call ``do`` on the console's thread; may be called from any thread."""
 
 
 def choose(host: LineHost, what: str, question: str, names: list[str]) -> Generator[str, str, int | None]:
-    """Ask for one of some names by its number; returns its place, None if no ``what`` has that number."""
+    """Ask for the number of one of some names; returns its index, None if no ``what`` has that number."""
     numbered = ", ".join(f"{number}: {name}" for number, name in enumerate(names, start=1))
     line = yield f"{question} {numbered}. Type its number, or nothing:"
     if line.isdecimal() and 0 < int(line) <= len(names):
@@ -43,14 +43,14 @@ def choose(host: LineHost, what: str, question: str, names: list[str]) -> Genera
 
 @dataclass
 class ChainPrompt(ScreenPart):
-    """Tells how long messages took from one topic or service to another, and where."""
+    """Prints how long messages took from one topic or service to another, and where."""
 
     host: LineHost
     runs: RunController[ShownRun]
     navigation: TimeNavigation
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer it once something was sent."""
+        """Offer it once a message was sent."""
         return bool(self.runs.timeline.names_sent)
 
     def action_chain(self) -> None:
@@ -116,7 +116,7 @@ class FinishInLines:
     host: PostingHost
 
     def finish(self, finish: FinishFile | None) -> None:
-        """Finish a file, and report that; does nothing for None."""
+        """Finish a file and print the result; does nothing for None."""
 
         def write(finish: FinishFile) -> None:
             said = finish()
@@ -128,7 +128,7 @@ class FinishInLines:
 
 @dataclass
 class AskedSetUp(ScreenPart):
-    """Gives a callback another group, or a value of the set-up another one, and runs again."""
+    """Changes a callback's group or a value of the set-up, and restarts the run."""
 
     host: LineHost
     runs: RunController[LiveRun]
@@ -136,7 +136,7 @@ class AskedSetUp(ScreenPart):
     subject: ShownProgram
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer it for what the run starts itself, and does not only watch."""
+        """Offer it for a run that starts its programs itself; others are only watched."""
         return bool(self.runs.run.setup.programs)
 
     def action_group(self) -> None:

@@ -1,4 +1,4 @@
-"""The learner is the scheduler, in lines: numbers choose who goes on, in a puzzle or from a moment on."""
+"""The console in lines on which the learner schedules the threads by numbers."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -49,23 +49,23 @@ class ChoosingConsole(LinearConsole[LiveRun]):
 
     @property
     def is_ready(self) -> bool:
-        """Whether a choice was told, or what has come of the choices."""
+        """Whether a choice, or the result of all choices, has been printed."""
         return self._told == self._choices.sheet
 
     def greet(self) -> Dialogue:
-        """Tell what is to be brought about, and start the run."""
+        """Print the goal, and start the run."""
         self.tell_page(self.subject.guide)
         self.tell(self.runs.run.start())
         yield from ()
 
     def take_events(self, events: Iterable[AnyEvent]) -> None:
-        """Note what is asked."""
+        """Receive events, questions among them."""
         super().take_events(events)
         self._choices.take(events)
         self.turn()
 
     def turn(self) -> None:
-        """Tell what has happened, and what is asked now."""
+        """Print the news and the current question."""
         self._choices.look()
         super().turn()
         choices, sheet = self._choices, self._choices.sheet

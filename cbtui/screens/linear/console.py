@@ -1,4 +1,4 @@
-"""The loop of the console for screen readers: it tells what is new, and carries out what is typed."""
+"""The loop of the console for screen readers: it prints news, and carries out typed commands."""
 
 import asyncio
 from collections.abc import Callable, Iterable
@@ -31,7 +31,7 @@ from sim.quantities.nanoseconds import nearest_ns
 from sim.trace.events import AnyEvent
 
 _TURN = 0.25
-"""Seconds between two looks at what is new."""
+"""Seconds between two checks for news."""
 _OWN_WORDS = {
     "select": "Tell what runs and what waits at this moment",
     "narrate": "Tell what the executor decided last, and why",
@@ -55,22 +55,22 @@ _OWN_WORDS = {
     "solution": "Tell the solution: how your file becomes it, or the choices of a puzzle",
     "help": "Tell the keys that do something now",
 }
-"""What actions do here, where that is not what they do on a screen."""
+"""The help of actions that do something else here than on a screen."""
 _DRAWN = ("pan_earlier", "pan_later")
 """Actions that change only what is drawn."""
 _TYPED = {" ": "space", "": "enter", "\x1b": "escape"}
 
 
 class Input(Protocol):
-    """Where keys and lines come from."""
+    """The source of keys and lines."""
 
     def take_lines(self, *, wanted: bool) -> None:
-        """Take whole lines, or single keys."""
+        """Switch between whole lines and single keys."""
 
 
 @dataclass
 class LineTerminal:
-    """Where a person types and listens.
+    """The user's terminal.
 
     ``say`` prints a line; ``typed`` are keys and lines that were not taken yet, None is their end.
     """
@@ -82,7 +82,7 @@ class LineTerminal:
 
 
 class LinearConsole(Generic[RunT_co]):
-    """Says in lines what happens in a run; everything but ``typed`` and ``post`` is used on one thread.
+    """Prints what happens in a run; everything but ``typed`` and ``post`` is used on one thread.
 
     ``live`` returns the run if it has an engine. A subclass adds its own parts with ``add_parts`` and begins
     the first run.
@@ -125,16 +125,16 @@ class LinearConsole(Generic[RunT_co]):
         self._leaving = [key for each in self._actions if each.name == "leave" for key in keys_of(each)]
 
     def typed(self, text: str | None) -> None:
-        """Take a key or a line, None at the end of input; from any thread."""
+        """Receive a key or a line, None at the end of input; may be called from any thread."""
         self.terminal.typed.put(text)
         self.post(lambda: None)
 
     def post(self, do: Callable[[], object]) -> None:
-        """Have something done on the console's thread; from any thread."""
+        """Call ``do`` on the console's thread; may be called from any thread."""
         self._inbox.put(do)
 
     def run(self) -> Lesson | None:
-        """Run until the person leaves; returns the lesson to go on with, if one was asked for."""
+        """Run until the user leaves; returns the lesson to continue with, if one was asked for."""
         self.ask(self.greet())
         turn = monotonic() + _TURN
         try:
@@ -159,15 +159,15 @@ class LinearConsole(Generic[RunT_co]):
 
     @property
     def is_ready(self) -> bool:
-        """Whether what is typed is taken, or kept for later."""
+        """Whether typed text is taken now or kept for later."""
         return True
 
     def greet(self) -> Dialogue:
-        """Tell what is run, and start it."""
+        """Print what is run, and start it."""
         raise NotImplementedError
 
     def turn(self) -> None:
-        """Tell what is new."""
+        """Print the news."""
         if self.navigation.playhead.follows:
             self.telling.tell_news()
 
@@ -183,28 +183,28 @@ class LinearConsole(Generic[RunT_co]):
         return self
 
     def tell(self, sentence: str | None) -> None:
-        """Tell a line; nothing for None."""
+        """Print a line; nothing for None."""
         if sentence is not None:
             self.terminal.say(plain(sentence))
 
     def tell_page(self, markdown: str) -> None:
-        """Tell a Markdown text, a paragraph a line."""
+        """Print a Markdown text, each paragraph as one line."""
         for line in plain_lines(with_keys_in_force(markdown, self.terminal.keymap)):
             self.terminal.say(line)
 
     def key(self, action: str) -> str:
-        """Return the key in force of one of the console's actions, as it is said; "" if it has none such."""
+        """Return the key in force of one of the console's actions in words; "" if there is no such action."""
         return next((spoken_key(each) for each in self._actions if each.name == action), "")
 
     def open_lesson(self, lesson: Lesson, changes: Changes | None = None, *, tour: bool = False) -> None:
-        """Go on with a lesson."""
+        """Leave, and continue with a lesson."""
         self._next, self._leaves = lesson, True
 
     def redraw(self) -> None:
-        """Draw nothing: news are told when they are due."""
+        """Do nothing: news is printed when it is due."""
 
     def show_new_run(self) -> None:
-        """Tell another run from its beginning, before it is started."""
+        """Print the news of another run from its beginning; called before it is started."""
         self.navigation.playhead = self.navigation.playhead.live()
         self.telling.begin()
         self.tell("it runs again")
@@ -215,7 +215,7 @@ class LinearConsole(Generic[RunT_co]):
         self.terminal.keyboard.take_lines(wanted=True)
         self._answer(None)
 
-    # what comes in
+    # input
 
     def _take_next(self, timeout: float) -> None:
         try:
@@ -239,7 +239,7 @@ class LinearConsole(Generic[RunT_co]):
         """Take an answer, a key, the label of one, or a ros2 line."""
         if typed is None:
             self._leaves = True
-            self.terminal.typed.put(None)  # it is the end for the console below, too
+            self.terminal.typed.put(None)  # the console below has to end, too
         elif self._dialogue is not None:
             self._answer(typed.strip())
         else:
@@ -285,14 +285,14 @@ class LinearConsole(Generic[RunT_co]):
         elif line:
             self.tell("Give the seconds as a number, such as 12.5.")
 
-    # the actions that are no part's
+    # actions that belong to no part
 
     def action_leave(self) -> None:
         """End the run."""
         self._leaves = True
 
     def action_help(self) -> None:
-        """Tell the keys that do something now; of actions with the same key the first one."""
+        """Print the keys that work now; of actions with the same key only the first one."""
         taken = set[str]()
         for each in filter(self._offers, self._actions):
             if each.label and taken.isdisjoint(keys_of(each)):

@@ -1,4 +1,4 @@
-"""Questions that are asked in lines, and what asks them."""
+"""Questions that are asked in lines, and the interface of consoles that ask them."""
 
 from collections.abc import Generator
 from typing import Protocol, TypeAlias
@@ -8,16 +8,16 @@ Dialogue: TypeAlias = Generator[str, str, None]
 
 
 class LineHost(Protocol):
-    """What tells lines and asks for them."""
+    """A console that prints lines and asks for them."""
 
     def tell(self, sentence: str | None) -> None:
-        """Tell a line; nothing for None."""
+        """Print a line; nothing for None."""
 
     def tell_page(self, markdown: str) -> None:
-        """Tell a Markdown text."""
+        """Print a Markdown text."""
 
     def key(self, action: str) -> str:
-        """Return the key in force of one of the console's actions, as it is said."""
+        """Return the key in force of one of the console's actions in words."""
 
     def ask(self, dialogue: Dialogue) -> None:
         """Begin a dialogue."""

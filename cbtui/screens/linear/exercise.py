@@ -1,4 +1,4 @@
-"""A lesson's exercise in lines: the file is made, and checked as often as is asked."""
+"""A lesson's exercise in lines: creates the file, and checks it on request."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ from sim.files.untrusted import program_text
 
 @dataclass
 class ExerciseInLines(ScreenPart):
-    """Tells the task and makes the file; a changed file is run out of sight and checked."""
+    """Prints the task and creates the file; a changed file is run in the background and checked."""
 
     host: PostingHost
     lesson: Lesson
@@ -41,7 +41,7 @@ class ExerciseInLines(ScreenPart):
         return action == "exercise" or (known.seen and left)
 
     def action_exercise(self) -> None:
-        """Tell the exercise and make its file, or check the file as it is."""
+        """Print the exercise and create its file, or check the existing file."""
         assert self.lesson.exercise is not None
         key = self.host.key("exercise")
         try:
@@ -73,7 +73,7 @@ class ExerciseInLines(ScreenPart):
             self.host.tell("The exercise is solved.")
 
     def action_solution(self) -> None:
-        """Tell the solution, after a confirmation the first time."""
+        """Print the solution, after a confirmation the first time."""
         self.host.ask(self._ask_solution())
 
     def _ask_solution(self) -> Dialogue:
@@ -94,7 +94,7 @@ class ExerciseInLines(ScreenPart):
             self.host.tell(line)
 
     def action_hint(self) -> None:
-        """Tell the next hint."""
+        """Print the next hint."""
         assert self.lesson.exercise is not None
         number = self.progress.of(self.lesson.id).hints + 1
         self.progress.take_hint(self.lesson.id, number)
@@ -102,7 +102,7 @@ class ExerciseInLines(ScreenPart):
 
 
 def told_difference(begun: str, solution: str) -> Iterator[str]:
-    """Tell which lines of a file go, and which of the solution come in their place, each with its number."""
+    """Yield which lines of a file are replaced, and by which lines of the solution, with line numbers."""
     old, new = begun.splitlines(), solution.splitlines()
     for _, first, last, begins, ends in SequenceMatcher(None, old, new, autojunk=False).get_opcodes():
         if old[first:last] != new[begins:ends]:

@@ -12,7 +12,7 @@ from threading import Thread
 _READ_SIZE = 4096
 _END = "\x04"
 _SEQUENCE = re.compile(r"\x1b(?:\[[0-?]*[ -/]*[@-~]|O.)")
-"""What arrows and other keys without a character send; their letters are keys of others."""
+"""Sequences of arrows and other keys without a character; their letters must not count as keys."""
 
 
 class KeyReader:
@@ -29,7 +29,7 @@ class KeyReader:
 
     @contextmanager
     def opened(self) -> Iterator[None]:
-        """Read meanwhile; the terminal is restored in the end."""
+        """Read during the block; the terminal is restored at its end."""
         usual = termios.tcgetattr(self._descriptor) if self._is_terminal else None
         Thread(target=self.read, name="keyboard", daemon=True).start()
         try:
@@ -39,7 +39,7 @@ class KeyReader:
                 termios.tcsetattr(self._descriptor, termios.TCSADRAIN, usual)
 
     def take_lines(self, *, wanted: bool) -> None:
-        """Take whole lines, which the terminal shows and lets be edited, or single keys."""
+        """Switch between whole lines, which the terminal echoes and edits, and single keys."""
         if self._is_terminal:
             self._takes_lines = wanted
             mode = termios.tcgetattr(self._descriptor)
@@ -48,7 +48,7 @@ class KeyReader:
             termios.tcsetattr(self._descriptor, termios.TCSADRAIN, mode)
 
     def read(self) -> None:
-        """Read until the input ends; ctrl+d ends it, too."""
+        """Read until the input ends, which ctrl+d does as well."""
         begun = ""
         while True:
             try:

@@ -37,11 +37,11 @@ from sim.trace.incremental import run_to_end
 from sim.trace.model import Nanoseconds, Window
 
 _COMPARED: Nanoseconds = 10 * SECOND
-"""How far a run has to come until it is compared, unless the one before was shorter."""
+"""Length of a run from which on it is compared, unless the one before was shorter."""
 
 
 class LessonConsole(LinearConsole[LiveRun]):
-    """Runs a program; a lesson asks for predictions before, and explains them after.
+    """Runs a program; a lesson asks for predictions before its run and explains them after it.
 
     ``observe`` runs the lesson that explains the predictions.
     """
@@ -94,19 +94,19 @@ class LessonConsole(LinearConsole[LiveRun]):
         return LiveRun(self.restarts.set_up(self.subject, speed), self._open_session, deliver, ended)
 
     def _open_choosing(self, subject: ShownProgram) -> None:
-        """Let the learner choose who goes on, and come back to this run."""
+        """Let the learner schedule the threads, and return to this run."""
         ChoosingConsole(self.terminal, subject, self._open_session).run()
         self.tell(f"back to {self.subject.heading}")
 
     def run(self) -> Lesson | None:
-        """Run until the person leaves; no cure is tried any longer then."""
+        """Run until the user leaves, and end the trials of cures."""
         try:
             return super().run()
         finally:
             self._cures.given_up.set()
 
     def greet(self) -> Dialogue:
-        """Tell what is run, have it predicted, and start it."""
+        """Print what is run, ask for predictions, and start it."""
         teaching = self._teaching
         self.tell_page(introduction(self.subject.guide) or f"# {self.subject.heading}")
         if teaching is not None:
@@ -117,19 +117,19 @@ class LessonConsole(LinearConsole[LiveRun]):
         self.tell("The run begins. ? tells the keys, q leaves.")
 
     def turn(self) -> None:
-        """Tell what is new, and the comparison that is due."""
+        """Print the news, and the comparison if it is due."""
         super().turn()
         self._comparison.tell_when_due()
 
 
 @dataclass
 class TypedLines(ScreenPart):
-    """Asks for lines: those of ros2, input of the program, and a number of threads."""
+    """Asks for ``ros2`` lines, input of the program, and a number of threads."""
 
     host: LessonConsole
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer what the run takes."""
+        """Offer what the run accepts."""
         run = self.host.runs.run
         return {"prompt": run.alive, "type": run.asked is not None}.get(action, bool(run.setup.programs))
 
@@ -142,7 +142,7 @@ class TypedLines(ScreenPart):
         self.host.ask(self._ask("For the program:", lambda line: self.host.runs.run.type(f"{line}\n")))
 
     def action_threads(self) -> None:
-        """Ask for a number of threads, and run again."""
+        """Ask for a number of threads, and restart the run."""
         asked = "How many threads should the executor have? Nothing for the program's own:"
         self.host.ask(self._ask(asked, self._take_threads))
 
@@ -160,7 +160,7 @@ class TypedLines(ScreenPart):
 
 @dataclass
 class LinearComparison(ScreenPart):
-    """Tells what differs from the run before, as soon as there is enough of the new one."""
+    """Prints what differs from the run before, once the new one is long enough."""
 
     host: LessonConsole
     restarts: Restarts
@@ -171,7 +171,7 @@ class LinearComparison(ScreenPart):
         return self.restarts.both is not None
 
     def action_compare(self) -> None:
-        """Tell it now, or when it is due."""
+        """Print it now, or when it is due."""
         if self.restarts.before is not None:
             self._due = min(self.restarts.before.timeline.end, _COMPARED)
             self.tell_when_due()
@@ -179,7 +179,7 @@ class LinearComparison(ScreenPart):
                 self.host.tell(f"The comparison is told when this run has reached {timestamp(self._due)}.")
 
     def tell_when_due(self) -> None:
-        """Tell the comparison that was asked for, if the run has come far enough."""
+        """Print the requested comparison if the run is long enough."""
         run, both = self.host.runs.run, self.restarts.both
         if self._due is None or both is None or (run.alive and run.timeline.end < self._due):
             return
@@ -195,14 +195,14 @@ class LinearComparison(ScreenPart):
 
 @dataclass
 class CuresByNumber(ScreenPart):
-    """Tells the diagnoses, and tries the cure of one out of sight; if it helps the program runs with it."""
+    """Prints the diagnoses, and tries the cure of one in the background; one that helps restarts the run."""
 
     host: LessonConsole
     trials: CureTrials
     given_up: Event = field(default_factory=Event)
 
     def action_diagnoses(self) -> None:
-        """Tell what was found, and ask which cure is to be tried."""
+        """Print the findings, and ask which cure to try."""
         self.host.telling.action_diagnoses()
         trial = self.trials.begin()
         cures = {
@@ -244,4 +244,4 @@ class CuresByNumber(ScreenPart):
 
 
 _Tried: TypeAlias = tuple[ExplainedFinding, tuple[Cure, ...]]
-"""A problem, and what can be tried of its cure."""
+"""A problem, and its cures that can be tried."""

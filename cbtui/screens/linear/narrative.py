@@ -1,4 +1,4 @@
-"""What has happened in a run since it was told last, as sentences in the order in which it became known."""
+"""The news of a run as sentences, in the order in which they became known."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -18,26 +18,26 @@ from sim.trace.model import Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 LEAST: tuple[Nanoseconds, ...] = (0, 10_000_000, 100_000_000, 1_000_000_000)
-"""From how long on calls and waits are told: a person chooses one."""
+"""Least lengths of reported calls and waits; the user chooses one."""
 USUAL = 2
 _LOUD = (Severity.ERROR, Severity.FATAL)
 _NUMBER = re.compile(r"\d+(?:\.\d+)?")
 _MOST_LINES = 3
-"""Lines of the log that are new, per turn."""
+"""The most new lines of the log per turn."""
 
 
 class News(NamedTuple):
-    """A sentence, and the moment from which on it is true."""
+    """A sentence, and the moment from which it is true."""
 
     at: Nanoseconds
     text: str
 
 
 class Narrative:
-    """Tells what is new in a growing run, each thing once. Not thread-safe.
+    """Reports what is new in a growing run, everything once. Not thread-safe.
 
-    Calls and waits are told from ``least`` nanoseconds on. Of the log each text is told once, whatever
-    its numbers, unless it is ``whole``, and errors always.
+    Calls and waits are reported from ``least`` nanoseconds on. Log lines that differ only in numbers are
+    reported once, unless the log is ``whole``; errors are always reported.
     """
 
     def __init__(self, timeline: Timeline, least: Nanoseconds = LEAST[USUAL], *, whole: bool = False) -> None:
@@ -51,7 +51,7 @@ class Narrative:
         self._problems: set[tuple[str, int]] = set()
 
     def news(self, now: Nanoseconds, findings: Sequence[ExplainedFinding]) -> list[str]:
-        """Return what is new at a moment; if that is before what was told last, all until then is new."""
+        """Return the news at a moment; everything before is new if that precedes the last reported moment."""
         if now < self._told_to:
             self._told_to = self._lines = 0
             self._known.clear()
@@ -86,7 +86,7 @@ class Narrative:
     def _begin_and_end(
         self, subject: int, bar: Span | Wait, now: Nanoseconds, begins: str, ends: str
     ) -> Iterator[News]:
-        """Yield a bar's sentences that were not told yet."""
+        """Yield a bar's sentences that were not reported yet."""
         key = (subject, bar.start)
         if key not in self._begun and (bar.end is None or bar.end > self._told_to):
             self._begun.add(key)
@@ -120,7 +120,7 @@ class Narrative:
 
 
 def told_finding(each: ExplainedFinding) -> str:
-    """Return its kind, what is wrong, why, what to do, and where, as one line."""
+    """Return a finding as one line: its kind, what is wrong, why, what to do, and where."""
     explained = each.explanation
     where = location_text(each.finding, explained)
     parts = (each.headline, f"why: {explained.why}", f"what to do: {explained.cure}", where)
@@ -128,7 +128,7 @@ def told_finding(each: ExplainedFinding) -> str:
 
 
 def told_moment(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
-    """Yield what the executor did last by a moment, what that left waiting and why, and what runs."""
+    """Yield the executor's last action by a moment, what still waited then and why, and what runs."""
     if timeline.neighbour(at + 1, None, -1) != at:
         yield f"{timestamp(at)}; the last event before that:"
     yield from narration(timeline, at)

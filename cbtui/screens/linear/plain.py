@@ -1,4 +1,4 @@
-"""Text as a screen reader should say it: without markup, frames and signs."""
+"""Text for screen readers: without markup, frames and signs."""
 
 import re
 

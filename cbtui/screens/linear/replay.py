@@ -10,7 +10,7 @@ from sim.recording import Recording
 
 
 class ReplayConsole(LinearConsole[RecordedRun]):
-    """Tells a recording as it is played, and the moments that are gone to."""
+    """Prints the news of a recording as it is played, and the moments that the user goes to."""
 
     def __init__(self, terminal: LineTerminal, recording: Recording) -> None:
         self._recording = recording
@@ -26,11 +26,11 @@ class ReplayConsole(LinearConsole[RecordedRun]):
 
     @property
     def is_ready(self) -> bool:
-        """Whether it has been read."""
+        """Whether the recording has been read."""
         return self.runs.run.is_read
 
     def greet(self) -> Dialogue:
-        """Tell what was recorded, and read it."""
+        """Print the facts about the recording, and start reading it."""
         self.tell(f"Recording of {self.subject.heading}")
         self.tell_page("\n".join(facts_on(self._recording)))
         play, back, on, go_to = map(self.key, ("resume", "step_back", "step", "go_to_time"))
@@ -39,7 +39,7 @@ class ReplayConsole(LinearConsole[RecordedRun]):
         yield from ()
 
     def turn(self) -> None:
-        """Play on for a while, and tell what is new."""
+        """Advance the playback, and print the news."""
         if self.is_ready:
             if self._playback.play():
                 self.telling.tell_news()

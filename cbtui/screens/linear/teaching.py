@@ -19,7 +19,7 @@ from sim.engine.setup import RealRos
 class Teaching(ScreenPart):
     """Asks for predictions and explains the lesson; ``observe`` makes the run that shows the true answers.
 
-    ``found`` is called with these, on a thread of that run's own; ``real`` returns the ROS 2 in use.
+    ``found`` gets the answers, on that run's own thread; ``real`` returns the ROS 2 in use.
     """
 
     host: LineHost
@@ -30,7 +30,7 @@ class Teaching(ScreenPart):
     progress: Progress
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer what is open."""
+        """Offer open predictions, and the explanation."""
         return action != "predict" or self.can_predict
 
     @property
@@ -59,7 +59,7 @@ class Teaching(ScreenPart):
         self.host.ask(self.predict())
 
     def action_explain(self) -> None:
-        """Tell what happened, and why; open questions are asked first."""
+        """Print the true answers and their reasons; open questions are asked first."""
         self.host.ask(self._explain())
 
     def _explain(self) -> Dialogue:
@@ -71,7 +71,7 @@ class Teaching(ScreenPart):
         Thread(target=lambda: self.found(run.run()), name="outcome", daemon=True).start()
 
     def tell_explanation(self, outcome: PredictionOutcome) -> None:
-        """Tell what was found, and why it is so."""
+        """Print the true answers, and the explanation."""
         page = page_of(self.lesson, PageState(self.progress.of(self.lesson.id), outcome), signs())
         for section in (PageSection.SHOWN, PageSection.EXPLANATION):
             self.host.tell_page(page.get(section, ""))

@@ -1,4 +1,4 @@
-"""Tells a run in lines: its news as it goes on, and the moments that the person goes to."""
+"""Prints a run in lines: its news, and the moments that the user goes to."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ from sim.trace.timeline import Timeline
 
 @dataclass
 class Telling(ScreenPart):
-    """Tells what happens in a run, what goes wrong, and the moments that ``navigation`` goes to.
+    """Prints what happens in a run, its problems, and the moments that ``navigation`` goes to.
 
     ``begin`` is called for each new run; ``live`` returns the run if it has an engine.
     """
@@ -46,13 +46,13 @@ class Telling(ScreenPart):
         )
 
     def begin(self) -> None:
-        """Tell a new run from its beginning, as far as the last one was told."""
+        """Begin to report a new run, with the settings of the last one."""
         before = self.narrative
         self.narrative = Narrative(self.runs.timeline, before.least, whole=before.whole)
         self._state, self._steps, self._moved_to = RunState.STARTING, False, None
 
     def tell_news(self) -> None:
-        """Tell what is new at the moment on screen; what lies before one that was gone to is not."""
+        """Print the news at the current moment; nothing before a moment that the user went to is news."""
         findings, now = self.runs.findings, self.navigation.now
         findings.look_when_due()
         if self._moved_to is not None:
@@ -68,7 +68,7 @@ class Telling(ScreenPart):
             self.host.tell(f"{asked.program} waits for the keyboard" + (f": press {key}" if key else ""))
 
     def tell_state(self) -> None:
-        """Tell whether time goes on, or how the run ended, if that has changed."""
+        """Print whether time passes, or how the run ended, if that has changed."""
         run, at = self.runs.run, timestamp(self.navigation.now)
         before, self._state = self._state, run.state
         is_under_way = run.state in (RunState.LIVE, RunState.PAUSED, RunState.REPLAY_PLAYS)
@@ -84,17 +84,17 @@ class Telling(ScreenPart):
             self.host.tell(diagnosis_on_screen(run, playhead, concurrency, self.keymap).text)
 
     def _await_step(self) -> None:
-        """Tell the next decision when it is made."""
+        """Print the next decision once it is made."""
         self._steps = True
 
     def take(self, events: Iterable[AnyEvent]) -> None:
-        """Tell the decision to which the run was stepped."""
+        """Print the decision to which the run was stepped."""
         if self._steps and any(isinstance(event, TimeHalted) for event in events):
             self._steps = False
             self.action_narrate()
 
     def _move(self) -> None:
-        """Tell the moment that was gone to."""
+        """Print the moment that the user went to."""
         timeline, now = self.runs.timeline, self.navigation.now
         self._steps, self._moved_to = False, now
         if self.navigation.playhead.at is None:
@@ -103,23 +103,23 @@ class Telling(ScreenPart):
             self.host.tell(line)
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer to tell more or less as far as there is."""
+        """Offer more or less detail, within the limits."""
         least = self.narrative.least
         return {"zoom_in": least > LEAST[0], "zoom_out": least < LEAST[-1]}.get(action, True)
 
     def action_narrate(self) -> None:
-        """Tell what the executor decided last."""
+        """Print the executor's last decision."""
         for line in narration(self.runs.timeline, self.navigation.now):
             self.host.tell(line)
 
     def action_select(self) -> None:
-        """Tell what runs and waits."""
+        """Print what runs and waits."""
         runs = self.runs
         for line in summary(self.subject, runs.timeline, self.navigation.now, runs.concurrency):
             self.host.tell(line.strip())
 
     def action_diagnoses(self) -> None:
-        """Tell what was found, each with its number."""
+        """Print the findings with their numbers."""
         findings = self.runs.findings
         findings.look()
         for number, each in enumerate(findings.findings, start=1):
@@ -129,11 +129,11 @@ class Telling(ScreenPart):
             self.host.tell("nothing has gone wrong so far: no rule has found a problem")
 
     def action_zoom_in(self) -> None:
-        """Tell shorter calls and waits."""
+        """Report shorter calls and waits."""
         self._change_least(-1)
 
     def action_zoom_out(self) -> None:
-        """Tell only longer calls and waits."""
+        """Report only longer calls and waits."""
         self._change_least(1)
 
     def _change_least(self, step: int) -> None:
@@ -146,7 +146,7 @@ class Telling(ScreenPart):
         return subject.source or program_text(subject.node_path) or "# There is no code to be read."
 
     def action_show_pane(self, name: str) -> None:
-        """Read the guide or the code, or tell the whole log."""
+        """Print the guide or the code, or report the whole log."""
         match name:
             case "guide":
                 self.host.tell_page(self.subject.guide)
