@@ -66,10 +66,10 @@ def _engine_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "E
 class CbtuiApp(EndingApp):
     """The console.
 
-    ``start_lesson`` is the id of a lesson to open at once, ``start_exercise`` of one whose exercise to open,
-    ``start_puzzle`` a puzzle, ``start_file`` a program file, its arguments and its clock, ``start_changes``
-    what is changed about either, ``start_program`` any other program, ``start_recording`` a recording to
-    show, ``start_comparison`` two runs to compare. ``theme`` is the name of a colour theme,
+    ``start_lesson`` is the id of a lesson to open at once, ``start_exercise`` the id of one whose exercise is
+    opened, ``start_puzzle`` a puzzle, ``start_file`` a program file with its arguments and clock,
+    ``start_changes`` the changes of either, ``start_program`` any other program, ``start_recording`` a
+    recording, ``start_comparison`` two runs to compare. ``theme`` is the name of a colour theme,
     ``keys`` the keys in force, and ``complaints`` are sentences to begin with.
     ``open_session`` starts engines in place of the real ones, ``observe`` runs one to its end beside the
     screen.
@@ -258,7 +258,6 @@ class CbtuiApp(EndingApp):
     def _remember(
         self, kind: RecentKind, what: str, arguments: tuple[str, ...] = (), clock: str = "real"
     ) -> None:
-        """Remember what was opened."""
         self._recents.note(RecentEntry(kind, what, int(time()), arguments, clock))
         for sentence in self._recents.troubles():
             self.notify(sentence, severity="warning", markup=False)

@@ -140,9 +140,9 @@ def _parser() -> argparse.ArgumentParser:
         name: str,
         add_options: Callable[[argparse.ArgumentParser], None],
         action: Callable[[argparse.Namespace], int],
-        **told: Any,
+        **texts: Any,
     ) -> CommandParser:
-        own = commands.add_parser(name, **told)
+        own = commands.add_parser(name, **texts)
         add_options(own)
         own.set_defaults(action=action)
         return own

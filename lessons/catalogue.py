@@ -1,7 +1,7 @@
-"""All lessons in teaching order, and the way to one of them by its id.
+"""All lessons in teaching order, and the search for one by its id.
 
-Beside the lessons that come with the package there are those of other people: in folders that the environment
-names, and in packages that announce themselves under the entry-point group ``cbtui.lessons``.
+The package's own lessons are followed by others: from folders that an environment variable names, and from
+packages that are registered under the entry-point group ``cbtui.lessons``.
 """
 
 import os
@@ -28,7 +28,7 @@ class UnknownLesson(LookupError):  # noqa: N818 - the sentence it carries is wha
 def lessons() -> tuple[Lesson, ...]:
     """Return every lesson in teaching order, numbered from 1; those from elsewhere follow the package's own.
 
-    Read once for each value of the environment variable.
+    They are read once for each value of the environment variable.
 
     Raises:
         BadLesson: a lesson's folder is at fault, two lessons have one id, or a place for lessons has none.
@@ -48,13 +48,13 @@ def find(lesson_id: str) -> Lesson:
 
 
 def lesson_on(problem: str) -> Lesson | None:
-    """Return the lesson whose node shows a kind of problem, and the fewest others; None if none does."""
+    """Return the lesson whose node shows a kind of problem and the fewest others; None if there is none."""
     shown = [each for each in lessons() if problem in (*each.diagnoses.node, *each.diagnoses.shows)]
     return min(shown, key=lambda lesson: len(lesson.diagnoses.node), default=None)
 
 
 def is_built_in(lesson: Lesson) -> bool:
-    """Tell whether a lesson is one of the package's own; others run nothing before somebody opens them."""
+    """Tell whether a lesson is one of the package's own; code of others only runs when a user opens them."""
     return lesson.folder.is_relative_to(ROOT)
 
 
@@ -62,7 +62,7 @@ def lessons_in(folder: Path) -> tuple[Lesson, ...]:
     """Return the lessons of a folder and of folders in it, by their numbers; it may be a lesson itself.
 
     Raises:
-        BadLesson: one of them is at fault.
+        BadLesson: one of them is invalid.
     """
     places = ("", "*/", "*/*/")
     paths = [path for place in places for path in folder.glob(f"{place}{DESCRIPTION_FILE}")]
@@ -97,7 +97,7 @@ def _announcement(following: Lesson | None) -> str:
 
 
 def _elsewhere(folders: str) -> Iterator[tuple[str, Path]]:
-    """Where more lessons are, each place with who says so."""
+    """Yield the places of further lessons, each with the variable or package that names it."""
     for name in filter(None, folders.split(os.pathsep)):
         folder = Path(name).resolve()
         if not folder.is_dir():
@@ -119,7 +119,7 @@ def _announced() -> Iterator[tuple[str, Path]]:
 
 
 def _locations(package: str) -> list[str]:
-    """The folders of a package, none if there is no such package; nothing of it or around it is imported."""
+    """Return the folders of a package, none if it does not exist; neither it nor its parents are imported."""
     from importlib.machinery import PathFinder
     from importlib.util import find_spec
 
@@ -128,9 +128,9 @@ def _locations(package: str) -> list[str]:
         spec = find_spec(first) if first else None
         for depth in range(len(others)):
             above = spec and spec.submodule_search_locations
-            # importlib's own way to a package in another one imports the outer one.
+            # importlib.util.find_spec imports the parents of a package.
             spec = PathFinder.find_spec(".".join([first, *others[: depth + 1]]), above) if above else None
-    except (ImportError, ValueError):  # the name is none, or a module's that was made by hand
+    except (ImportError, ValueError):  # not a name, or the name of a module without a spec
         return []
     return list((spec and spec.submodule_search_locations) or ())
 
@@ -147,7 +147,7 @@ def _check_ids(every: list[Lesson]) -> None:
 
 
 def _nearest(lesson_id: str) -> str:
-    from difflib import get_close_matches  # needed for a wrong id only
+    from difflib import get_close_matches  # only needed for a wrong id
 
     ids = [lesson.id for lesson in lessons()]
     return get_close_matches(lesson_id.lower(), ids, n=1, cutoff=0.0)[0]

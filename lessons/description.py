@@ -1,4 +1,4 @@
-"""What a `lesson.toml` may say: its tables and fields, with what each may hold."""
+"""The schema of `lesson.toml`: its tables and fields, and their allowed values."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -33,12 +33,12 @@ class Setup(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     threads_argument: Text | None = None
     """The argument that carries the number of threads; None when the node fixes its executor itself."""
     distro: str = ""
-    """The release of rclpy that it is about, as `--distro` takes it; empty for the usual one."""
+    """The release of rclpy for which it is, in the form of `--distro`; empty for the usual one."""
     not_on_ros2: str = ""
     """Why a run on real ROS 2 may not show the answers, as the end of a sentence; empty if it does."""
     clock: Literal["virtual", "real"] = "virtual"
-    """Which time the node runs on. On virtual time computing takes none; what is about that needs the real
-    clock, with checks and answers that come out alike on a machine that is busy otherwise."""
+    """The node's clock. On virtual time computing takes no time; a lesson on computing needs the real clock,
+    and checks and answers with the same results on a busy machine."""
 
     def __post_init__(self) -> None:
         if self.arguments and self.arguments[-1] == self.threads_argument:
@@ -53,7 +53,7 @@ class Setting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     name: Text
     """What it is, in a few words."""
     argument: Text
-    """The argument that carries it; it stands in the set-up's arguments, with its usual value after it."""
+    """The argument with the number; the set-up's arguments contain it, followed by its usual value."""
     unit: Text
     least: float
     most: float
@@ -106,11 +106,11 @@ class Prediction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     question: Text
     answers: Annotated[tuple[Text, ...], Meta(min_length=2, max_length=5)]
     right: Annotated[int, Meta(ge=0)]
-    """Place of the true answer, counted from 0."""
+    """Index of the true answer, from 0."""
     because: Text
     """Why that is so, in a sentence or two."""
     shown: FunctionName
-    """The function in the lesson's `checks.py` that reads off a run which answer is true."""
+    """The function in the lesson's `checks.py` that returns which answer a run shows to be true."""
 
     def __post_init__(self) -> None:
         if self.right >= len(self.answers):
@@ -122,7 +122,7 @@ class Prediction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class LessonRun(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The run that predictions, checks and declared diagnoses are about. Times in seconds of its clock."""
+    """The run of predictions, checks and declared diagnoses. Times are in seconds of its clock."""
 
     seconds: Seconds = 30.0
     calls: tuple[Moment, ...] = ()
@@ -139,7 +139,7 @@ class LessonRun(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Exercise(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """What a learner mends in a file of their own; the checks of `checks.py` tell whether they have."""
+    """A task for the learner's own file; the checks of `checks.py` tell whether it is solved."""
 
     asks: Text
     """What is to be done, in a few sentences."""
@@ -150,7 +150,7 @@ class Exercise(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     solution: PythonFile = "solution.py"
     """A file that passes every check."""
     beyond_node: Text | None = None
-    """What starter and solution have in common that the node lacks; without it they share its other lines."""
+    """Lines that starter and solution share and the node lacks; all other shared lines are the node's."""
 
 
 class DeclaredDiagnoses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -164,7 +164,7 @@ class DeclaredDiagnoses(Struct, frozen=True, kw_only=True, forbid_unknown_fields
 
 
 class Description(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Everything a `lesson.toml` says."""
+    """The content of a `lesson.toml`."""
 
     id: LessonId
     """Name of the lesson on the command line; the lesson's folder has the same name."""
@@ -174,7 +174,7 @@ class Description(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     title: Text
     teaches: Text
     teaser: Text | None = None
-    """What the lesson before says of this one, after its title: ``puts both callbacks in one open area.``"""
+    """The previous lesson's text on this one, after its title: ``puts both callbacks in one open area.``"""
     executor: Text
     """The executor as the menu shows it."""
     groups: Text
@@ -186,7 +186,7 @@ class Description(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     tries: tuple[Try, ...] = msgspec.field(name="try", default=())
     settings: tuple[Setting, ...] = msgspec.field(name="setting", default=())
     scene: Annotated[tuple[Actor, ...], Meta(max_length=4)] = ()
-    """What is shown in place of a robot that would only stand still."""
+    """The figures that are shown in place of a robot that would not move."""
     predictions: Annotated[tuple[Prediction, ...], Meta(max_length=2)] = msgspec.field(
         name="prediction", default=()
     )
@@ -213,7 +213,7 @@ def with_argument(arguments: Sequence[str], name: str, value: str) -> list[str]:
 
 
 def number_after(name: str, arguments: Sequence[str]) -> float | None:
-    """Return the number that an argument has on a command line, None for none."""
+    """Return the value of an argument on a command line as a number; None if there is none."""
     for argument, value in pairwise(arguments):
         if argument == name:
             try:

@@ -1,4 +1,4 @@
-"""What tells from a run which answers are true and which checks pass: the Python beside a lesson."""
+"""Judges runs by a lesson's `checks.py`: which answers are true, and which checks pass."""
 
 import importlib.util
 import sys
@@ -13,19 +13,19 @@ from lessons.lesson import BadLesson, Lesson
 from sim.trace.timeline import Timeline
 
 _CHECKS = "CHECKS"
-"""What the checks are called in a `checks.py`: a tuple of them."""
+"""The name of the tuple of checks in a `checks.py`."""
 
 
 @dataclass(frozen=True, slots=True)
 class JudgedCheck:
-    """A check and what came of it."""
+    """A check and its verdict."""
 
     check: Check
     verdict: Verdict
 
 
 class Judge:
-    """The checks of a lesson, and the functions that read answers off a run."""
+    """The checks of a lesson, and the functions that find the true answers in a run."""
 
     def __init__(self, lesson: Lesson) -> None:
         """Read the lesson's `checks.py`.
@@ -41,11 +41,11 @@ class Judge:
             raise BadLesson(f"{self._path}: the exercise needs a tuple {_CHECKS} with at least one check")
 
     def verdicts(self, run: Timeline) -> list[JudgedCheck]:
-        """Judge a run that is over by every check, in their order."""
+        """Judge a finished run by every check, in their order."""
         return [self.judge(check, run) for check in self.checks]
 
     def judge(self, check: Check, run: Timeline) -> JudgedCheck:
-        """Judge a run that is over by one of the checks; one that stumbles over the run has not passed."""
+        """Judge a finished run by one of the checks; a check that raises has failed."""
         return JudgedCheck(check, _verdict(check, run))
 
     def true_answer(self, prediction: Prediction, run: Timeline) -> int:
@@ -88,13 +88,13 @@ def _named(error: Exception) -> str:
 
 
 def _imported(path: Path) -> ModuleType:
-    """Run a `checks.py` as a module that nobody else can import: every lesson has one of that name."""
+    """Run a `checks.py` as a module that nobody can import, as every lesson has one of that name."""
     name = f"checks of {path.parent.name}"
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None, "a path that ends in .py has a loader"
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # dataclasses look their module up
+    sys.modules[name] = module  # dataclasses look up their module
     try:
         spec.loader.exec_module(module)
     except Exception as error:

@@ -1,4 +1,4 @@
-"""A lesson: the typed description that a `lesson.toml` gives, and the files beside it."""
+"""A lesson: the description in its `lesson.toml`, and the files beside that."""
 
 import os
 import re
@@ -38,18 +38,18 @@ class Lesson(Description, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     @property
     def guide(self) -> str:
-        """The Markdown text that goes with the lesson."""
+        """The Markdown text of the guide."""
         return untrusted.read_text(self.folder / GUIDE_FILE)
 
     @property
     def explanation(self) -> str:
-        """The Markdown text that is for after the run; empty where there is none."""
+        """The Markdown text to be read after the run; empty if there is none."""
         path = self.folder / EXPLANATION_FILE
         return untrusted.read_text(path) if path.is_file() else ""
 
     @property
     def checks_path(self) -> Path:
-        """The file that reads answers and checks off a run; it is there for every prediction and exercise."""
+        """The file with checks and answers; every lesson with predictions or an exercise has one."""
         return self.folder / CHECKS_FILE
 
     @property
@@ -64,14 +64,14 @@ class Lesson(Description, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     @property
     def file_name(self) -> str:
-        """What a learner's own file for the exercise is called: `split_groups.py`."""
+        """The name of a learner's own file for the exercise: `split_groups.py`."""
         return f"{self.id.replace('-', '_')}.py"
 
     def arguments_with(self, threads: int | None) -> list[str]:
         """Return the node's command line with its number of threads replaced.
 
         None keeps the lesson's own number. A node without such an argument gets its usual command
-        line; its executor has to be changed by whoever runs it.
+        line; the caller has to change its executor.
         """
         arguments = list(self.setup.arguments)
         name = self.setup.threads_argument
@@ -101,7 +101,7 @@ def read_lesson(folder: Path) -> Lesson:
 
 
 def _files_of(description: Description) -> Iterator[tuple[str | None, str]]:
-    """The files that must be there, each with the field that names it."""
+    """Yield the required files, each with the field that names it."""
     yield "setup.node", description.setup.node
     yield None, GUIDE_FILE
     if description.exercise is not None:
@@ -116,7 +116,7 @@ def _table(path: Path) -> dict[str, Any]:
         return plain_toml.load(untrusted.read_text(path))
     except OSError as error:
         raise BadLesson(f"{path}: cannot be read: {error.strerror}") from error
-    except ValueError as error:  # of the parser itself, and of what it makes numbers and texts with
+    except ValueError as error:  # errors of the parser, and of its conversion of numbers and texts
         raise BadLesson(f"{path}: is not valid TOML: {error}") from error
 
 
@@ -125,7 +125,7 @@ _FIELD_ERROR = re.compile(r"Object (?P<kind>missing required|contains unknown) f
 
 
 def _fault(error: str) -> str:
-    """Say msgspec's complaint (`Expected …, got … - at `$.setup.node``) as the end of a sentence."""
+    """Turn an error of msgspec (`Expected …, got … - at `$.setup.node``) into the end of a sentence."""
     parts = _ERROR.fullmatch(error)
     assert parts is not None, "the pattern matches every text"
     what, where = parts["what"], parts["where"]

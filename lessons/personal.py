@@ -1,7 +1,7 @@
-"""The folders in which programs keep what is a person's own.
+"""The user's folders for state and configuration.
 
-Where nobody knows the person's home, they begin with ``~`` and are not absolute; nothing is there, and
-nothing can be written. So it is for a user number without a name, in a container without HOME.
+If the home folder is unknown, as for a user id without a name in a container without HOME, the paths begin
+with ``~`` and are not absolute: nothing exists there, and nothing can be written.
 """
 
 from collections.abc import Callable
@@ -9,15 +9,15 @@ from pathlib import Path
 
 
 def state_folder() -> Path:
-    """Where progress and what was opened lately are kept."""
-    # Not needed by most commands, and slow to import.
+    """Return the folder of the progress and of the recently opened entries."""
+    # Slow to import, and most commands do not need it.
     import platformdirs
 
     return _known_or("~/.local/state/cbtui", lambda: platformdirs.user_state_path("cbtui", appauthor=False))
 
 
 def config_folder() -> Path:
-    """Where the configuration is."""
+    """Return the folder of the configuration."""
     import platformdirs
 
     return _known_or("~/.config/cbtui", lambda: platformdirs.user_config_path("cbtui", appauthor=False))

@@ -1,4 +1,4 @@
-"""How far a learner has come in each lesson, kept in a file of plain text from one console to the next."""
+"""The learner's progress in each lesson, stored in a text file that all consoles share."""
 
 import os
 from collections.abc import Callable
@@ -14,30 +14,30 @@ _WORDS = StateFileTexts("progress", "progress is not kept", "the lessons go on")
 
 
 class LessonProgress(Struct, frozen=True, kw_only=True):
-    """How far a learner has come in one lesson."""
+    """The learner's progress in one lesson."""
 
     lesson: str
     answers: tuple[int, ...] = ()
-    """What was answered to its predictions, in their order; as many as were answered."""
+    """The answers to its predictions, in their order, as far as they were given."""
     seen: bool = False
-    """A run was watched to where its predictions can be told from."""
+    """Enough of a run was watched to judge the predictions."""
     explained: bool = False
-    """What the run showed, and why, was read."""
+    """The true answers and the explanation were read."""
     hints: int = 0
-    """How many hints were taken."""
+    """The number of taken hints."""
     solution: bool = False
-    """The solution was looked at."""
+    """The solution was viewed."""
     passed: bool = False
     """The exercise passed every check."""
 
 
 def usual_path() -> Path:
-    """Where the file is kept: in the person's folder for the state of programs."""
+    """Return the path of the file, in the user's folder for state."""
     return state_folder() / FILE_NAME
 
 
 def faulty_line(path: Path) -> int | None:
-    """Return the number of a file's first line that is not progress, None without one; changes nothing.
+    """Return the number of a file's first invalid line, None if there is none; changes nothing.
 
     Raises:
         OSError: the file cannot be read.
@@ -58,11 +58,11 @@ class Progress:
         self.refresh()
 
     def of(self, lesson: str) -> LessonProgress:
-        """Return how far the learner is in a lesson, as far as this console knows."""
+        """Return the learner's progress in a lesson, as far as this console knows it."""
         return self._known.get(lesson) or LessonProgress(lesson=lesson)
 
     def answer(self, lesson: str, place: int, answer: int) -> None:
-        """Note an answer to the prediction at a place, the next one; a given answer stays as it is."""
+        """Store the answer to the next prediction, the one at ``place``; a given answer is never changed."""
 
         def answered(known: LessonProgress) -> LessonProgress:
             if place != len(known.answers):
@@ -76,7 +76,7 @@ class Progress:
         self._change(lesson, lambda known: structs.replace(known, seen=True))
 
     def explain(self, lesson: str) -> None:
-        """Note that what a run showed, and why, was read."""
+        """Note that the true answers and the explanation were read."""
         self._change(lesson, lambda known: structs.replace(known, seen=True, explained=True))
 
     def take_hint(self, lesson: str, number: int) -> None:
@@ -84,7 +84,7 @@ class Progress:
         self._change(lesson, lambda known: structs.replace(known, hints=max(known.hints, number)))
 
     def look_at_solution(self, lesson: str) -> None:
-        """Note that the solution was looked at."""
+        """Note that the solution was viewed."""
         self._change(lesson, lambda known: structs.replace(known, solution=True))
 
     def passes(self, lesson: str) -> None:
@@ -92,22 +92,22 @@ class Progress:
         self._change(lesson, lambda known: structs.replace(known, passed=True))
 
     def reset(self, lesson: str) -> bool:
-        """Forget everything about a lesson; tells whether there was anything."""
+        """Forget everything about a lesson; returns whether there was anything."""
         nothing = LessonProgress(lesson=lesson)
         return self._change(lesson, lambda _: nothing) != nothing
 
     def refresh(self) -> None:
-        """Take in what other consoles have written."""
+        """Read what other consoles have written."""
         if os.path.lexists(self._file.path):
             with self._file.lock():
                 self._read()
 
     def troubles(self) -> list[str]:
-        """Return what went wrong and was not told yet."""
+        """Return the errors that were not reported yet."""
         return self._file.troubles()
 
     def _change(self, lesson: str, change: Callable[[LessonProgress], LessonProgress]) -> LessonProgress:
-        """Change what is known of a lesson; what was known before."""
+        """Change the progress in a lesson; returns the progress before."""
         with self._file.lock():
             self._read()
             before = self.of(lesson)

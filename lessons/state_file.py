@@ -1,4 +1,4 @@
-"""The store for small state that outlasts a console: a file of JSON lines, shared with other consoles."""
+"""The store for small persistent state: a file of JSON lines, shared with other consoles."""
 
 import fcntl
 import json
@@ -18,13 +18,13 @@ from sim.files.untrusted import MAX_PROGRAM_BYTES, read_bytes
 EntryT = TypeVar("EntryT", bound=msgspec.Struct)
 
 _LOCK_TIMEOUT = 1.0
-"""Seconds that another console may hold the lock; after that this one goes on without it."""
+"""Seconds to wait for another console's lock; after that this one continues without it."""
 _POLL = 0.02
 
 
 @dataclass(frozen=True)
 class StateFileTexts:
-    """What sentences on a file call an entry, the loss of all of it, and what goes on after a partial one."""
+    """Words for sentences on a file: an entry, the loss of all entries, the effect of a partial loss."""
 
     entry: str
     loss: str
@@ -32,7 +32,7 @@ class StateFileTexts:
 
 
 class StateFileContent(NamedTuple, Generic[EntryT]):
-    """The readable entries of a file; ``broken`` if there was something else in it, and it was set aside."""
+    """The readable entries of a file; ``broken`` if it had other lines and was set aside."""
 
     entries: list[EntryT]
     broken: bool
@@ -41,9 +41,9 @@ class StateFileContent(NamedTuple, Generic[EntryT]):
 class StateFile(Generic[EntryT]):
     """Entries of one kind, a JSON line each.
 
-    A file is replaced as a whole, and so is never half written. Nothing but ``faulty_line`` raises: a file
-    that cannot be read or written loses nothing in memory, and ``troubles`` gives a sentence on it, each kind
-    of trouble once. A file with something unreadable in it is kept under another name. Not thread-safe.
+    A file is replaced as a whole, so it is never half written. Only ``faulty_line`` raises: if the file
+    cannot be read or written, the state stays in memory and ``troubles`` returns a sentence, once for each
+    kind of error. A file with unreadable lines is kept under another name. Not thread-safe.
     """
 
     def __init__(self, path: Path, kind: type[EntryT], words: StateFileTexts) -> None:
@@ -55,7 +55,7 @@ class StateFile(Generic[EntryT]):
         self._usable = True
 
     def read(self) -> StateFileContent[EntryT] | None:
-        """Return what is in the file; None where there is none, or none that can be read."""
+        """Return the content of the file; None if it is missing or unreadable."""
         try:
             lines = read_bytes(self._known_path(), MAX_PROGRAM_BYTES).splitlines()
         except FileNotFoundError:
@@ -83,24 +83,24 @@ class StateFile(Generic[EntryT]):
 
     @contextmanager
     def lock(self) -> Iterator[None]:
-        """Keep other consoles from reading and writing meanwhile; does nothing where there can be no lock."""
+        """Lock out other consoles during the block; does nothing where locking is impossible."""
         try:
             self._known_path().parent.mkdir(parents=True, exist_ok=True)
             file = self.path.with_name(f"{self.path.name}.lock").open("wb")
         except OSError:
-            yield  # ``write`` tells why that is not possible
+            yield  # ``write`` reports the reason
             return
         with file:
             _wait_for(file.fileno())
             yield
 
     def troubles(self) -> list[str]:
-        """Return what went wrong and was not told yet."""
+        """Return the errors that were not reported yet."""
         troubles, self._troubles = self._troubles, []
         return troubles
 
     def faulty_line(self) -> int | None:
-        """Return the number of the first line that is no entry, None if all are; changes nothing.
+        """Return the number of the first invalid line, None if there is none; changes nothing.
 
         Raises:
             OSError: the file cannot be read.
@@ -111,17 +111,17 @@ class StateFile(Generic[EntryT]):
     def _entry_in(self, line: bytes) -> EntryT | None:
         try:
             return msgspec.convert(json.loads(line), self._kind)
-        except (ValueError, RecursionError):  # msgspec's own errors are ValueErrors too
+        except (ValueError, RecursionError):  # msgspec's errors are ValueErrors
             return None
 
     def _known_path(self) -> Path:
-        """Return the path; without a home there is none."""
+        """Return the path; None without a home folder."""
         if not self.path.is_absolute():
             raise OSError(0, "there is no home folder")
         return self.path
 
     def _set_aside(self, line: int) -> None:
-        """Let a file that somebody else wrote into be looked at later."""
+        """Keep a file with foreign lines under another name."""
         names = (self.path.with_name(f"{self.path.name}.broken-{number}") for number in count(1))
         aside = next(path for path in names if not path.exists())
         what = f"{self.path}:{line} is no {self._words.entry}"
@@ -141,7 +141,7 @@ class StateFile(Generic[EntryT]):
 
 
 def _wait_for(lock: int) -> None:
-    """Take a lock when it is free; it goes with the file's descriptor, also when the console crashes."""
+    """Wait for a lock; closing the descriptor releases it, as a crash of the console does."""
     deadline = time.monotonic() + _LOCK_TIMEOUT
     while time.monotonic() < deadline:
         try:
@@ -149,6 +149,6 @@ def _wait_for(lock: int) -> None:
         except BlockingIOError:
             time.sleep(_POLL)
         except OSError:
-            return  # a folder of another machine that knows no locks
+            return  # a network file system without locks
         else:
             return

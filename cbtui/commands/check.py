@@ -27,7 +27,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_limit(parser: argparse.ArgumentParser, usual: float) -> None:
-    """Add ``--limit``, the real time that a run may take."""
+    """Add ``--limit``, the limit of a run in real seconds."""
     parser.add_argument(
         "--limit",
         metavar="SECONDS",
@@ -68,7 +68,7 @@ def check(options: argparse.Namespace) -> int:
 
 
 def exercise_of(name: str) -> "Lesson":
-    """The lesson of that id; exits with code 2 and one line if it has no exercise."""
+    """Return the lesson with that id; exits with code 2 and one line if it has no exercise."""
     lesson = lesson_of(name)
     if lesson.exercise is None:
         from lessons.catalogue import lessons

@@ -58,7 +58,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def compare(options: argparse.Namespace) -> int:
-    """Put two runs side by side, in the console or as text; returns the exit code."""
+    """Compare two runs in the console or as text; returns the exit code."""
     _check(options)
     first, second = (
         _compared_run(name, changed, options.arguments)
@@ -74,7 +74,6 @@ def compare(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> None:
-    """Refuse options that contradict each other."""
     names = [options.A, options.B]
     for letter, name in zip("ab", names, strict=True):
         is_real = getattr(options, f"on_{letter}") != "model"
@@ -125,7 +124,7 @@ def _compared_run(name: str, changed: "Changes", arguments: list[str]) -> "Compa
 
 
 def _readable(path: Path) -> Path:
-    """A recording's path; exits with code 2 and one line if it cannot be opened."""
+    """Return a recording's path; exits with code 2 and one line if it cannot be opened."""
     from sim.recording import RecordingError, read
 
     try:

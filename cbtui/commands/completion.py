@@ -8,9 +8,9 @@ from cbtui.text.output import say
 
 _SHELLS = ("bash", "zsh", "fish")
 _PATHS = {"FILE": "FILE", "OUT": "FILE", "DIR": "DIRECTORY"}
-"""What completes an argument that is a path, by its name in the help."""
+"""The completion of arguments that are paths, by their names in the help."""
 _OTHERS = {"A": "LESSON|FILE", "B": "LESSON|FILE"}
-"""What arguments are whose names do not tell."""
+"""Descriptions of arguments whose names do not explain them."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -19,7 +19,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def completion(whole: Callable[[], argparse.ArgumentParser], options: argparse.Namespace) -> int:
-    """Print a script that completes the words of the ``whole`` command line; lessons are those of now."""
+    """Print a script that completes the words of the ``whole`` command line, with the current lessons."""
     import shtab
 
     parser, words = whole(), _words()
@@ -45,13 +45,13 @@ def man(whole: Callable[[], argparse.ArgumentParser], _options: argparse.Namespa
 
     page = Manpage(whole())
     page.manual = page.prog
-    page.description = page.parser.description  # what apropos finds
+    page.description = page.parser.description  # the line that apropos finds
     say(f"{page}\n")
     return 0
 
 
 def _actions(parser: argparse.ArgumentParser) -> Iterator[argparse.Action]:
-    """The arguments of a parser and of its commands."""
+    """Yield the arguments of a parser and of its commands."""
     for action in parser._actions:
         if isinstance(action, argparse._SubParsersAction):
             for each in action.choices.values():
@@ -61,7 +61,7 @@ def _actions(parser: argparse.ArgumentParser) -> Iterator[argparse.Action]:
 
 
 def _words() -> Mapping[str, Sequence[str]]:
-    """The words for an argument, by its name in the help."""
+    """Return the completions of arguments by their names in the help."""
     from cbtui.looks.colour_themes import THEMES
     from lessons.catalogue import lessons
     from lessons.puzzles import puzzles
@@ -76,7 +76,7 @@ def _words() -> Mapping[str, Sequence[str]]:
 
 
 def _function(name: str, shell: str, ids: str, paths: str) -> str:
-    """A shell's function that offers words, and files or folders; fish needs none."""
+    """Return a shell's function that offers words, and files or folders; fish needs none."""
     match shell:
         case "bash":
             found = {"": "", "FILE": ' _shtab_compgen_files "$1";', "DIRECTORY": ' _shtab_compgen_dirs "$1";'}

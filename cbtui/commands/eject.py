@@ -49,7 +49,7 @@ def eject(options: argparse.Namespace) -> int:
         complain(str(error))
         return 2
     except (BrokenPipeError, CannotSayError):
-        raise  # about standard output, not about a file
+        raise  # warns about standard output, not about a file
     except OSError as error:
         place = error.filename2 or error.filename or folder
         complain(f"cannot write {place}: {error.strerror}")
@@ -60,7 +60,7 @@ def eject(options: argparse.Namespace) -> int:
 
 
 def _packages(folder: Path, names: Sequence[str]) -> "list[AmentPackage]":
-    """The packages of the named units, of all units if none is named."""
+    """Return the packages of the named units, or of all units if none is named."""
     from cbtui.eject.eject import EjectError, chosen, package_of, units_of
     from lessons.catalogue import lessons
 
@@ -96,5 +96,5 @@ def _write(package: "AmentPackage", folder: Path, files: Mapping[Path, bytes]) -
 
     written = write_files(files)
     kept = f", {len(files) - written} were there" if written < len(files) else ""
-    told = f"{counted(len(package.programs), 'lesson')}, {counted(written, 'file')} written{kept}"
-    say(f"{folder / package.name}: {told}\n")
+    lessons = counted(len(package.programs), "lesson")
+    say(f"{folder / package.name}: {lessons}, {counted(written, 'file')} written{kept}\n")

@@ -79,7 +79,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def explore(options: argparse.Namespace) -> int:
-    """Run a program under other schedules; returns the exit code: 0 if all went well, 1 if some failed.
+    """Run a program under other schedules; returns the exit code: 0 if all succeeded, 1 if some failed.
 
     Ctrl-C ends it early with 130; the results so far are printed all the same.
     """
@@ -117,7 +117,7 @@ def explore(options: argparse.Namespace) -> int:
 
 
 def _sample(shard: "Shard", exploration: "Exploration", part: int, parts: int) -> "tuple[Shard, bool]":
-    """Run one part of the seeds; returns the results, and whether Ctrl-C came first."""
+    """Run one part of the seeds; returns the results, and whether Ctrl-C ended the run."""
     numbers = range(shard.first, shard.first + shard.schedules)[part - 1 :: parts]
     usual = shard.strategy == "pos"
     seeds: list[Seed] = [number if usual else f"{shard.strategy}:{number}" for number in numbers]
@@ -157,7 +157,7 @@ def _tell(shard: "Shard", whose: str = "", exploration: "Exploration | None" = N
 def _shrunk(
     exploration: "Exploration", found: "Mapping[str, ScheduleResult]", schedules: int
 ) -> "Shrunk | None":
-    """Look for a simple schedule that fails as one of these did; None if none did, or what fails varies."""
+    """Search a simple schedule with the same failure; None if none failed, or failures are not repeatable."""
     from cbtui.runs.judged.exploration_text import Shrunk
     from cbtui.runs.judged.shrinking import Shrinking
 
@@ -173,7 +173,7 @@ def _shrunk(
 def _interrupted(
     results: "Generator[tuple[SeedT, ScheduleResult]]", found: "dict[SeedT, ScheduleResult]", goal: str = ""
 ) -> bool:
-    """Put the result of each seed into ``found``; returns whether Ctrl-C came first."""
+    """Put the result of each seed into ``found``; returns whether Ctrl-C ended that."""
     from cbtui.terminal.progress_line import ProgressLine
 
     try:
@@ -193,7 +193,7 @@ def _exit_code(shard: "Shard") -> int:
 
 
 def _merge(options: argparse.Namespace) -> int:
-    """Tell what files of results hold together; returns the exit code as ``explore`` does."""
+    """Print the merged results of several files; returns the exit code as ``explore`` does."""
     if options.target is not None or options.save is not None:
         refuse("--merge runs nothing: leave out the target and --save")
     from cbtui.runs.judged.shards import BadShardError, merged
@@ -211,7 +211,6 @@ def _merge(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> None:
-    """Refuse options that contradict each other."""
     is_file = is_file_name(options.target)
     if options.check is not None and not is_file:
         refuse(f"a lesson is judged by its own checks; leave out --check {options.check}, or give a file")
@@ -225,7 +224,7 @@ def _check(options: argparse.Namespace) -> None:
 
 
 def _of_files_only(options: argparse.Namespace) -> dict[str, object]:
-    """Options that would change the run that a lesson's checks are about."""
+    """Return the given options that would change the run of a lesson's checks."""
     return {
         "--for": options.seconds,
         "--call": options.calls,
@@ -240,7 +239,7 @@ def _of_files_only(options: argparse.Namespace) -> dict[str, object]:
 
 
 def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[ReplayCommand]]":
-    """The exploration of a file, and the commands that repeat one schedule."""
+    """Return the exploration of a file, and the commands that repeat one schedule."""
     from cbtui.runs.judged.exploration_text import ReplayCommand
 
     path = file_of(options.target)
@@ -288,7 +287,7 @@ def _of_lesson(options: argparse.Namespace) -> "tuple[Exploration, list[ReplayCo
 
 
 def _judged(lesson: "Lesson", options: argparse.Namespace, file: str | None) -> "Exploration":
-    """The exploration of a lesson's node, or of a file in its place, judged by the lesson's checks."""
+    """Return the exploration of a lesson's node, or of a file in its place, judged by the lesson's checks."""
     from cbtui.runs.judged.exploring import Exploration
     from cbtui.runs.setup.lesson_setup import setup_to_judge
     from lessons.judge import Judge

@@ -41,7 +41,7 @@ def export_command(options: argparse.Namespace) -> int:
 
 
 def _request(options: argparse.Namespace, source: Path) -> ExportRequest:
-    """The export that the options ask for.
+    """Return the export that the options ask for.
 
     Raises:
         ExportError: no output is named, or the options contradict each other.

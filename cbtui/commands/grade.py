@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 _STANDARD_OUTPUT = "-"
 SUSPICIOUS = 3
-"""Exit code when a trace shows something that no honest run can."""
+"""Exit code when a trace shows signs of a forgery."""
 CHANGED = 4
 """Exit code when a submission changed cbtui or a lesson, which ends the grading."""
 
@@ -115,7 +115,7 @@ def grade(options: argparse.Namespace) -> int:
 
 
 def _nothing(_text: str) -> None:
-    """Write nothing: no table was asked for."""
+    """Write nothing, as no table was asked for."""
 
 
 def _take_earlier(sheet: "MarkSheet", path: Path, handed_in: "Grader") -> None:
@@ -131,7 +131,7 @@ def _take_earlier(sheet: "MarkSheet", path: Path, handed_in: "Grader") -> None:
 
 
 def _hidden(papers: "list[HandIn]") -> "list[Path]":
-    """Files and folders that no submission may see."""
+    """Return the files and folders that no submission may see."""
     from lessons.catalogue import ROOT
     from lessons.personal import config_folder, state_folder
 

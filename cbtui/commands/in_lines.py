@@ -25,7 +25,7 @@ def open_in_lines(
     start_program: "ShownProgram | None" = None,
     start_recording: "Recording | None" = None,
 ) -> int:
-    """Run the console in lines; it asks what to open unless that is given.
+    """Run the console in lines; it asks what to open if nothing is given.
 
     Returns the exit code.
     """
@@ -87,7 +87,7 @@ def _puzzle(terminal: "LineTerminal", puzzle: "Puzzle") -> "LinearConsole[Any]":
 
 
 def _chosen(terminal: "LineTerminal") -> "LinearConsole[Any] | None":
-    """What is typed: a lesson's number or id, a puzzle's id, or a path; None at the end of input."""
+    """Return the typed lesson's number or id, puzzle's id, or path; None at the end of input."""
     from cbtui.runs.setup.own_files import CannotOpenError, entry_for, read_recording
     from cbtui.runs.setup.recent import RecentKind
     from cbtui.runs.setup.shown_program import of_file, of_lesson

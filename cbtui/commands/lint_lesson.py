@@ -21,7 +21,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def lint_lesson(options: argparse.Namespace) -> int:
-    """Verify lessons; returns the exit code: 0 if all that they claim is so, else 1."""
+    """Verify lessons; returns the exit code: 0 if all their claims are true, else 1."""
     from cbtui.learning.lesson_lint import faults_of
 
     count = 0
@@ -37,7 +37,7 @@ def lint_lesson(options: argparse.Namespace) -> int:
 
 
 def _lessons_in(folder: Path) -> "Iterator[Path]":
-    """The folder itself, or the folders in it that hold a lesson's description."""
+    """Return the folder itself, or the folders in it that contain a lesson's description."""
     from lessons.lesson import DESCRIPTION_FILE
 
     try:

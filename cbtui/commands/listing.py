@@ -1,4 +1,4 @@
-"""``cbtui list``: the lessons by unit, their puzzles, and how far the learner has come in each."""
+"""``cbtui list``: the lessons by unit, their puzzles, and the learner's progress in each."""
 
 import argparse
 from itertools import groupby
@@ -34,5 +34,5 @@ def list_lessons(_options: argparse.Namespace) -> int:
 
 
 def _say_row(note: "StageNote", number: str, about: str) -> None:
-    """Print an entry between the sign and the words of its note."""
+    """Print an entry with the sign of its note before it and the words after it."""
     say(f" {note.sign:1} {number:2}  {about}{f'; {note.words}' if note.words else ''}\n")

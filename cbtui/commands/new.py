@@ -1,4 +1,4 @@
-"""``cbtui new``: writes a small node of the learner's own to begin with."""
+"""``cbtui new``: writes a small node as a starting point for a program of one's own."""
 
 import argparse
 from pathlib import Path

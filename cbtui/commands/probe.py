@@ -48,7 +48,7 @@ def add_attach_options(parser: argparse.ArgumentParser) -> None:
 
 
 def probe(options: argparse.Namespace) -> int:
-    """Become the command behind ``--``, or run it and keep what it does; returns its exit code."""
+    """Become the command after ``--``, or run it and keep its last seconds; returns its exit code."""
     command = options.arguments
     if not command:
         refuse("probe needs a command: cbtui probe -- python3 node.py, or cbtui probe -- ros2 launch …")
@@ -82,7 +82,7 @@ def probe(options: argparse.Namespace) -> int:
 
 
 def attach(options: argparse.Namespace) -> int:
-    """List what can be watched, or open the console on it; returns the exit code."""
+    """List the programs that can be watched, or open the console on them; returns the exit code."""
     from cbtui.runs.setup.shown_program import of_processes
     from sim.engine.setup import RealRos
     from sim.real.probe_link import processes_in, say_token
@@ -114,7 +114,7 @@ def attach(options: argparse.Namespace) -> int:
 
 
 def _process_at(address: tuple[str, int]) -> "Hello":
-    """The process whose probe listens there; none ends the program with one line and 2."""
+    """Return the process whose probe listens there; exits with code 2 and one line if there is none."""
     from sim.real.probe_link import process_at
 
     where = f"{address[0]}:{address[1]}"
@@ -131,7 +131,7 @@ def _process_at(address: tuple[str, int]) -> "Hello":
 
 
 def probes_folder() -> Path:
-    """The folder in which probes listen; if it cannot be used, exit with one line and code 2."""
+    """Return the folder in which probes listen; exits with code 2 and one line if it cannot be used."""
     from cbtui.engines.control_socket import UnusableFolderError, runtime_folder
 
     try:

@@ -1,4 +1,4 @@
-"""``cbtui prove``: a program on the model and on real ROS 2, and whether it does the same on both."""
+"""``cbtui prove``: compares a program's runs on the model and on real ROS 2."""
 
 import argparse
 from textwrap import fill
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 DEFAULT_SECONDS = 20.0
 _MOST = 12
-"""Differences that are told."""
+"""The most differences that are printed."""
 
 DESCRIPTION = """Run a program on cbtui's model of rclpy and on real ROS 2, and tell whether it does the same:
 how often and when each callback runs, what it waits for, how long it takes, what it logs, what the
@@ -41,7 +41,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def prove(options: argparse.Namespace) -> int:
-    """Compare a program's runs on both; returns the exit code: 0 they are the same, 1 they differ."""
+    """Compare a program's runs on both; returns the exit code: 0 if they are the same, 1 if they differ."""
     from dataclasses import replace
 
     from cbtui.runs.compared_runs import CannotCompareError, ComparedRun, ComparisonTerms, load_runs
@@ -71,7 +71,7 @@ def prove(options: argparse.Namespace) -> int:
 
 
 def _request(program: RunTargets, options: argparse.Namespace) -> "RunRequest":
-    """The run on the model."""
+    """Return the request for the run on the model."""
     from dataclasses import replace
 
     from cbtui.runs.setup.lesson_setup import RunRequest, request_to_judge

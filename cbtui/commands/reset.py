@@ -1,4 +1,4 @@
-"""``cbtui reset``: forgets how far the learner has come in a lesson or a puzzle."""
+"""``cbtui reset``: forgets the learner's progress in a lesson or a puzzle."""
 
 import argparse
 

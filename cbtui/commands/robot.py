@@ -1,4 +1,4 @@
-"""``cbtui robot``: the lessons' robot as a real ROS 2 node, for whoever is on its ROS graph."""
+"""``cbtui robot``: the lessons' robot as a real ROS 2 node, for all programs on its ROS graph."""
 
 import argparse
 import math
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from sim.trace.events import RobotMoved
 
 _PERIOD = 1.0
-"""Seconds between two lines on where the robot is."""
+"""Seconds between two lines on the robot's position."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -68,23 +68,23 @@ def robot(options: argparse.Namespace) -> int:
 
 
 class _Status:
-    """Prints where the robot is, once a second: in place on a terminal, elsewhere when that has changed."""
+    """Prints the robot's position once a second: in place on a terminal, elsewhere only when it changes."""
 
     def __init__(self) -> None:
         self._in_place = sys.stdout.isatty()
         self._next = 0.0
         self._shown = ""
 
-    def take(self, told: object) -> None:
-        """Take something that the robot tells."""
+    def take(self, report: object) -> None:
+        """Receive a report of the robot."""
         from sim.trace.events import RobotMoved
 
-        if isinstance(told, RobotMoved) and time.monotonic() >= self._next:
+        if isinstance(report, RobotMoved) and time.monotonic() >= self._next:
             self._next = time.monotonic() + _PERIOD
-            self._show(_sentence(told))
+            self._show(_sentence(report))
 
     def end(self) -> None:
-        """Leave the line that is printed in place."""
+        """End the line that is printed in place."""
         if self._in_place and self._shown:
             say("\n")
 

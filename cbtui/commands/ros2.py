@@ -1,11 +1,11 @@
-"""``cbtui ros2``: carries out a ros2 line in the run that is going on."""
+"""``cbtui ros2``: carries out a ros2 line in a running engine."""
 
 from cbtui.commands.options.targets import refuse
 from cbtui.text.output import is_text
 
 
 def ros2(words: list[str]) -> int:
-    """Carry out a ros2 line; ``--engine PID`` in front of it chooses among several runs."""
+    """Carry out a ros2 line; ``--engine PID`` before it chooses one of several runs."""
     process = None
     if words[:1] == ["--engine"]:
         if len(words) < 2 or not words[1].isdecimal():

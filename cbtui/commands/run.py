@@ -70,7 +70,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_chain(parser: argparse.ArgumentParser) -> None:
-    """Add ``--chain``, which may be given again."""
+    """Add ``--chain``, which may be repeated."""
     parser.add_argument(
         "--chain",
         dest="chains",
@@ -99,7 +99,6 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _repeat(options: argparse.Namespace) -> int:
-    """Run with the inputs of a recording."""
     if options.clock == "real":
         refuse("only runs on the virtual clock can be repeated exactly; leave out --clock real")
     if options.calls or options.lines or options.typed:
@@ -131,7 +130,6 @@ def _run(setup: "RunSetup", options: argparse.Namespace) -> int:
 
 
 def _request(options: argparse.Namespace, program: RunTargets) -> "RunRequest":
-    """The run that the options ask for."""
     from cbtui.runs.setup.lesson_setup import RunRequest
     from sim.engine.setup import Keyboard
 
@@ -164,7 +162,6 @@ def _check_outputs(options: argparse.Namespace, taken: list[Path]) -> None:
 
 
 def _check_run(options: argparse.Namespace, *, is_file: bool) -> None:
-    """Refuse options that contradict each other."""
     inputs.check(options, options.seconds)
     if options.force and options.record is None:
         refuse("--force lets --record replace a file; there is nothing to record to")

@@ -58,7 +58,7 @@ def serve(options: argparse.Namespace) -> int:
         refuse(f"the browser needs textual-serve; install it with: {install_command('cbtui[serve]')}")
     appearance.appearance(options)
     command = [sys.executable, "-P", "-m", "cbtui", *appearance.given(options), *_opened(options.arguments)]
-    import asyncio  # imported late, as the next: no other command needs them
+    import asyncio  # imported late, like the next two: no other command needs them
     import secrets
 
     from cbtui.web.guard import is_loopback
@@ -76,7 +76,7 @@ def serve(options: argparse.Namespace) -> int:
         with deferred_interrupt() as interruption:
             asyncio.run(server.serve_until_signal(_tell, interruption))
     except (BrokenPipeError, CannotSayError):
-        raise  # about standard output, not about the address
+        raise  # warns about standard output, not about the address
     except (OSError, UnicodeError) as error:
         refuse(_why_not(error, options.host, options.port))
     return 0
@@ -87,7 +87,7 @@ def _tell(address: str) -> None:
 
 
 def _opened(words: list[str]) -> list[str]:
-    """The rest of the visitors' command line; exits with code 2 and one line if it cannot be opened."""
+    """Return the rest of the visitors' command line; exits with code 2 and one line if it is wrong."""
     if not words:
         return []
     split = words.index("--") if "--" in words else len(words)

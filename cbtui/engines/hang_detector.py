@@ -18,7 +18,7 @@ _STARTING_POLLS = 60
 
 
 def why_silent(stands: str, stands_later: str) -> str:
-    """Explain a hang by two samples of the program's current line; "" if there is none.
+    """Explain a hang by two samples of the program's current line; "" if they are unknown.
 
     Python code that computes moves on between samples; C code that holds the GIL does not.
     """

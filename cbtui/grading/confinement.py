@@ -28,7 +28,7 @@ _KEPT_OF_ROS = (
     *("AMENT_PREFIX_PATH", "PYTHONPATH", "RMW_IMPLEMENTATION"),
     *("ROS_DISTRO", "ROS_PYTHON_VERSION", "ROS_VERSION"),
 )
-"""What a terminal has in which ROS is sourced."""
+"""Variables of a terminal in which ROS is sourced."""
 _TMP_BYTES = 1 << 28
 _PROBE = "import cbtui.engines.session, sim.engine.process"
 _PATH = "import sys; print(sys.prefix, sys.base_prefix, *sys.path, sep='\\n')"
@@ -130,7 +130,7 @@ class Confinement:
 
 
 def _libraries_of(python: str) -> Iterator[Path]:
-    """What another Python needs, and the ROS that is sourced for it."""
+    """The folders that another Python needs, and those of the ROS that is sourced for it."""
     asked = subprocess.run([python, "-c", _PATH], capture_output=True, text=True, check=False)
     sourced = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
     yield from (Path(each) for each in (*asked.stdout.splitlines(), *sourced) if each)

@@ -62,7 +62,7 @@ class Grade:
 
     @property
     def passed(self) -> int:
-        """How many checks passed."""
+        """The number of passed checks."""
         return sum(passed for passed, _ in self.marks.checks)
 
     @property
@@ -79,7 +79,7 @@ class Grade:
 def hand_ins_in(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) -> list[HandIn]:
     """Return the hand-ins in a folder, which has a folder or a file for each learner, in order of names.
 
-    A file is told by its name: ``split_groups.py`` in a learner's folder, ``split_groups_ann.py`` or
+    A file is recognised by its name: ``split_groups.py`` in a learner's folder, ``split_groups_ann.py`` or
     ``ann_split_groups.py`` beside others'. With ``only`` all is for that exercise, and a learner's only
     Python file may be called anything.
 
@@ -106,14 +106,14 @@ class Grader:
     """
 
     def __init__(self, papers: Iterable[HandIn], real: RealRos | None = None) -> None:
-        """Read them.
+        """Read the hand-ins.
 
         Raises:
             BadLesson: the checks of a lesson cannot be used.
         """
         self._real = real
         self.asked: dict[str, tuple[str, ...]] = {}
-        """What the checks of each lesson ask, by the lesson's id."""
+        """The questions of each lesson's checks, by the lesson's id."""
         self.entries = [self._entry(paper) for paper in papers]
         self._packages = _PackageFiles(entry.paper.lesson for entry in self.entries)
         self._on_disk = {entry: entry.key for entry in self.entries}

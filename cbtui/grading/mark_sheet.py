@@ -29,10 +29,10 @@ class MarkSheet:
         self._columns = [*_BEFORE, *(f"check {number}" for number in range(1, checks + 1)), *_AFTER]
         self.rows: list[SheetRow] = []
         self.unfinished: Sequence[str] = ()
-        """Whose last row was begun and not ended in the table that ``read`` took, and the lesson."""
+        """Learner and lesson of the last row if the table that ``read`` took has only its beginning."""
 
     def beginning(self, entry: LoadedHandIn) -> str:
-        """Return how the row of an entry begins, before its grade is known."""
+        """Return the beginning of an entry's row, which is known before its grade."""
         learner, lesson, _ = entry.key
         return self._text([_harmless(learner), _harmless(lesson), ""]).removesuffix("\n")
 
@@ -41,7 +41,7 @@ class MarkSheet:
         return [*map(_harmless, entry.key[:2])] == [*self.unfinished]
 
     def add(self, grade: Grade) -> str:
-        """Take a grade; returns its row as text."""
+        """Add a grade; returns its row as text."""
         learner, lesson, digest = grade.entry.key
         row = {
             "learner": learner,
@@ -57,7 +57,7 @@ class MarkSheet:
         return self._line(self.rows[-1])
 
     def read(self, text: str, wanted: Iterable[tuple[str, str, str]]) -> None:
-        """Take those rows of an earlier table whose learner, lesson and digest are among ``wanted``.
+        """Add those rows of an earlier table whose learner, lesson and digest are among ``wanted``.
 
         Raises:
             BadSheetError: it has other columns.
@@ -80,7 +80,7 @@ class MarkSheet:
         return tuple(map(_harmless, key)) in map(_key, self.rows)
 
     def text(self) -> str:
-        """Return all of it."""
+        """Return the whole table."""
         return "".join([self._text(self._columns), *map(self._line, self.rows)])
 
     def _line(self, row: SheetRow) -> str:
@@ -135,7 +135,7 @@ class SheetStream:
         self._write(row)
 
     def end(self) -> None:
-        """Leave it as it is."""
+        """Do nothing."""
 
     def restored(self) -> str | None:
         """Return None: a stream cannot be changed."""
@@ -145,7 +145,7 @@ class SheetStream:
 class SheetFile:
     """A table in a file that is written row by row; changes by others are undone.
 
-    The last row is begun before its program runs: if that ends the grader, the table tells whose it was.
+    A row is begun before its program runs: if that ends the grader, the table tells which program it was.
     """
 
     def __init__(self, sheet: MarkSheet, path: Path) -> None:
@@ -155,7 +155,7 @@ class SheetFile:
         self._begun = b""
 
     def begin(self) -> None:
-        """Write what is in the table already.
+        """Write the rows of an earlier table.
 
         Raises:
             UnwritableSheetError: as by every method.
@@ -178,7 +178,7 @@ class SheetFile:
         self._begun = b""
 
     def end(self) -> None:
-        """Take back a row that was begun and not ended."""
+        """Remove a row that was begun and not ended."""
         if self._begun:
             self._write(self._written, "wb")
 

@@ -1,4 +1,4 @@
-"""Results of graded hand-ins beyond their marks: JUnit XML, and which check was missed how often."""
+"""Results of graded hand-ins beyond their marks: JUnit XML, and the number of misses of each check."""
 
 import re
 from collections import Counter
@@ -13,9 +13,9 @@ _NOT_IN_XML = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff
 
 
 def missed_text(rows: Sequence[SheetRow], asked: Mapping[str, Sequence[str]]) -> str:
-    """For each lesson its checks, the most missed first, and how many of those who were judged missed them.
+    """Return each lesson's checks, the most missed first, with the share of judged hand-ins that missed them.
 
-    ``asked`` is what the checks of each lesson ask. Empty if no check was missed.
+    ``asked`` are the questions of each lesson's checks. The text is empty if no check was missed.
     """
     lines = list(_missed_lines(rows, asked))
     return "".join(f"{line}\n" for line in ("", "Missed most:", *lines)) if lines else ""
@@ -33,9 +33,9 @@ def _missed_lines(rows: Sequence[SheetRow], asked: Mapping[str, Sequence[str]]) 
 
 
 def junit_xml(rows: Sequence[SheetRow], asked: Mapping[str, Sequence[str]]) -> str:
-    """The results as JUnit XML: a suite for each lesson, a case for each check of each learner.
+    """Return the results as JUnit XML: a suite for each lesson, a case for each check of each learner.
 
-    What could not be judged, or is suspicious, is an error.
+    A hand-in that could not be judged, or is suspicious, is an error.
     """
     root = ElementTree.Element("testsuites", name="cbtui grade")
     for lesson, graded in _by_lesson(rows):
@@ -66,5 +66,5 @@ def _by_lesson(rows: Sequence[SheetRow]) -> Iterator[tuple[str, list[SheetRow]]]
 
 
 def _plain(text: str) -> str:
-    """A text without the characters that XML cannot hold: programs print what they like."""
+    """Return a text without characters that XML cannot contain, as output of programs may have them."""
     return _NOT_IN_XML.sub("�", text)

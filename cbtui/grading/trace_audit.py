@@ -20,8 +20,8 @@ class TraceAudit:
     """Audits the batches of one run.
 
     ``folder`` has the program's files, ``libraries`` are folders of other code. ``virtual`` tells that the
-    run is on virtual time, where all events are in order. On real ROS 2 a program tells of itself what it
-    did, and may lie; of what is measured outside it, such as the robot, it cannot.
+    run is on virtual time, where all events are in order. On real ROS 2 a program reports its own
+    actions, and may lie; it cannot forge what is measured outside of it, such as the robot.
     """
 
     def __init__(

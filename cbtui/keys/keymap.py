@@ -43,12 +43,12 @@ class Keymap:
             if key_id(action) in self._chosen
             for key in keys_of(action)
         }
-        told = [
+        remapped = [
             action
             for action in ACTIONS
             if key_id(action) in self._chosen or any((action.scope, key) in moved for key in keys_of(action))
         ]
-        return {key_id(action): action.key for action in self.of(told)}
+        return {key_id(action): action.key for action in self.of(remapped)}
 
     def _with_its_keys(self, action: KeyAction) -> KeyAction:
         chosen = self._chosen.get(key_id(action))
@@ -81,5 +81,4 @@ def is_typed(key: str) -> bool:
 
 
 def _name(key: str) -> str:
-    """A key's name without commas."""
     return "comma" if key == "," else key

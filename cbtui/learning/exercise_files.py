@@ -45,7 +45,7 @@ def own_file(lesson: Lesson, folder: Path) -> ExerciseFile:
     """Return the learner's file for a lesson's exercise in a folder, created from the starter if missing.
 
     Raises:
-        CannotPlaceError: as ``place_starter``, or what is there is not a file.
+        CannotPlaceError: as ``place_starter``, or something else than a file has that name.
     """
     path = folder / lesson.file_name
     placed = place_starter(lesson, folder)
@@ -55,7 +55,7 @@ def own_file(lesson: Lesson, folder: Path) -> ExerciseFile:
 
 
 def before_the_solution(hints_left: int) -> str:
-    """Return what is said to a learner who asks for the solution."""
+    """Return the question to a learner who asks for the solution."""
     said = "What you find out yourself, you remember longer."
     if hints_left:
         said += f" {counted(hints_left, 'hint')} {'is' if hints_left == 1 else 'are'} left."

@@ -103,7 +103,6 @@ def _key_faults(file: str, text: str) -> Iterator[str]:
 
 
 def _keys() -> set[str]:
-    """The keys of all actions, by name and by character."""
     names = {key for action in ACTIONS for key in action.key.split(",")}
     return names | {character for character in map(character_of, names) if character is not None}
 
@@ -179,7 +178,7 @@ def _run_faults(lesson: Lesson, file: str, run: ObservedRun, declared: Iterable[
         yield f"{_in(lesson, file)}: {run.trouble}"
         return
     found = {each.rule.id for each in problems(run.timeline)}
-    if run.trouble is not None:  # which is told, or to be mended
+    if run.trouble is not None:  # which is declared, or has to be mended
         found -= {ProgramRaised.id} - set(declared)
     for rule in sorted(found - set(declared)):
         yield f"{_in(lesson, file)}: the diagnosis finds {rule}, which [diagnoses] does not declare"

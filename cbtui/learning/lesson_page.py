@@ -46,13 +46,13 @@ class PageKeys:
 class PageState:
     """The state that a page depends on.
 
-    ``outcome`` is the result of the lesson's run, None while unknown; ``held`` tells that the run is in
-    progress.
+    ``outcome`` is the result of the lesson's run, None while unknown; ``is_running`` tells that the run is
+    in progress.
     """
 
     progress: LessonProgress
     outcome: PredictionOutcome | None = None
-    held: bool = False
+    is_running: bool = False
 
 
 def introduction(guide: str) -> str:
@@ -69,20 +69,20 @@ def short_description(lesson: Lesson, progress: LessonProgress) -> str:
     return " ".join(_SENTENCE.split(plain)[:2])
 
 
-def page_of(lesson: Lesson, standing: PageState, signs: PageKeys) -> Page:
+def page_of(lesson: Lesson, state: PageState, signs: PageKeys) -> Page:
     """Return a lesson's page; answers to predictions stay locked until the learner has answered."""
-    parts = dict(_parts(lesson, standing, signs))
+    parts = dict(_parts(lesson, state, signs))
     return {part: parts[part] for part in PageSection if parts.get(part)}
 
 
-def page_of_exercise(lesson: Lesson, standing: PageState, signs: PageKeys, task: str) -> Page:
+def page_of_exercise(lesson: Lesson, state: PageState, signs: PageKeys, task: str) -> Page:
     """Return the page of the exercise screen: the task, the hints, and unlocked explanations."""
     assert lesson.exercise is not None, "it is on screen"
-    told = page_of(lesson, standing, signs) if standing.progress.seen else {}
+    page = page_of(lesson, state, signs) if state.progress.seen else {}
     return {
         PageSection.EXERCISE: task,
-        PageSection.HINTS: _hints(lesson.exercise, standing.progress, signs),
-        **{part: told[part] for part in (PageSection.EXPLANATION, PageSection.GUIDE) if part in told},
+        PageSection.HINTS: _hints(lesson.exercise, state.progress, signs),
+        **{part: page[part] for part in (PageSection.EXPLANATION, PageSection.GUIDE) if part in page},
     }
 
 
@@ -91,8 +91,8 @@ _SENTENCE = re.compile(r"(?<=[.?!]) ")
 _WHY = "## Why"
 
 
-def _parts(lesson: Lesson, standing: PageState, signs: PageKeys) -> Iterator[tuple[PageSection, str]]:
-    progress = standing.progress
+def _parts(lesson: Lesson, state: PageState, signs: PageKeys) -> Iterator[tuple[PageSection, str]]:
+    progress = state.progress
     about, *sections = _HEADING.split(lesson.guide)
     why = "".join(section for section in sections if section.startswith(_WHY))
     seen = progress.seen
@@ -106,7 +106,7 @@ def _parts(lesson: Lesson, standing: PageState, signs: PageKeys) -> Iterator[tup
     if not seen:
         return
     if lesson.predictions:
-        yield PageSection.SHOWN, _shown(lesson, standing, signs)
+        yield PageSection.SHOWN, _shown(lesson, state, signs)
     yield PageSection.EXPLANATION, "\n".join((re.sub(r"^# ", "## ", lesson.explanation), why))
     if lesson.exercise is not None:
         yield PageSection.EXERCISE, _exercise(lesson.exercise, progress, signs)
@@ -122,41 +122,41 @@ def _predictions(lesson: Lesson, progress: LessonProgress, signs: PageKeys) -> s
         for each, answer in zip(lesson.predictions, progress.answers, strict=False)
     ]
     if all_predicted(lesson, progress):
-        way_on = (
+        how_to_continue = (
             f"Now watch the run. When you have seen enough, `{signs.explain}` tells what happened, and why."
         )
     else:
-        way_on = (
+        how_to_continue = (
             f"`{signs.predict}` asks what you expect, and then shows here what to watch for. "
             f"`{signs.explain}` tells what happens, and why."
         )
     title = "## Your prediction" if given else "## No prediction yet"
-    return "\n\n".join((title, *given, way_on))
+    return "\n\n".join((title, *given, how_to_continue))
 
 
-def _shown(lesson: Lesson, standing: PageState, signs: PageKeys) -> str:
-    outcome, answers = standing.outcome, standing.progress.answers
+def _shown(lesson: Lesson, state: PageState, signs: PageKeys) -> str:
+    outcome, answers = state.outcome, state.progress.answers
     if outcome is None:
         note = (
             "The lesson runs once more to check your prediction …"
-            if standing.held
+            if state.is_running
             else f"`{signs.explain}` checks your prediction against a run."
         )
         return f"## What the run showed\n\n{note}"
     if outcome.trouble is not None:
         trouble = f"Your prediction could not be checked against a run: {outcome.trouble}."
         return f"## What the run showed\n\n{trouble}"
-    told = [
+    results = [
         _verdict(prediction, answers[place] if place < len(answers) else None, true)
         for place, (prediction, true) in enumerate(zip(lesson.predictions, outcome.true, strict=True))
     ]
     held = f"Checked against {run_text(lesson)}{' on real ROS 2' if outcome.is_real else ''}."
-    return "\n\n".join((f"## What the run showed: {tally(lesson, standing)}", *told, held))
+    return "\n\n".join((f"## What the run showed: {tally(lesson, state)}", *results, held))
 
 
-def tally(lesson: Lesson, standing: PageState) -> str:
-    """Return how many predictions were right, in words."""
-    answers, true = standing.progress.answers, standing.outcome.true if standing.outcome else ()
+def tally(lesson: Lesson, state: PageState) -> str:
+    """Return the number of right predictions, in words."""
+    answers, true = state.progress.answers, state.outcome.true if state.outcome else ()
     if not answers:
         return "no prediction"
     right = sum(answer == shown for answer, shown in zip(answers, true, strict=False))
@@ -166,16 +166,16 @@ def tally(lesson: Lesson, standing: PageState) -> str:
 def _verdict(prediction: Prediction, answer: int | None, true: int) -> str:
     shown = prediction.answers[true]
     if answer == true:
-        told = f"✓ You were right: **{shown}**"
+        result = f"✓ You were right: **{shown}**"
     elif answer is None:
-        told = f"· You made no prediction. What happened: **{shown}**"
+        result = f"· You made no prediction. What happened: **{shown}**"
     else:
-        told = f"✗ You said: {prediction.answers[answer]}\n\n→ What happened: **{shown}**"
+        result = f"✗ You said: {prediction.answers[answer]}\n\n→ What happened: **{shown}**"
     because = prediction.because
     if true != prediction.right:
         expected = prediction.answers[prediction.right]
         because = f"The lesson expected “{expected}”; the run shows otherwise, and the run counts."
-    return f"{prediction.question}\n\n{told}\n\n{because}"
+    return f"{prediction.question}\n\n{result}\n\n{because}"
 
 
 def _exercise(exercise: Exercise, progress: LessonProgress, signs: PageKeys) -> str:
@@ -187,11 +187,11 @@ def _exercise(exercise: Exercise, progress: LessonProgress, signs: PageKeys) -> 
 def _hints(exercise: Exercise, progress: LessonProgress, signs: PageKeys) -> str:
     taken = exercise.hints[: progress.hints]
     total = len(exercise.hints)
-    told = [f"**Hint {number} of {total}:** {hint}" for number, hint in enumerate(taken, start=1)]
+    parts = [f"**Hint {number} of {total}:** {hint}" for number, hint in enumerate(taken, start=1)]
     if len(taken) < total:
-        told.append(
+        parts.append(
             f"`{signs.hint}` gives hint {len(taken) + 1} of {total}; `{signs.solution}` shows the solution."
         )
     else:
-        told.append(f"`{signs.solution}` shows the solution.")
-    return "\n\n".join(told)
+        parts.append(f"`{signs.solution}` shows the solution.")
+    return "\n\n".join(parts)

@@ -1,4 +1,4 @@
-"""The true answers to a lesson's predictions, read off a trace of its own run."""
+"""The true answers to a lesson's predictions, found in the trace of a separate run."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -23,14 +23,14 @@ class PredictionOutcome:
     true: tuple[int, ...] = ()
     trouble: str | None = None
     is_real: bool = False
-    """Whether they were read off a run on real ROS 2."""
+    """Whether they are those of a run on real ROS 2."""
 
 
 class OutcomeRun:
     """The run that predictions are compared with.
 
     ``run`` blocks and needs a thread of its own; ``give_up`` may be called from any other. With ``real`` it
-    is on that ROS 2, and takes its time.
+    runs on that ROS 2, in real time.
     """
 
     def __init__(self, lesson: Lesson, observe: Observe, real: "RealRos | None" = None) -> None:
@@ -61,9 +61,8 @@ class OutcomeRun:
             self._ended.set()
 
     def _outcome(self) -> PredictionOutcome:
-        from cbtui.runs.setup.lesson_setup import (
-            setup_to_judge,  # on this thread: the screen must not stand still for it
-        )
+        # imported on this thread, as the screen must not wait for it
+        from cbtui.runs.setup.lesson_setup import setup_to_judge
         from lessons.judge import Judge
 
         judge = Judge(self._lesson)

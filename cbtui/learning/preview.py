@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 LENGTH = 20 * SECOND
 """Length of a preview run in nanoseconds of its own time."""
 CALLS = (5 * SECOND, 7 * SECOND)
-"""When the lesson's service is called, as ``s`` would: without a call some lessons show nothing."""
+"""Times at which the lesson's service is called: some lessons show nothing without a call."""
 _TIMEOUT = 30.0
 """Limit of a preview run in real seconds."""
 
@@ -67,7 +67,7 @@ class PreviewRun:
         reason = why_no_preview(self.lesson)
         if reason is not None:
             raise CannotPreviewError(reason)
-        from sim.trace.timeline import Timeline  # numpy and all: on this thread, not on the screen's
+        from sim.trace.timeline import Timeline  # on this thread, as the screen must not wait for numpy
 
         timeline = Timeline(until_ending=True)
         with FollowedRun(preview_setup(self.lesson), self._open_session, self._given_up) as run:

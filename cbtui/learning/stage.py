@@ -1,4 +1,4 @@
-"""The stages of a lesson's progress, as signs and in words, and the steps that lead through a lesson."""
+"""The stages of a lesson's progress, as signs and in words, and the steps through a lesson."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from enum import Enum
@@ -14,7 +14,7 @@ def all_predicted(lesson: Lesson, progress: LessonProgress) -> bool:
 
 
 def is_revealed(lesson: Lesson, progress: LessonProgress) -> bool:
-    """Tell whether what a run shows can be shown, since it gives no answer to a prediction away any more."""
+    """Tell whether a run can be shown because it no longer gives away an answer to a prediction."""
     return progress.seen or all_predicted(lesson, progress)
 
 
@@ -25,12 +25,12 @@ class Stage(Enum):
     OPENED = "○"
     PREDICTED = "◐"
     WATCHED = "●"
-    """Watched, and something is still to be done."""
+    """Watched, with something left to do."""
     DONE = "✓"
 
 
 def stage_of(lesson: Lesson, progress: LessonProgress, *, opened: bool) -> Stage:
-    """Return the stage of a lesson; done is one predicted, explained and, with an exercise, solved."""
+    """Return the stage of a lesson; a done lesson is predicted, explained and, with an exercise, solved."""
     solved = progress.passed or lesson.exercise is None
     if progress.explained and all_predicted(lesson, progress) and solved:
         return Stage.DONE
@@ -42,7 +42,7 @@ def stage_of(lesson: Lesson, progress: LessonProgress, *, opened: bool) -> Stage
 
 
 def stage_of_puzzle(progress: LessonProgress) -> Stage:
-    """Return the stage of a puzzle; one whose solution was only looked at is not done."""
+    """Return the stage of a puzzle; viewing its solution alone does not make it done."""
     return Stage.DONE if progress.passed else Stage.WATCHED if progress.solution else Stage.UNTOUCHED
 
 
@@ -54,7 +54,7 @@ class StageNote(NamedTuple):
 
     @property
     def text(self) -> str:
-        """Both, with a blank between them."""
+        """Sign and words, with a blank between them."""
         return f"{self.sign} {self.words}".strip()
 
 
@@ -75,7 +75,7 @@ _MEANINGS = {
 
 
 def meaning_of(stage: Stage) -> str:
-    """Return what the sign of a stage means."""
+    """Return the meaning of a stage's sign."""
     return _MEANINGS[stage]
 
 
@@ -100,12 +100,12 @@ def stage_note(lesson: Lesson, progress: LessonProgress, stage: Stage) -> StageN
 
 
 def next_lesson(lessons: Iterable[Lesson], stages: Mapping[str, Stage]) -> Lesson | None:
-    """Return where to go on: the first lesson with something left to do; None if there is none."""
+    """Return the first lesson with something left to do; None if there is none."""
     return next((lesson for lesson in lessons if stages[lesson.id] not in (Stage.WATCHED, Stage.DONE)), None)
 
 
 class StepState(Enum):
-    """Where the learner is with a step."""
+    """The learner's progress with a step."""
 
     DONE = "✓"
     CURRENT = "●"
@@ -147,7 +147,7 @@ def steps_of(lesson: Lesson, progress: LessonProgress, checks: str = "") -> tupl
 
 
 def _steps_done(lesson: Lesson, progress: LessonProgress) -> Iterator[tuple[str, bool]]:
-    """Yield each step, and whether it is done; a prediction that was missed cannot be made up for."""
+    """Yield each step, and whether it is done; after the run a missing prediction counts as done."""
     if lesson.predictions:
         yield "Predict", progress.seen or all_predicted(lesson, progress)
     yield "Run", progress.seen

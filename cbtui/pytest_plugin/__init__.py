@@ -1,1 +1,1 @@
-"""A plugin for pytest: nodes, launch files and lessons run on virtual time, and are asked what they did."""
+"""A plugin for pytest: runs nodes, launch files and lessons on virtual time, and asserts what they do."""

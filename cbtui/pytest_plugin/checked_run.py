@@ -1,4 +1,4 @@
-"""A run, in one or many orders of its threads, and what a test can ask of it, in the words of the checks."""
+"""A run with one or many thread schedules, and the assertions that a test can make on it."""
 
 import argparse
 import hashlib
@@ -32,7 +32,7 @@ __tracebackhide__ = True
 
 @dataclass(frozen=True)
 class Outcome:
-    """What came of one schedule; ``events`` are empty if they were not kept."""
+    """The outcome of one schedule; ``events`` are empty if they were not kept."""
 
     seed: Seed
     observed: ObservedRun
@@ -40,9 +40,9 @@ class Outcome:
 
 
 class CheckedRun:
-    """A run that is over. Each question is asked of every schedule; the first one that fails fails the test.
+    """A finished run. Each assertion is about every schedule; the first that violates it fails the test.
 
-    Methods return the run itself, so that questions can follow one another.
+    The assertions return the run itself, so that they can be chained.
     """
 
     def __init__(
@@ -61,22 +61,22 @@ class CheckedRun:
 
     @property
     def timeline(self) -> Timeline:
-        """Everything that is known of the run, of the first schedule if there are several."""
+        """The timeline of the run, that of the first schedule if there are several."""
         return self._outcomes[0].observed.timeline
 
     @property
     def timelines(self) -> Sequence[Timeline]:
-        """The same for every schedule."""
+        """The timelines of all schedules."""
         return [each.observed.timeline for each in self._outcomes]
 
     @property
     def trouble(self) -> str | None:
-        """Why the program failed, in a sentence; None if it did not."""
+        """A sentence on why the program failed; None if it did not."""
         return next((each.observed.trouble for each in self._outcomes if each.observed.trouble), None)
 
     @cached_property
     def digest(self) -> str:
-        """A digest of all events of the first schedule: equal runs have equal ones, on virtual time."""
+        """A digest of all events of the first schedule; on virtual time equal runs have equal digests."""
         first = self._outcomes[0]
         events = first.events or self._again(first.seed).events
         packed = hashlib.sha256()
@@ -85,28 +85,28 @@ class CheckedRun:
         return packed.hexdigest()
 
     def callback(self, name: str) -> "AskedCallback":
-        """A callback by its function's name, its topic or its service: ``odom_callback``, ``/odom``."""
+        """Return a callback by the name of its function, topic or service: ``odom_callback``, ``/odom``."""
         return AskedCallback(self.has_callbacks(name), name)
 
     def service(self, name: str) -> "AskedService":
-        """A service by its name: ``/motor_power``."""
+        """Return a service by its name: ``/motor_power``."""
         return AskedService(self.has_callbacks(name), name)
 
     def chain(self, *names: str) -> "AskedChain":
-        """Messages from a first topic to a last one; what lies between may be named, too."""
+        """Return the chain of messages from a first topic to a last one; those between may be named, too."""
         try:
             return AskedChain(self, values.chain(":".join(names)))
         except argparse.ArgumentTypeError as error:
             raise pytest.UsageError(str(error)) from None
 
     def passes(self, *asked: Check) -> Self:
-        """Any checks, such as those of ``lessons.checks``."""
+        """Assert any checks, such as those of ``lessons.checks``."""
         for check in asked:
             self._ask(check)
         return self
 
     def passes_its_checks(self) -> Self:
-        """The checks of the lesson that was run."""
+        """Assert the checks of the lesson that was run."""
         if self._lesson is None:
             raise ValueError(
                 "only a lesson has checks of its own; name one in cbtui('split-groups', 'mine.py')"
@@ -155,7 +155,7 @@ class CheckedRun:
         return self.passes(checks.exclusive_groups_hold())
 
     def uses_threads(self, at_least: int) -> Self:
-        """At some moment callbacks run on so many threads."""
+        """At some moment callbacks run on ``at_least`` threads."""
         return self.passes(checks.uses_threads(at_least))
 
     def answers_every_call(self) -> Self:
@@ -197,7 +197,7 @@ class CheckedRun:
 
 @dataclass(frozen=True)
 class AskedCallback:
-    """What can be asked about one callback; each method returns the run."""
+    """The assertions on one callback; each method returns the run."""
 
     run: CheckedRun
     name: str
@@ -205,7 +205,7 @@ class AskedCallback:
     def is_called(
         self, at_least: int = 1, *, at_most: int | None = None, exactly: int | None = None
     ) -> CheckedRun:
-        """It is called so often."""
+        """It is called ``exactly`` so often, or between ``at_least`` and ``at_most`` times."""
         least, most = (at_least, at_most) if exactly is None else (exactly, exactly)
         return self.run.passes(checks.is_called_between(self.name, least, most))
 
@@ -214,11 +214,11 @@ class AskedCallback:
         return self.run.passes(checks.is_called_between(self.name, 0, 0))
 
     def keeps_coming(self, at_least: float, *, while_: Stretch | None = None) -> CheckedRun:
-        """It is called so many times a second, all the time or during a stretch of ``lessons.checks``."""
+        """It is called ``at_least`` times a second, always or during a stretch of ``lessons.checks``."""
         return self.run.passes(checks.keeps_coming(self.name, while_ or checks.WHOLE_RUN, at_least))
 
     def never_waits_longer_than(self, seconds: float) -> CheckedRun:
-        """Once it is ready it runs within so many seconds."""
+        """Once it is ready it runs within ``seconds``."""
         return self.run.passes(checks.never_waits_longer_than(self.name, seconds))
 
     def never_runs_longer_than(self, seconds: float) -> CheckedRun:
@@ -250,33 +250,33 @@ class AskedCallback:
         return self.run.has_callbacks(other).passes(checks.never_gets_ahead_of(self.name, other))
 
     def ticks_on_time(self, within: float) -> CheckedRun:
-        """No call of this timer is later than so many seconds."""
+        """No call of this timer is more than ``within`` seconds late."""
         return self.run.passes(checks.ticks_on_time(self.name, within))
 
 
 @dataclass(frozen=True)
 class AskedService:
-    """What can be asked about one service; each method returns the run."""
+    """The assertions on one service; each method returns the run."""
 
     run: CheckedRun
     name: str
 
     def answers_within(self, seconds: float) -> CheckedRun:
-        """Every call gets its answer within so many seconds; there is at least one."""
+        """Every call gets its answer within ``seconds``; there is at least one."""
         return self.run.passes(checks.replies_within(self.name, seconds))
 
 
 @dataclass(frozen=True)
 class AskedChain:
-    """What can be asked about a chain of messages; each method returns the run."""
+    """The assertions on a chain of messages; each method returns the run."""
 
     run: CheckedRun
     names: Sequence[str]
 
     def never_takes_longer_than(self, seconds: float) -> CheckedRun:
-        """From a message of the first topic to the first that comes of it on the last one."""
+        """Each message of the first topic leads to one of the last topic within ``seconds``."""
         return self.run.passes(checks.chain_never_takes_longer_than(self.names, seconds))
 
     def never_uses_older_than(self, seconds: float) -> CheckedRun:
-        """From each message of the last topic back to the one of the first that it came of."""
+        """Each message of the last topic comes of one of the first topic that is at most ``seconds`` old."""
         return self.run.passes(checks.chain_never_uses_older_than(self.names, seconds))

@@ -1,4 +1,4 @@
-"""What a test that failed tells of its run beside the reason: the lanes as text, and a recording."""
+"""The report of a failed test beside the reason: the lanes of its run as text, and a recording."""
 
 import os
 import re
@@ -18,7 +18,7 @@ from sim.trace.timeline import Timeline
 _WIDTH = 100
 _MOST_LANES = 24
 _AROUND: Nanoseconds = 5 * SECOND
-"""How far before and after its moment a failure shows the lanes."""
+"""Time before and after its moment for which a failure shows the lanes."""
 _MOST_LINES = 200
 
 
@@ -30,7 +30,7 @@ class Recordings:
         self._name = re.sub(r"[^\w.-]+", "-", test.replace(".py::", "-")).strip("-")[:150]
 
     def keep(self, setup: RunSetup, seed: Seed, events: Sequence[AnyEvent]) -> str:
-        """Write a run to a file; returns a clause that says where it is and what to do with it."""
+        """Write a run to a file; returns a clause with its path and the command that opens it."""
         order = f"-seed{seed}" if seed else ""
         path = self._folder / f"{self._name}{re.sub('[:,=]+', '-', order)}.mcap"
         try:

@@ -1,4 +1,4 @@
-"""The mark, the options and the fixture; pytest loads this always, and cbtui itself only for a test."""
+"""The mark, the options and the fixture; pytest always loads this, and the rest of cbtui only for a test."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.fixture
 def cbtui(request: pytest.FixtureRequest) -> Runner:
-    """Runs a node file, a launch file or a lesson, and returns the run to be asked: ``cbtui("node.py")``."""
+    """Runs a node file, a launch file or a lesson, and returns the finished run: ``cbtui("node.py")``."""
     try:
         from cbtui.pytest_plugin.runner import Runner
 

@@ -1,4 +1,4 @@
-"""The fixture's value: runs programs for a test, once or in many orders of their threads."""
+"""The fixture's value: runs programs for a test, with one or many thread schedules."""
 
 import os
 import warnings
@@ -29,7 +29,7 @@ __tracebackhide__ = True
 
 
 class Runner:
-    """Runs programs on the terms of one test: those of its mark, the nearest one first, and of each call."""
+    """Runs programs on the terms of one test: those of its marks, the nearest first, and of each call."""
 
     def __init__(self, request: pytest.FixtureRequest) -> None:
         self._config = request.config
@@ -45,7 +45,7 @@ class Runner:
             self._terms = self._changed(self._terms, mark.kwargs)
 
     def __call__(self, *targets: str | os.PathLike[str], may_fail: bool = False, **terms: Any) -> CheckedRun:
-        """Run a lesson, a lesson and a file in its node's place, or files; returns the run when it is over.
+        """Run a lesson, a file in the place of a lesson's node, or files; returns the finished run.
 
         Files are looked for beside the test, then in pytest's root folder. ``terms`` go before those of the
         mark. A program that raises, or does not come to its end, fails the test unless it ``may_fail``; so
@@ -107,7 +107,7 @@ class Runner:
 
 
 def _single(setup: RunSetup, name: str, limit: float, seed: Seed) -> Outcome:
-    """Run one schedule, with all its events kept, and what its messages hold."""
+    """Run one schedule, and keep all its events and the contents of its messages."""
     kept: list[AnyEvent] = []
     asked = msgspec.structs.replace(setup, contents=True, seed=seed or None)
     server = _server_environment()
@@ -118,7 +118,7 @@ def _single(setup: RunSetup, name: str, limit: float, seed: Seed) -> Outcome:
 
 @cache
 def _server_environment() -> Mapping[str, str]:
-    """The environment that the first run was started in, which forked engines have."""
+    """The environment of the first run, which forked engines have."""
     return _environment()
 
 

@@ -1,4 +1,4 @@
-"""The terms of a test's run: what the mark says, what the call says, and the set-up that comes of them."""
+"""The terms of a test's run, from its marks and the call, and the set-up that they make."""
 
 import argparse
 from collections.abc import Callable, Mapping, Sequence
@@ -25,9 +25,9 @@ class BadTermsError(ValueError):
 class RunTerms:
     """How a program is run; ``limit`` is in real seconds for each schedule, all else in the run's own time.
 
-    ``seconds`` None is 10, for a lesson as long as it says. ``groups`` and ``periods`` (seconds) are by
-    callback, or by ``node:callback``. ``schedules`` are so many orders of threads, the usual one first;
-    ``seed`` is a single one. Values are those of the options of ``cbtui run`` that bear their names.
+    ``seconds`` None is 10, for a lesson its own length. ``groups`` and ``periods`` (seconds) are by callback,
+    or by ``node:callback``. ``schedules`` is a number of thread schedules, the usual one first; ``seed`` is a
+    single one. The values are those of the options of the same names of ``cbtui run``.
     """
 
     seconds: float | None = None
@@ -59,18 +59,18 @@ class RunTerms:
 
     @property
     def seeds(self) -> Sequence[Seed]:
-        """The orders of threads that are run, by their seeds."""
+        """The seeds of the thread schedules to run."""
         if self.on == "ros2":
             return (0,)
         return range(self.schedules) if self.seed is None else (values.schedule(str(self.seed)),)
 
     @property
     def callbacks(self) -> Sequence[str]:
-        """The callbacks that are changed, without their nodes."""
+        """The names of the changed callbacks, without their nodes."""
         return [place.rpartition(":")[2] for place in (*self.groups, *self.periods)]
 
     def changed(self, given: Mapping[str, Any]) -> "RunTerms":
-        """The same with other values.
+        """Return the terms with other values.
 
         Raises:
             BadTermsError: a name is unknown, or values contradict each other.
@@ -82,7 +82,7 @@ class RunTerms:
         return replace(self, **given)
 
     def setup(self, lesson: Lesson | None, files: Sequence[Path]) -> RunSetup:
-        """The set-up of the run of files, of a lesson, or of a lesson with a file in its node's place.
+        """Return the set-up for files, a lesson, or a lesson with a file in its node's place.
 
         Raises:
             BadTermsError: a value is out of its range.
@@ -116,7 +116,7 @@ class RunTerms:
 
 
 def _assigned(given: Mapping[str, Any]) -> list[str]:
-    """Callbacks and their values as the command line has them."""
+    """Callbacks and their values in the form of the command line."""
     return [f"{place}={value}" for place, value in given.items()]
 
 
@@ -126,7 +126,7 @@ def _ground(on: object) -> None:
 
 
 def _number(read: Callable[[str], object]) -> Callable[[object], None]:
-    """A reader of numbers; text is none, as it would have to be read wherever it is used."""
+    """Return a reader of numbers that refuses text, which the users of the value could not read."""
 
     def check(value: object) -> None:
         if isinstance(value, str | bool):
@@ -137,7 +137,6 @@ def _number(read: Callable[[str], object]) -> Callable[[object], None]:
 
 
 def _each(read: Callable[[Any], object], such_as: str) -> Callable[[object], None]:
-    """A reader of lists."""
 
     def check(value: object) -> None:
         if isinstance(value, str) or not isinstance(value, Sequence):
@@ -149,7 +148,6 @@ def _each(read: Callable[[Any], object], such_as: str) -> Callable[[object], Non
 
 
 def _by_callback(read: Callable[[str], object], such_as: str) -> Callable[[object], None]:
-    """A reader of values by callback."""
 
     def check(value: object) -> None:
         if not isinstance(value, Mapping):
@@ -189,4 +187,4 @@ _READERS: Mapping[str, Callable[[Any], object]] = {
     "on": _ground,
     "limit": _number(values.duration),
 }
-"""What refuses a value of a term, in the words of the command line."""
+"""The readers that validate the terms with the messages of the command line."""

@@ -66,7 +66,7 @@ class ChoosingScreen(RunScreen[LiveRun]):
     def draw_pane(self, pane: Widget) -> None:
         """Show the moment on screen on one pane."""
         if isinstance(pane, ChoiceView):
-            self._choices.look()  # first, as the sheet says that a finished run has missed the goal
+            self._choices.check_goal()  # first, as the sheet says that a finished run has missed the goal
             pane.show(self._choices.sheet)
         else:
             super().draw_pane(pane)
@@ -74,7 +74,7 @@ class ChoosingScreen(RunScreen[LiveRun]):
     def drawn(self) -> None:
         """Show the code beside the choice, and check whether the goal is reached."""
         self.set_class(self.panes.current == CHOICE, "-choosing")
-        self._choices.look()
+        self._choices.check_goal()
 
     @on(RunController.Delivered)
     def _take_question(self, message: RunController.Delivered) -> None:

@@ -189,25 +189,24 @@ class CompareScreen(SizedScreen[None]):
                 turn = monotonic()
         self._title(words)
         self.query_one(ComparisonTable).show(shown)
-        self._look_at_first_difference()
+        self._show_first_difference()
         self._comparing = False
         self._rest_until = monotonic() + _REST_FACTOR * (worked + monotonic() - turn)
 
-    def _look_at_first_difference(self) -> None:
+    def _show_first_difference(self) -> None:
         """Show the verdict on whole runs, and their first difference unless the cursor was moved."""
         if not self._verdict:
             return
         at = self._first_difference
         where = "No call differs" if at is None else f"They differ from {timestamp(at)} on"
-        told = f"{where}; {self._verdict[0].lower()}{self._verdict[1:]}"
+        verdict = f"{where}; {self._verdict[0].lower()}{self._verdict[1:]}"
         if self._is_tie and any(side.alive() for side in self._sides):
-            told = f"{where} so far; neither run is better yet: {_shorter(*self._sides)}"
-        self.query_one("#verdict", Static).update(f"{self._hang} {told}".strip())
+            verdict = f"{where} so far; neither run is better yet: {_shorter(*self._sides)}"
+        self.query_one("#verdict", Static).update(f"{self._hang} {verdict}".strip())
         if at is not None and not self._has_moved:
             self.navigation.seek(at)
 
     def _title(self, words: str) -> None:
-        """Set the heading of the table."""
         self.query_one("#window", HeadingLine).words = (TextRun(f" {words} ", _STRONG),)
 
     def _forget_comparison(self) -> None:
@@ -320,11 +319,10 @@ class CompareScreen(SizedScreen[None]):
 
 
 def _about(number: int, side: ComparedSide, at: Nanoseconds) -> tuple[TextRun, ...]:
-    """The line above a run's lanes."""
     timeline = side.timeline
     state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
-    told = [text for text in (executor_label(timeline), f"dropped {timeline.dropped(at)}", state) if text]
-    return (TextRun(f" {RUNS[number]}  {side.name}", _STRONG), TextRun(f"   {'   '.join(told)}", _PLAIN))
+    facts = [text for text in (executor_label(timeline), f"dropped {timeline.dropped(at)}", state) if text]
+    return (TextRun(f" {RUNS[number]}  {side.name}", _STRONG), TextRun(f"   {'   '.join(facts)}", _PLAIN))
 
 
 def _shorter(first: ComparedSide, second: ComparedSide) -> str:

@@ -78,7 +78,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
             self,
             self.panes,
             lesson,
-            lambda standing: page_of_exercise(lesson, standing, signs(), self._task_in_words),
+            lambda state: page_of_exercise(lesson, state, signs(), self._task_in_words),
         )
         self.restarts = Restarts(
             self, runs, Changes(), self.show_new_run, speed=lambda: None, at_any_time=True
@@ -95,7 +95,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
                 self._learning,
                 file,
                 is_readable=lambda _: True,
-                is_done=lambda: self._sheet.standing is CheckStatus.PASSED,
+                is_done=lambda: self._sheet.status is CheckStatus.PASSED,
             ),
             lesson=lambda: self.console.open_lesson(lesson, Changes(real=real)),
         )
@@ -144,7 +144,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
         """Return the diagnosis of the moment on screen, or the result of a finished run."""
         if self.navigation.playhead.at is not None or self.runs.run.alive:
             return super().diagnosis()
-        sheet, has_failed = self._sheet, self._sheet.standing is CheckStatus.FAILED
+        sheet, has_failed = self._sheet, self._sheet.status is CheckStatus.FAILED
         if has_failed and not sheet.note:
             return Diagnosis(sheet.news, DiagnosisLevel.TROUBLE, stays=True)
         # A problem of the run takes the place of a diagnosis that is fine.
@@ -204,7 +204,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
         if number != self.runs.number:
             return
         self._judging.sheet = self._words.judged(checked)
-        self.look_for_findings()
+        self.update_findings()
         if checked.good:
             if not self._learning.progress.passed:
                 self._celebrate(checked.total)
@@ -214,13 +214,13 @@ class ExerciseScreen(RunScreen[LiveRun]):
     def _celebrate(self, checks: int) -> None:
         """Show over the lanes that the exercise passed."""
         key = self.key("next_lesson")
-        way_on = (
+        how_to_continue = (
             f"{key} opens the next lesson"
             if self.subject.following is not None
             else "that was the last lesson"
         )
-        text = f"✓ {self._learning.lesson.title}: all {checks} checks pass, {way_on}"
-        self.app.clear_notifications()  # hints are not needed any more
+        text = f"✓ {self._learning.lesson.title}: all {checks} checks pass, {how_to_continue}"
+        self.app.clear_notifications()  # hints are no longer needed
         self.query_one(PassedBanner).celebrate(text)
 
     # the file

@@ -101,14 +101,12 @@ class LessonScreen(RunScreen[LiveRun]):
 
     def _teaching_parts(self, lesson: Lesson) -> Iterator[ScreenPart]:
         learning = self._learning = Learning(
-            self, self, self.panes, lesson, lambda standing: page_of(lesson, standing, signs())
+            self, self, self.panes, lesson, lambda state: page_of(lesson, state, signs())
         )
         self._predictions = Predictions(self, self, self.runs, learning)
         yield self._predictions
         if lesson.exercise is not None:
-            yield ExerciseHelp(
-                self, self, learning, file=None, is_readable=lambda standing: standing.progress.seen
-            )
+            yield ExerciseHelp(self, self, learning, file=None, is_readable=lambda state: state.progress.seen)
 
     @property
     def changes(self) -> Changes:
@@ -180,7 +178,7 @@ class LessonScreen(RunScreen[LiveRun]):
             if run.timeline.end >= _TOUR_END and not run.paused:
                 run.pause()
         elif self._predictions is not None:
-            self._predictions.look_whether_watched()
+            self._predictions.check_whether_watched()
 
     # a learner's own file
 

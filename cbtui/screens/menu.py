@@ -86,7 +86,7 @@ class MenuScreen(SizedScreen[None]):
         yield KeyBar(Scope.MENU, self.charset)
 
     def on_mount(self) -> None:
-        """Focus the list, and get ready what a lesson is shown with."""
+        """Focus the list, and import the lessons' screen in the background."""
         self._list.focus()
         self.set_timer(_IDLE, self._import_lessons)
 
@@ -107,7 +107,7 @@ class MenuScreen(SizedScreen[None]):
         await self._previews.leave()
 
     def laid_out(self) -> None:
-        """Tell more in the list where there is room."""
+        """Show more details in the list if there is room."""
         if self._filled_with != self._contents:
             self._fill()
 
@@ -167,7 +167,7 @@ class MenuScreen(SizedScreen[None]):
         if isinstance(chosen, Lesson) and reason is not None:
             self._previews.subjects[chosen.id] = f"It has no preview: {reason}."
         self._show_drawn()
-        self._previews.look()
+        self._previews.schedule()
         self.query_one(KeyBar).changed()
 
     @property
@@ -177,12 +177,12 @@ class MenuScreen(SizedScreen[None]):
             text = short_description(chosen, self._progress.of(chosen.id))
             opened = self._recents.lessons.get(chosen.id)
             progress = self._progress.of(chosen.id)
-            so_far = stage_note(chosen, progress, self._stages[chosen.id]).text
-            described = of_lesson(chosen, text, opened, self._now(), so_far, keymap_of(self.app))
+            note = stage_note(chosen, progress, self._stages[chosen.id]).text
+            described = of_lesson(chosen, text, opened, self._now(), note, keymap_of(self.app))
             return described if is_revealed(chosen, progress) else replace(described, keys=())
         if isinstance(chosen, Puzzle):
-            so_far = puzzle_note(self._progress.of(chosen.id)).text
-            return of_puzzle(chosen, find(chosen.lesson).title, so_far)
+            note = puzzle_note(self._progress.of(chosen.id)).text
+            return of_puzzle(chosen, find(chosen.lesson).title, note)
         if chosen is not None:
             forget = keymap_of(self.app).sign(Scope.MENU, "forget", self.charset)
             return of_file(chosen, self._now(), forget)
@@ -226,7 +226,7 @@ class MenuScreen(SizedScreen[None]):
     def on_key(self, event: Key) -> None:
         """Search with a letter or digit that is no key of the menu, or that was typed as a search began.
 
-        What follows the key that opened a screen is for that screen, to which the app hands it on.
+        Keys after the one that opened a screen are for that screen; the app forwards them.
         """
         typed = event.character or ""
         if not self.is_current:
@@ -236,15 +236,15 @@ class MenuScreen(SizedScreen[None]):
             self.action_search()
             search = self.query_one(MenuSearch)
             search.insert_text_at_cursor(typed)
-            self._look_for(search.value)  # now, as the next key may already be enter
+            self._show_found(search.value)  # at once, as the next key may already be enter
 
     @on(Input.Changed)
     def _search_for(self, event: Input.Changed) -> None:
         if event.value != self._words and not is_being_removed(event.input):
-            self._look_for(event.value)
+            self._show_found(event.value)
 
-    def _look_for(self, words: str) -> None:
-        """Show what is found, and open the only lesson whose number that can be."""
+    def _show_found(self, words: str) -> None:
+        """Show the results, and open a lesson at once if only its number begins with the typed digits."""
         self._words = words
         self._list.highlight_first()
         self._fill()
@@ -311,10 +311,10 @@ class MenuScreen(SizedScreen[None]):
         self._list.action_cursor_down()
 
     def action_search(self) -> None:
-        """Let words be typed."""
+        """Open the search line."""
         if not self.query(MenuSearch):
             self.mount(MenuSearch(), before="#choice")
-        self.set_focus(self.query_one(MenuSearch))  # at once: the next key is for it
+        self.set_focus(self.query_one(MenuSearch))  # at once, as the next key is for it
 
     def action_jump(self) -> None:
         """Show a letter on each entry; typing it highlights that."""

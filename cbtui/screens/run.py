@@ -51,7 +51,7 @@ from cbtui.widgets.diagnosis import (
     DiagnosisLevel,
     call_note,
     diagnosis_on_screen,
-    way_on,
+    how_to_continue,
     with_worst_problem,
 )
 from cbtui.widgets.diagnosis_line import DiagnosisLine
@@ -180,9 +180,9 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def diagnosis(self) -> Diagnosis:
         """Return the diagnosis of the moment on screen."""
-        runs, told = self.runs, self._chain.sentence
-        if told:
-            return Diagnosis(told, DiagnosisLevel.FINE, stays=True)
+        runs, sentence = self.runs, self._chain.sentence
+        if sentence:
+            return Diagnosis(sentence, DiagnosisLevel.FINE, stays=True)
         return diagnosis_on_screen(runs.run, self.navigation.playhead, runs.concurrency, keymap_of(self.app))
 
     def show_new_run(self) -> None:
@@ -233,9 +233,9 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self.panes.show(self.panes.current)
         self.start()
         self._frames.start()
-        self.set_interval(exporting.PROGRESS_INTERVAL, self._exports.look)
+        self.set_interval(exporting.PROGRESS_INTERVAL, self._exports.show_progress)
         code = self.query_one(CodeView)
-        self.set_interval(_DISK, lambda: code.look_at_disk(self.runs.timeline.entities.values()))
+        self.set_interval(_DISK, lambda: code.check_disk(self.runs.timeline.entities.values()))
         for name in self.PANES_HERE:
             pane = self.panes.pane(name)
             if isinstance(pane, CodeView | FactoryView | LogView | ChecksView):
@@ -273,9 +273,9 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
             self.finisher.finish(self.runs.run.over(message.trouble))
             self.redraw()
 
-    def look_for_findings(self) -> None:
+    def update_findings(self) -> None:
         """Update the findings now."""
-        self.runs.findings.look()
+        self.runs.findings.update()
         self.redraw()
 
     # drawing
@@ -290,9 +290,9 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self.draw_lanes()
         if content is FrameContent.LANES:
             return
-        self.query_one(Lanes).told = self.navigation.now  # all panes tell of the same moment
+        self.query_one(Lanes).told = self.navigation.now  # all panes show the same moment
         self._narration.draw()
-        run, told, keymap = self.runs.run, self.runs.findings.findings, keymap_of(self.app)
+        run, findings, keymap = self.runs.run, self.runs.findings.findings, keymap_of(self.app)
         self.panes.set_robot(has_robot(run) or bool(self.subject.scene))
         self.query_one(StatusLine).status = status_of(
             self.subject.heading_of(run.timeline),
@@ -305,9 +305,9 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         )
         self.query_one(CodeView).over = not run.alive
         line = self.query_one(DiagnosisLine)
-        line.diagnosis = with_worst_problem(self.diagnosis(), told, way_on(run, keymap))
+        line.diagnosis = with_worst_problem(self.diagnosis(), findings, how_to_continue(run, keymap))
         line.note = call_note(run.timeline, self.navigation.now)
-        line.problems = problems_note(told, keymap, self.charset)
+        line.problems = problems_note(findings, keymap, self.charset)
         for pane in map(self.panes.pane, self.PANES_HERE):
             if pane.display and (content is FrameContent.ALL or not isinstance(pane, _TEXTS)):
                 self.draw_pane(pane)

@@ -52,10 +52,10 @@ class ComparisonHeadings(PaintedWidget):
 
 
 class ComparisonTable(InkedView):
-    """The figures of two runs; scrolls where they have no room. ``show`` gives it others."""
+    """The figures of two runs, which scroll if there is too little room; ``show`` replaces them."""
 
     BAR = 1
-    """Columns that are kept for the scroll bar."""
+    """Columns reserved for the scroll bar."""
 
     can_focus = False
 
@@ -66,13 +66,13 @@ class ComparisonTable(InkedView):
         self._lines: list[StyledLine] = []
 
     def show(self, sections: tuple[Section, ...]) -> None:
-        """Show the sections; the place that the person scrolled to stays."""
+        """Show the sections; the scroll position stays."""
         if sections != self._sections:
             self._sections = sections
             self._paint()
 
     def on_resize(self) -> None:
-        """Share the sections out anew."""
+        """Distribute the sections again."""
         self._paint()
 
     def render_line(self, y: int) -> Strip:

@@ -52,7 +52,7 @@ def _height(section: Section) -> int:
 
 
 def _shared_out(sections: Sequence[tuple[Section, int]], count: int) -> list[list[Section]]:
-    """Fill columns one after the other, so that the highest is as low as can be."""
+    """Fill columns one after the other, so that the highest column is as low as possible."""
     limit = -(-sum(height for _, height in sections) // count)
     while (columns := _filled(sections, limit)) is None or len(columns) > count:
         limit += 1
@@ -84,7 +84,7 @@ def _section(section: Section, width: int, charset: Charset) -> Iterator[StyledL
 
 
 def _cells(row: ComparisonRow, width: int, charset: Charset) -> StyledLine:
-    """A row in exactly ``width`` columns; the difference has what the others leave."""
+    """A row in exactly ``width`` columns; the difference gets the room that the other cells leave."""
     first, second = row.figures
     cells = (
         (f" {row.label}", _LABEL, _FAINT),

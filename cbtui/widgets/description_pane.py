@@ -46,11 +46,11 @@ class DescriptionPane(PaintedWidget):
 
 
 def of_lesson(
-    lesson: Lesson, text: str, opened: int | None, now: float, so_far: str = "", keymap: Keymap = STANDARD
+    lesson: Lesson, text: str, opened: int | None, now: float, progress: str = "", keymap: Keymap = STANDARD
 ) -> EntryDescription:
     """Describe a lesson that was opened at a moment, None for never; times are seconds since 1970.
 
-    ``text`` is what there is to say of it, ``so_far`` how far the learner is in it.
+    ``text`` describes the lesson, ``progress`` the learner's progress in it.
     """
     facts = (
         ("executor", lesson.executor),
@@ -58,7 +58,7 @@ def of_lesson(
         ("service", lesson.service.name),
         *((("clock", "real: computing takes time"),) if lesson.setup.clock == "real" else ()),
         *(() if opened is None else (("opened", time_ago(opened, now)),)),
-        *((("so far", so_far),) if so_far else ()),
+        *((("so far", progress),) if progress else ()),
     )
     keys = tuple((key_in_force(attempt.key, keymap), attempt.text) for attempt in lesson.tries)
     return EntryDescription(lesson.title, text, facts, keys)
@@ -70,9 +70,9 @@ _PUZZLE = (
 )
 
 
-def of_puzzle(puzzle: Puzzle, lesson: str, so_far: str) -> EntryDescription:
-    """Describe a puzzle; ``lesson`` is the title of its lesson, ``so_far`` how far the learner is in it."""
-    facts = (("lesson", lesson), *((("so far", so_far),) if so_far else ()))
+def of_puzzle(puzzle: Puzzle, lesson: str, progress: str) -> EntryDescription:
+    """Describe a puzzle; ``lesson`` is the title of its lesson, ``progress`` the learner's progress in it."""
+    facts = (("lesson", lesson), *((("so far", progress),) if progress else ()))
     return EntryDescription(puzzle.title, f"{puzzle.task} {_PUZZLE}", facts)
 
 
@@ -85,7 +85,7 @@ _WHAT = {
 def of_file(entry: RecentEntry, now: float, forget_key: str) -> EntryDescription:
     """Describe a program or a recording at a moment, in seconds since 1970.
 
-    ``forget_key`` takes one off the list that is gone.
+    ``forget_key`` is the key that removes a missing file from the list.
     """
     path = Path(entry.what)
     facts = [("folder", str(path.parent)), ("opened", time_ago(entry.at, now))]
@@ -107,16 +107,16 @@ def described(about: EntryDescription, size: Size) -> list[list[TextRun]]:
         rows += _entry(name, fact, width, _FACTS, _FAINT)
     between = [[_line("", width, _PLAIN)]]
     for key, text in about.keys:
-        told = [*between, *_entry(key, text, width, _KEYS, _STRONG)]
-        if len(rows) + len(told) > size.height:
+        lines = [*between, *_entry(key, text, width, _KEYS, _STRONG)]
+        if len(rows) + len(lines) > size.height:
             break
-        rows += told
+        rows += lines
         between = []
     return rows
 
 
 def _entry(name: str, text: str, width: int, indent: int, ink: Ink) -> Iterator[list[TextRun]]:
-    """Yield a word at the left and text beside it, wrapped."""
+    """Yield lines with a word at the left and a wrapped text beside it."""
     for number, line in enumerate(lines_of_text(text, max(10, width - indent))):
         left = TextRun(fit("" if number else name, indent, Charset.BRAILLE), ink)
         yield [left, _line(line, width - indent, _PLAIN)]

@@ -27,7 +27,7 @@ _REPLY_STAYS: Nanoseconds = 5_000_000_000
 
 
 class DiagnosisLevel(Enum):
-    """How much a diagnosis matters."""
+    """The importance of a diagnosis."""
 
     FINE = auto()
     WAITS = auto()
@@ -38,11 +38,11 @@ class DiagnosisLevel(Enum):
 class Diagnosis:
     """A sentence about a moment, and its importance; ``at_length`` is shown instead if it fits.
 
-    ``time`` is how the sentence begins if it tells of another moment, which is left out where room is short.
+    ``time`` is the beginning of a sentence about another moment; it is left out if room is short.
 
-    One that stays (a notice, the end of a run) may take several lines; the others change from moment to
-    moment and take one line, so that the screen does not jump. ``is_stall``: nothing moves, and why is not
-    known.
+    A diagnosis that stays (a notice, the end of a run) may take several lines; the others change from moment
+    to moment and take one line, so that the screen does not jump. ``is_stall``: nothing moves for an unknown
+    reason.
     """
 
     text: str
@@ -60,13 +60,13 @@ def diagnosis_on_screen(
     timeline = run.timeline
     if playhead.at is None:
         if run.loss is not None:
-            return _of_a_loss(run.loss, _key("run_again", keymap))
+            return _diagnosis_of_loss(run.loss, _key("run_again", keymap))
         if run.state is RunState.SILENT:
-            return _of_silence(timeline, _key("run_again", keymap))
+            return _diagnosis_of_silence(timeline, _key("run_again", keymap))
         if run.state is RunState.ENDED:
-            return _of_the_end(timeline, f"press {_key('run_again', keymap)} to run again")
+            return _diagnosis_of_end(timeline, f"press {_key('run_again', keymap)} to run again")
         if run.state is RunState.REPLAY_STANDS and timeline.ended is not None:
-            return _of_the_end(timeline, f"{_key('resume', keymap)} plays it from its beginning")
+            return _diagnosis_of_end(timeline, f"{_key('resume', keymap)} plays it from its beginning")
     at = playhead.now(timeline.end)
     moment = diagnosis_at(timeline, at, concurrency, keymap)
     notice = _latest_notice(timeline, at)
@@ -75,18 +75,18 @@ def diagnosis_on_screen(
     return moment
 
 
-def way_on(run: ShownRun, keymap: Keymap) -> str:
+def how_to_continue(run: ShownRun, keymap: Keymap) -> str:
     """Return how to restart a run in which callbacks wait for ever; "" if the run is over."""
     return f"{_key('start_over', keymap)} starts over" if run.alive else ""
 
 
 def with_worst_problem(
-    moment: Diagnosis, findings: Sequence[ExplainedFinding], way_on: str = ""
+    moment: Diagnosis, findings: Sequence[ExplainedFinding], how_to_continue: str = ""
 ) -> Diagnosis:
     """Replace a diagnosis without a problem by the worst problem that the rules found in the run.
 
     A diagnosis that stays is kept, unless it is a stall; any other gives way to a wait that never ends.
-    ``way_on`` is added to such a wait where there is room.
+    ``how_to_continue`` is added to such a wait where there is room.
     """
     problems = [each for each in findings if each.is_problem]
     endless = (each for each in problems if each.explanation.for_ever)
@@ -101,7 +101,7 @@ def with_worst_problem(
         return Diagnosis(what, DiagnosisLevel.TROUBLE, at_length=worst.headline)
     time = f"at {worst.at / 1e9:.1f} s: "
     text = f"{time}{what}"
-    further = f"; {way_on}" if way_on and explanation.for_ever else ""
+    further = f"; {how_to_continue}" if how_to_continue and explanation.for_ever else ""
     at_length = f"{worst.name} {text}{further}".lstrip()
     return Diagnosis(text, DiagnosisLevel.TROUBLE, at_length=at_length, time=time)
 
@@ -110,23 +110,23 @@ def _key(action: str, keymap: Keymap) -> str:
     return keymap.sign(Scope.LESSON, action, Charset.ASCII)
 
 
-def _of_a_loss(loss: str, key: str) -> Diagnosis:
+def _diagnosis_of_loss(loss: str, key: str) -> Diagnosis:
     """The loss of the engine, short enough for a line of 80 columns with the number of problems."""
     how = loss.rstrip(".").removeprefix("the engine ").removeprefix("was ")
     return Diagnosis(f"engine lost: {how}; {key} runs again", DiagnosisLevel.TROUBLE, stays=True)
 
 
-def _of_silence(timeline: Timeline, key: str) -> Diagnosis:
+def _diagnosis_of_silence(timeline: Timeline, key: str) -> Diagnosis:
     silent = (each for each in reversed(timeline.notices) if each.kind is NoticeKind.ENGINE_SILENT)
     return Diagnosis(f"{next(silent).problem}; {key} runs again", DiagnosisLevel.TROUBLE, stays=True)
 
 
-def _of_the_end(timeline: Timeline, way_on: str) -> Diagnosis:
+def _diagnosis_of_end(timeline: Timeline, how_to_continue: str) -> Diagnosis:
     ended = timeline.ended
     if ended is None:
-        return Diagnosis(f"the run is over; {way_on}", DiagnosisLevel.FINE, stays=True)
+        return Diagnosis(f"the run is over; {how_to_continue}", DiagnosisLevel.FINE, stays=True)
     level = DiagnosisLevel.TROUBLE if ended.failed else DiagnosisLevel.FINE
-    return Diagnosis(f"the run is over: {ended.reason.rstrip('.')}; {way_on}", level, stays=True)
+    return Diagnosis(f"the run is over: {ended.reason.rstrip('.')}; {how_to_continue}", level, stays=True)
 
 
 def diagnosis_at(

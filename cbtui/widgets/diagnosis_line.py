@@ -37,18 +37,18 @@ class DiagnosisLine(PaintedWidget):
     problems: reactive[str] = painted("")
 
     class Clicked(Message):
-        """The person clicked on the line."""
+        """The user clicked on the line."""
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the line; the note is dropped first if there is too little room."""
         return diagnosis_rows(self.diagnosis, self.note, self.problems, size.width)
 
     def watch_diagnosis(self) -> None:
-        """Say something else, on as many lines as it takes."""
+        """Show another diagnosis, on as many lines as it takes."""
         self._take_room(self.size)
 
     def watch_problems(self) -> None:
-        """Tell of another number of problems."""
+        """Show another number of problems."""
         self._take_room(self.size)
 
     def on_resize(self, event: Resize) -> None:
@@ -56,7 +56,7 @@ class DiagnosisLine(PaintedWidget):
         self._take_room(event.size)
 
     def on_click(self) -> None:
-        """Tell of a click."""
+        """Post ``Clicked``."""
         self.post_message(self.Clicked())
 
     def _take_room(self, size: Size) -> None:
@@ -66,7 +66,7 @@ class DiagnosisLine(PaintedWidget):
 
 
 def diagnosis_rows(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[list[TextRun]]:
-    """Return the lines, each in exactly ``width`` columns: one, but for a sentence that stays."""
+    """Return the lines, each in exactly ``width`` columns: several only for a diagnosis that stays."""
     taken = " " * (_GAP + len(problems) + 1 if problems else 0)
     first, *others = wrap(diagnosis.text, max(20, width - _INDENT), initial_indent=taken) or [""]
     if not diagnosis.stays or not others:
@@ -95,7 +95,7 @@ def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) ->
 
 
 def _ways_to_say(diagnosis: Diagnosis) -> Iterator[str]:
-    """Yield a diagnosis from its fullest text to its shortest: short names, no time, the first clauses."""
+    """Yield texts of a diagnosis, the fullest first: with short names, without time, the first clauses."""
     yield from filter(None, (diagnosis.at_length, diagnosis.text))
     brief = [sub(r"\w+_callback\b", lambda found: short_name(found[0]), diagnosis.text)]
     brief.append(brief[0].removeprefix(diagnosis.time))
@@ -106,5 +106,5 @@ def _ways_to_say(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def _fitting(note: str, room: int) -> str:
-    """The note and a blank, cut to the room that is left; "" if that is too short."""
+    """The note and a blank, cut to the remaining room; "" if that is too small."""
     return fit(f"{note} ", min(len(note) + 1, room), Charset.BRAILLE) if note and room >= _LEAST_NOTE else ""

@@ -56,7 +56,7 @@ class DotGrid:
     def rows(self, inks: Sequence[Ink], signs: str) -> list[CellRow]:
         """Return the picture; ``inks`` and ``signs`` (for ASCII) are those of layers 0, 1, …; 0 is blank.
 
-        Blank cells take the ink of what stands before them: the fewer runs, the less a terminal is sent.
+        Blank cells take the ink of the cell before them: fewer runs mean less output to the terminal.
         """
         lines, dots = self._layers.shape
         cells = self._layers.reshape(lines // self.down, self.down, dots // self.across, self.across)
@@ -85,7 +85,7 @@ class DotGrid:
 
 
 def _carried_on(layers: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """Return rows of layers in which every 0 is what stands before it."""
+    """Return rows of layers in which every 0 is replaced by the layer before it."""
     columns = np.arange(layers.shape[1])
     last = np.maximum.accumulate(np.where(layers > 0, columns, 0), axis=1)
     return np.take_along_axis(layers, last, axis=1)

@@ -1,4 +1,4 @@
-"""A view of lines that grows at its end and stays there unless the person scrolls away."""
+"""A view of lines that grows at its end and stays there unless the user scrolls away."""
 
 from textual.geometry import Size
 from textual.reactive import var

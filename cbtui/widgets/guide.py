@@ -1,4 +1,4 @@
-"""The lesson's text in sections, which are added as they are unlocked."""
+"""A lesson's text in sections, which are added as they are unlocked."""
 
 import asyncio
 from collections.abc import Mapping

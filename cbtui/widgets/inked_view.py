@@ -22,7 +22,7 @@ class InkedView(ScrollView):
 
     @dataclass
     class MomentPicked(Message):
-        """The person picked a line about the moment ``at``, in nanoseconds of the run."""
+        """The user picked a line about the moment ``at``, in nanoseconds of the run."""
 
         at: Nanoseconds
 
@@ -32,7 +32,7 @@ class InkedView(ScrollView):
         self._classes_drawn: dict[str, Style] = {}
 
     def notify_style_update(self) -> None:
-        """Forget the styles of the theme before."""
+        """Discard the styles of the previous theme."""
         super().notify_style_update()
         self._inks.clear()
         self._classes_drawn.clear()
@@ -52,7 +52,7 @@ class InkedView(ScrollView):
         return self._classes_drawn[component]
 
     def set_off(self, line: Strip, component: str) -> Strip:
-        """Give a line a component's background, except where it has its own."""
+        """Return a line with a component's background where it has none of its own."""
         usual, ground = self.in_class("").bgcolor, Style(bgcolor=self.in_class(component).bgcolor, bold=True)
         parts = [
             Segment(text, style + ground) if style and style.bgcolor == usual else Segment(text, style)

@@ -7,7 +7,7 @@ from textual.geometry import Offset
 
 
 class JumpTarget(NamedTuple):
-    """A place, counted from the top left of its widget's content, and what goes there."""
+    """A place, counted from the top left of its widget's content, and the action that goes there."""
 
     place: Offset
     go: Callable[[], object]

@@ -34,7 +34,7 @@ class KeyBarEntry:
 
     @property
     def width(self) -> int:
-        """Columns that it takes, with the gap before the next."""
+        """Its columns, with the gap before the next entry."""
         return len(self.keys) + 1 + len(self.label) + len(_GAP)
 
 
@@ -63,7 +63,7 @@ class KeyBar(PaintedWidget):
         return keymap_of(self.app).of(working)
 
     def say(self, words: str) -> None:
-        """Show words in place of the keys, at once, until the current message has been handled."""
+        """Show words instead of the keys, at once, until the current message has been handled."""
         self._rows = [[TextRun(fit(f" {words}", self.size.width, self._charset), _KEY)]]
         self.refresh()
         paint_now(self)
@@ -96,7 +96,7 @@ class KeyBar(PaintedWidget):
 
 
 def say_at_once(screen: Screen[Any], words: str) -> None:
-    """Show what a key has begun in the place of a screen's keys, before the work that takes its time."""
+    """Show words instead of a screen's keys, before a key's action that takes long."""
     for bar in screen.query(KeyBar):
         bar.say(words)
 

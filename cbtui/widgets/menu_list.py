@@ -25,13 +25,13 @@ _KINDS = {RecentKind.PROGRAM: "program", RecentKind.RECORDING: "recording"}
 RECENT = "Recent"
 
 _TITLE, _EXECUTOR, _GROUPS = 24, 17, 24
+"""Columns of a lesson's details; with sign and number they fill the wide list."""
 _OVERHANG = 3
-"""Columns behind a title that the narrow list has."""
-"""Columns of a lesson's description; with mark and number they fill the wide list."""
+"""Columns of the narrow list after a title."""
 
 
 class MenuList(OptionList, inherit_bindings=False):
-    """The list of lessons and files; its highlight is moved by the screen's keys."""
+    """The list of lessons and files; the screen's keys move its highlight."""
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id, markup=False)
@@ -39,7 +39,7 @@ class MenuList(OptionList, inherit_bindings=False):
 
     @property
     def chosen(self) -> MenuChoice | None:
-        """What is highlighted."""
+        """The highlighted entry."""
         option = self.highlighted_option
         return None if option is None or option.id is None else self._choices[option.id]
 
@@ -50,9 +50,9 @@ class MenuList(OptionList, inherit_bindings=False):
     def show(
         self, lessons: Iterable[tuple[str, Lesson | Puzzle]], files: Iterable[RecentEntry], rows: "MenuRows"
     ) -> None:
-        """Show entries; the highlight stays on its entry, or goes to the first if that is gone.
+        """Show entries; the highlight stays on its entry, or goes to the first one.
 
-        With each lesson and puzzle comes its unit.
+        Each lesson and puzzle comes with its unit.
         """
         before = self.highlighted_option
         options: list[Option] = []
@@ -69,7 +69,7 @@ class MenuList(OptionList, inherit_bindings=False):
             self.highlight_first()
 
     def choose(self, option_id: str) -> None:
-        """Highlight something, if it is shown."""
+        """Highlight an entry, if it is shown."""
         if option_id in self._choices:
             self.highlighted = self.get_option_index(option_id)
 
@@ -79,7 +79,7 @@ class MenuList(OptionList, inherit_bindings=False):
         self.highlighted = None if first is None else self.get_option_index(first)
 
     def jump_targets(self) -> Iterator[JumpTarget]:
-        """Yield the entries in view, each of which is one row."""
+        """Yield the entries in view; each takes one row."""
         top = round(self.scroll_offset.y)
         for row in range(top, min(top + self.size.height, self.option_count)):
             entry = self.get_option_at_index(row).id
@@ -92,13 +92,13 @@ class MenuList(OptionList, inherit_bindings=False):
 
 
 class MenuRows:
-    """The lines of the narrow list: names only, as the details are shown beside it."""
+    """The lines of the narrow list: names only, as details are shown beside it."""
 
     WIDTH = _TITLE + _OVERHANG
     """Columns for a title, and an invitation to open it."""
 
     def __init__(self, lessons: Sequence[Lesson], stages: Mapping[str, Stage], now: float) -> None:
-        """Take all lessons, how far the learner is in each by its id, and seconds since 1970."""
+        """Take all lessons, the learner's stage in each by its id, and the time in seconds since 1970."""
         self._lessons = lessons
         self._stages = stages
         self._now = now
@@ -107,7 +107,7 @@ class MenuRows:
         self._invitations = ("◂ go on here", "◂ go on") if begun else ("◂ start here", "◂ start")
 
     def total(self, unit: str) -> str:
-        """Return how many lessons of a unit are done."""
+        """Return the number of done lessons of a unit, as text."""
         stages = [self._stages[lesson.id] for lesson in self._lessons if lesson.unit == unit]
         return f" {stages.count(Stage.DONE)}/{len(stages)}"
 
@@ -118,7 +118,7 @@ class MenuRows:
         return Content(f"{self._stages[choice.id].value}     ? {choice.title}")
 
     def lesson(self, lesson: Lesson) -> Content:
-        """Return a lesson's line: how far the learner is in it, its number, its title."""
+        """Return a lesson's line: the sign of its stage, its number, its title."""
         title = fit(lesson.title, min(len(lesson.title), _TITLE), Charset.BRAILLE)
         room = self.WIDTH - len(title) - 1
         invitations = (*self._invitations, "◂", "") if lesson is self._next else ("",)
@@ -130,7 +130,7 @@ class MenuRows:
         )
 
     def file(self, entry: RecentEntry) -> Content:
-        """Return a file's line: its name, and what it is."""
+        """Return a file's line: its name and its kind."""
         return Content.assemble(f"  {_name(entry, 19)} ", (_KINDS[entry.kind], "$text-muted"))
 
 
@@ -154,7 +154,7 @@ class WideMenuRows(MenuRows):
 
 
 def _briefly(executor: str) -> str:
-    """An executor's name without the ending that all of them share."""
+    """An executor's name without the ending that all share."""
     return executor.replace("ThreadedExecutor", "Threaded")
 
 

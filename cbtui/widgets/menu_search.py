@@ -37,5 +37,5 @@ class MenuSearch(Input):
         self.post_message(self.HighlightMoved(1))
 
     def action_give_up(self) -> None:
-        """Look for nothing."""
+        """Cancel the search."""
         self.post_message(self.SearchCleared())

@@ -74,7 +74,7 @@ class Miniature(PaintedWidget):
 
 def miniature(subject: PreviewPicture, now: int, size: Size) -> list[Sequence[TextRun]]:
     """Paint a whole run in a size, without the status column."""
-    from cbtui.widgets.lanes.picture import layout_for  # here whoever has a subject has imported it
+    from cbtui.widgets.lanes.picture import layout_for  # whoever has a subject has imported it
     from sim.trace.model import Window
 
     layouts = ((beside, layout_for(max(20, size.width + beside))) for beside in _STATUSES)
@@ -85,7 +85,7 @@ def miniature(subject: PreviewPicture, now: int, size: Size) -> list[Sequence[Te
 
 
 def sentence_rows(sentence: str, size: Size) -> list[Sequence[TextRun]]:
-    """Paint a sentence, wrapped; ``size`` may be nothing."""
+    """Paint a wrapped sentence; ``size`` may be empty."""
     if not size.width:
         return []
     lines = lines_of_text(sentence, size.width)[: size.height]

@@ -1,4 +1,4 @@
-"""The narrator: what the executor did at a moment, and why, callback by callback."""
+"""The narrator: the executor's decisions at a moment, and their reasons, for each callback."""
 
 from collections.abc import Iterator, Sequence
 
@@ -29,7 +29,7 @@ _ORDER = (
     EntityKind.CLIENT,
     EntityKind.SERVICE,
 )
-"""The order in which rclpy's executors go through what is ready in a node."""
+"""The order in which rclpy's executors examine the entities of a node."""
 _IN_ORDER = {
     EntityKind.WAITABLE: "waitables come first",
     EntityKind.TIMER: "timers come first",
@@ -41,7 +41,7 @@ _IN_ORDER = {
 
 
 class Narrator(PaintedWidget):
-    """Tells what the executor decided last, up to the moment ``now``."""
+    """Shows the executor's last decision up to the moment ``now``."""
 
     timeline: reactive[Timeline] = painted(Timeline, always_update=True)
     now: reactive[Nanoseconds] = painted(0)
@@ -51,16 +51,16 @@ class Narrator(PaintedWidget):
         """Paint the sentences, each on as many rows as it takes."""
         width = max(20, size.width)
         rows: list[list[TextRun]] = []
-        for place, told in enumerate(narration(self.timeline, self.now)):
+        for place, text in enumerate(narration(self.timeline, self.now)):
             sign = f" {GLYPHS[self.charset].forth} " if place == 0 else "   "
-            for line in lines_of_text(told, width - 4, self.charset):
+            for line in lines_of_text(text, width - 4, self.charset):
                 rows.append([TextRun(fit(f"{sign}{line}", width, self.charset), _NEXT if place else _FIRST)])
                 sign = "     "
         return rows[: size.height]
 
 
 def narration(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
-    """Return what the executor did last by a moment, and what it left waiting, in its own order."""
+    """Return the executor's last action by a moment, and the callbacks that still waited, in its order."""
     last = timeline.neighbour(at + 1, None, -1)
     if last is None:
         return ("nothing has happened yet",)
@@ -75,12 +75,12 @@ def narration(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
         *(f"{name_of(each.entity, timeline)} is ready" for each in left if each.since == last),
     )
     first = f"{timestamp(last)}: {'; '.join(did) or 'the executor looks again'}"
-    told = [waiting(wait, timeline, last) for wait in left]
-    return (first, *told) if told else (first, _at_rest(timeline, last))
+    waits = [waiting(wait, timeline, last) for wait in left]
+    return (first, *waits) if waits else (first, _at_rest(timeline, last))
 
 
 def _place(entity: EntityInfo) -> tuple[int, int, EntityId]:
-    """The place of a callback in the order in which an executor looks at it."""
+    """The place of an entity in the order in which an executor examines it."""
     return entity.node, _ORDER.index(entity.kind), entity.id
 
 
@@ -96,7 +96,7 @@ def _ended(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
 
 
 def returning(span: Span, timeline: Timeline) -> str:
-    """Return what it means that a call has ended."""
+    """Return the sentence on the end of a call, and what that frees."""
     name, group = name_of(span.entity, timeline), group_of(span.entity, timeline)
     return f"{name} returns after {duration(span.end_at(timeline.end) - span.start)}, {group} is free"
 
@@ -142,7 +142,7 @@ def _readiness(entity: EntityInfo, span: Span) -> str:
 
 
 def _why_first(entity: EntityInfo, left: Sequence[Wait], timeline: Timeline) -> Iterator[str]:
-    """Why it was chosen, if a thread was what the others lack, or it came before them."""
+    """Why an entity was chosen: the others lack a thread, or come after it in the order."""
     if any(wait.reason is Reason.EVENT_QUEUE for wait in left):
         yield "it came first"
     others = [

@@ -106,7 +106,7 @@ class PaintedWidget(Widget):
         return [Segment(run.text, self._style(run.ink)) for run in self._rows[y]]
 
     def notify_style_update(self) -> None:
-        """Forget the look of the theme and of the frame before."""
+        """Discard the cached background and frame of the previous theme."""
         super().notify_style_update()
         self._styles.clear()
         self._background = self._sides = None
@@ -117,7 +117,7 @@ class PaintedWidget(Widget):
         return self._background
 
     def _paint_for(self, size: Size) -> None:
-        """Paint if that was not yet done for a size."""
+        """Paint, unless that was done already for this size."""
         if self._rows_size != size:
             self._rows, self._rows_size = self.rows(size), size
 
@@ -128,7 +128,7 @@ class PaintedWidget(Widget):
         return self._styles[ink]
 
     def _sides_of(self, y: int) -> tuple[list[Segment], list[Segment]]:
-        """What is left and right of the painted lines, of which ``y`` is one of the whole widget."""
+        """The frame and padding left and right of the widget's line ``y``."""
         if self._sides is None:
             line = super().render_lines(Region(0, y, self.outer_size.width, 1))[0]
             left = self.gutter.left
@@ -155,7 +155,7 @@ class PaintedWidget(Widget):
 
 
 def changed_part(before: Sequence[TextRun], after: Sequence[TextRun]) -> tuple[int, int]:
-    """Return the columns from the first run that differs to the end of the last; both rows are as wide."""
+    """Return the columns from the first to the last different run; both rows have the same width."""
     if before == after:
         return 0, 0
     start = _same(before, after)
@@ -164,6 +164,6 @@ def changed_part(before: Sequence[TextRun], after: Sequence[TextRun]) -> tuple[i
 
 
 def _same(before: Sequence[TextRun], after: Sequence[TextRun]) -> int:
-    """How many columns the runs have that both rows begin with."""
+    """The width of the runs with which both rows begin."""
     pairs = takewhile(lambda pair: pair[0] == pair[1], zip(before, after, strict=False))
     return sum(cell_len(run.text) for run, _ in pairs)

@@ -19,7 +19,7 @@ class PassedBanner(PaintedWidget):
     """Lanes that fill from the left until all run at once, and a text on them; hidden until ``celebrate``."""
 
     place: reactive[int] = painted(0)
-    """How many of the frames are past."""
+    """The number of past frames."""
 
     def __init__(self, charset: Charset) -> None:
         super().__init__()
@@ -28,7 +28,7 @@ class PassedBanner(PaintedWidget):
         self.display = False
 
     def celebrate(self, text: str) -> None:
-        """Show a text, for a while."""
+        """Show a text for ``_STAYS`` seconds."""
         self._text = text
         self.display = True
         if self.app.animation_level == "none":
@@ -50,7 +50,7 @@ class PassedBanner(PaintedWidget):
 
 
 def banner(text: str, size: Size, share: float, charset: Charset) -> list[list[TextRun]]:
-    """Return the banner when a share (0 to 1) of its movement is past."""
+    """Return the banner after a share (0 to 1) of its movement."""
     glyphs, rows = GLYPHS[charset], [CellRow(size.width, charset) for _ in range(size.height)]
     if not rows:
         return []

@@ -70,7 +70,7 @@ class ShellOutput(FollowingView):
         self._line_begun = False
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
-        """Show what a timeline holds up to a moment."""
+        """Show the lines and output of a timeline up to a moment."""
         if timeline is not self._timeline:
             self._timeline = timeline
             self._rows.clear()
@@ -153,16 +153,16 @@ class Prompt(Input):
         self._place = 0
 
     def on_mount(self) -> None:
-        """Tell how to get here."""
+        """Show the hint for a prompt without the focus."""
         self.on_blur()
 
     def on_blur(self) -> None:
-        """Tell which key leads here."""
+        """Show the key that leads here."""
         way = keymap_of(self.app).sign(Scope.LESSON, "prompt", Charset.BRAILLE)
         self.placeholder = f"{way} types {_EXAMPLE}"
 
     def on_focus(self) -> None:
-        """Tell what can be typed."""
+        """Show the keys of the prompt."""
         self.placeholder = _EXAMPLE
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
@@ -177,11 +177,11 @@ class Prompt(Input):
         self.post_message(self.LineSubmitted(text))
 
     def action_older(self) -> None:
-        """Bring back the line before."""
+        """Show the previous line of the history."""
         self._go_to(self._place - 1)
 
     def action_newer(self) -> None:
-        """Go on to the line after."""
+        """Show the next line of the history."""
         self._go_to(self._place + 1)
 
     def _go_to(self, place: int) -> None:
@@ -191,7 +191,7 @@ class Prompt(Input):
             self.cursor_position = len(self.value)
 
     def action_complete(self) -> None:
-        """Ask what could stand here."""
+        """Ask for completions at the cursor."""
         self.post_message(self.CompletionWanted(self.value, self.cursor_position))
 
     def action_interrupt(self) -> None:
@@ -230,7 +230,7 @@ class ProgramKeyboard(Input):
         super().__init__(compact=True, select_on_focus=False)
 
     def watch_reads(self) -> None:
-        """Take input as the program does."""
+        """Take lines or single keys, as the program reads."""
         self.password = self.reads is Reading.SECRET
         if self.reads.takes_keys:
             self.value = ""

@@ -24,9 +24,9 @@ _GAP = TextRun("   ", _PLAIN)
 _LEAST_TITLE = 5
 """The least columns of the title before the recording's state is dropped."""
 _TURN = 0.15
-"""Seconds between two turns of the sign that an engine starts."""
+"""Seconds between two pictures of the turning sign of a starting engine."""
 _WORTH_TELLING = 10_000_000
-"""Bytes from which on the size of a recording is shown."""
+"""Least size of a recording that is shown, in bytes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class RunStatus:
     steps: tuple[LessonStep, ...] = ()
     """The steps through the lesson, if there are any."""
     still: Nanoseconds | None = None
-    """For how long nothing moves any more, None if something does."""
+    """Nanoseconds since the last callback stopped for ever; None if something moves."""
 
 
 def status_of(
@@ -68,9 +68,9 @@ def status_of(
     steps: tuple[LessonStep, ...] = (),
     still_since: Nanoseconds | None = None,
 ) -> RunStatus:
-    """Return the status of a run; until its executor appears, the lesson's own text stands for it.
+    """Return the status of a run; until its executor appears, ``usual_executor`` is shown.
 
-    ``still_since`` is when its last callback came to a stop for ever, None if it goes on.
+    ``still_since`` is the time at which the last callback stopped for ever, None if something moves.
     """
     timeline, recording = run.timeline, run.recording
     at = playhead.now(timeline.end)
@@ -104,13 +104,13 @@ def _pace(run: ShownRun, speed: str) -> str:
 
 
 class StatusLine(PaintedWidget):
-    """Shows a status; ``turn`` is a number that grows while an engine starts, so that something moves."""
+    """Shows a status; ``turn`` grows while an engine starts and turns the sign."""
 
     status: reactive[RunStatus | None] = painted(None)
     turn: reactive[int] = painted(0)
 
     def on_mount(self) -> None:
-        """Let the sign turn."""
+        """Start the timer that turns the sign."""
         if self.app.animation_level != "none":
             self.set_interval(_TURN, self._turn_sign)
 
@@ -126,7 +126,7 @@ class StatusLine(PaintedWidget):
 def status_row(status: RunStatus, width: int, turn: int = 0) -> list[TextRun]:
     """Return the line in exactly ``width`` columns; the executor is dropped first, then most of the steps.
 
-    Pace and recording follow; the losses of the trace are dropped last.
+    Pace and recording are dropped next, the losses of the trace last.
     """
     title = TextRun(f" {status.title}", _STRONG)
     state = _state(status, turn)
@@ -179,7 +179,7 @@ _STEP_INKS = {StepState.DONE: _PLAIN, StepState.CURRENT: _STRONG, StepState.OPEN
 
 
 def _steps(steps: Sequence[LessonStep]) -> list[TextRun]:
-    """The steps, each pointing to the next, and a gap."""
+    """The steps, joined by arrows, and a gap."""
     runs: list[TextRun] = []
     for step in steps:
         runs += [TextRun(" ▸ ", _FAINT)] if runs else []

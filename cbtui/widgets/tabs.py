@@ -22,7 +22,7 @@ _SEPARATOR = " · "
 
 
 class Tabs(PaintedWidget):
-    """Shows the panes with their numbers, the current one in brackets; of ``has_scene``, see ``title_of``."""
+    """Shows the panes with their numbers, the current one in brackets; for ``has_scene`` see ``title_of``."""
 
     def __init__(self, panes: Sequence[str], has_scene: bool) -> None:
         super().__init__()
@@ -52,7 +52,7 @@ class Tabs(PaintedWidget):
         return [[*runs, TextRun("─" * (room - cell_len(note)), _LINE), TextRun(note, _NOTE)]]
 
     def on_click(self, event: Click) -> None:
-        """Tell which pane was clicked."""
+        """Post the clicked pane."""
         for start, pane, text in self._placed():
             if start <= event.x < start + len(text):
                 self.post_message(self.TabPicked(pane))
@@ -63,7 +63,6 @@ class Tabs(PaintedWidget):
             yield JumpTarget(Offset(start, 0), partial(self.post_message, self.TabPicked(pane)))
 
     def _placed(self) -> Iterator[tuple[int, str, str]]:
-        """The first column, the pane and the text of each tab."""
         start = 1
         for pane, text in self._labels():
             yield start, pane, text
@@ -87,6 +86,6 @@ def _shortened_note(note: str, room: int) -> str:
 
 
 def title_of(pane: str, has_scene: bool = False) -> str:
-    """Return a pane's number and name; ``has_scene``: where the robot would be, there is a scene."""
+    """Return a pane's number and name; with ``has_scene`` a scene takes the robot's place."""
     number = PANES.index(pane) if pane in PANES else len(PANES)
     return f"{number + 1} {'Scene' if has_scene and pane == 'robot' else pane.capitalize()}"

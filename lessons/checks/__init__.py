@@ -1,4 +1,4 @@
-"""Checks over a run, and what a lesson's own checks and answers are made of."""
+"""Checks of a run, and the functions of which a lesson's own checks and answers are made."""
 
 from lessons.checks.callbacks import (
     exclusive_groups_hold,

@@ -1,4 +1,4 @@
-"""Checks on when callbacks run, beside which others, and on how many threads."""
+"""Checks on the times at which callbacks run, on overlaps, and on the number of threads."""
 
 from collections.abc import Iterable, Iterator
 from heapq import merge
@@ -13,7 +13,7 @@ from sim.trace.model import Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
 
 _TOGETHER: Nanoseconds = 1_000_000
-"""From how long on two callbacks ran at the same time: a reader has to find it on the lanes."""
+"""Least time for which two callbacks overlap: a reader has to find it on the lanes."""
 
 
 def keeps_coming(callback: str, while_: Stretch, at_least: float) -> Check:
@@ -157,7 +157,7 @@ def _alone(run: Timeline, found: tuple[Span, Span] | None, expected: str) -> Ver
 
 
 def _first_overlap(run: Timeline, lanes: Iterable[Iterable[Span]]) -> tuple[Span, Span] | None:
-    """The first two spans that share time, the one that began first and the other."""
+    """Return the first two spans that overlap, in order of start."""
     latest: Span | None = None
     for span in merge(*lanes, key=lambda span: span.start):
         if latest is not None and span.start < latest.end_at(run.end):
@@ -168,7 +168,7 @@ def _first_overlap(run: Timeline, lanes: Iterable[Iterable[Span]]) -> tuple[Span
 
 
 def _shared(run: Timeline, one: str, other: str) -> Iterator[Window]:
-    """The time that calls of two callbacks share, where it is long enough."""
+    """Yield the times for which calls of two callbacks overlap long enough."""
     begun = [(span, name) for name in {one, other} for span in spans_of(run, name)]
     running: list[tuple[Span, str]] = []
     for span, name in sorted(begun, key=lambda pair: pair[0].start):

@@ -1,4 +1,4 @@
-"""What a check is: something asked of a run in words, and the function that looks whether it is so."""
+"""A check: a demand on a run in words, and the function that judges a run by it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from sim.trace.timeline import Timeline
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """What came of a check: what had to be seen, what was seen, and the moment to look at (None: nowhere)."""
+    """The result of a check: what was expected, what was seen, and the moment to look at (None: nowhere)."""
 
     passed: bool
     expected: str
@@ -21,8 +21,8 @@ class Verdict:
 class Check:
     """Something that a run must show.
 
-    ``asks`` says what, in a few words that go on neither with a full stop nor with a number; ``judge``
-    looks at a whole run. It must take any run, also one in which the callbacks it looks for are missing.
+    ``asks`` is a short text without a full stop and numbers; ``judge`` examines a whole run. It must accept
+    any run, also one without the callbacks that it looks for.
     """
 
     asks: str

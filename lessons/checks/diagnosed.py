@@ -1,4 +1,4 @@
-"""Checks that ask the diagnosis: nothing stuck, and none of a rule's problems."""
+"""Checks on findings of the diagnosis: nothing is stuck, and a rule finds no problem."""
 
 from collections.abc import Callable
 
@@ -8,11 +8,11 @@ from sim.trace.events import NoticeKind
 from sim.trace.timeline import Timeline
 
 STUCK = ("self-made-deadlock", "needs-one-more-worker", "endless-wait", "waits-for-lock")
-"""Ids of the rules on callbacks that wait for what can never come."""
+"""Ids of the rules on callbacks that wait for ever."""
 
 
 def problems(run: Timeline) -> tuple[Finding, ...]:
-    """What the diagnosis finds wrong in a run; what is only worth knowing is left out."""
+    """Return the problems that the diagnosis finds in a run, without its remarks."""
     return tuple(each for each in diagnose(run) if each.rule.weigh(each, run) is Weight.PROBLEM)
 
 
@@ -30,7 +30,7 @@ def never_stuck() -> Check:
 
 
 def gets_stuck() -> Check:
-    """What ``never_stuck`` says there is not: something waits for what can never come."""
+    """The opposite of ``never_stuck``: something waits for what can never come."""
 
     def judge(run: Timeline) -> Verdict:
         opposite = never_stuck().judge(run)
@@ -41,7 +41,7 @@ def gets_stuck() -> Check:
 
 
 def no_problem(rule: str, asks: str = "") -> Check:
-    """A rule of the diagnosis, named by its id, finds no problem; ``asks`` says that in the lesson's words.
+    """The diagnosis rule with an id finds no problem; ``asks`` says that in the lesson's words.
 
     Raises:
         ValueError: there is no such rule.

@@ -136,7 +136,7 @@ def never_gets_ahead_of(callback: str, other: str) -> Check:
 
 
 def _waits(run: Timeline, name: str) -> list[list[Wait]]:
-    """The waits of a callback, topic or service: for each call the series of them, as its reason changed."""
+    """Yield the waits of a callback, topic or service: a series for each call, as the reason may change."""
     return [
         [*series]
         for each in entities_named(run, name)

@@ -1,4 +1,4 @@
-"""What checks and answers read off a run: callbacks by their names, their calls, and stretches of time."""
+"""Functions for checks and answers: callbacks of a run by their names, their calls, and stretches of time."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -11,36 +11,36 @@ from sim.trace.timeline import Timeline
 
 
 def whole_run(run: Timeline) -> Window:
-    """All of a run."""
+    """Return the window of a whole run."""
     return Window(0, run.end + 1)
 
 
 def entities_named(run: Timeline, name: str) -> list[EntityId]:
-    """The entities of a callback (``scan_callback``), or of a topic or service (``/scan``)."""
+    """Return the entities of a callback (``scan_callback``), or of a topic or service (``/scan``)."""
     return [each.id for each in run.entities.values() if name in (each.callback, each.name)]
 
 
 def calls_of(run: Timeline, name: str, window: Window | None = None) -> list[Span]:
-    """The calls of a callback, topic or service that began in a window, or ever; in order of start."""
+    """Return the calls of a callback, topic or service by their starts; with ``window`` those begun in it."""
     within = whole_run(run) if window is None else window
     found = [span for each in entities_named(run, name) for span in run.calls_begun(each, within)]
     return sorted(found, key=lambda span: span.start)
 
 
 def spans_of(run: Timeline, name: str) -> list[Span]:
-    """What a callback, topic or service had run when; a call that awaited something is several spans."""
+    """Return the spans of a callback, topic or service; a call that awaits something has several."""
     found = [span for each in entities_named(run, name) for span in run.spans_of(each, whole_run(run))]
     return sorted(found, key=lambda span: span.start)
 
 
 def requests_of(run: Timeline, service: str) -> list[Call]:
-    """The calls of a service, in order of sending."""
+    """Return the calls of a service in the order in which they were sent."""
     return [call for call in run.calls if call.service == service]
 
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """A time that comes once or more often in a run; ``words`` go on from "while"."""
+    """A condition that holds at some times of a run; ``words`` follow the word "while"."""
 
     words: str
     windows: Callable[[Timeline], list[Window]]
@@ -51,7 +51,7 @@ WHOLE_RUN = Stretch("the run lasts", lambda run: [whole_run(run)])
 
 
 def rotations(run: Timeline) -> list[Window]:
-    """When the robot was under a command to turn: from each such command to the first one not to."""
+    """Return the times when the robot turned: from each command to turn to the first other command."""
     return list(turns_among(run.commands(whole_run(run)), None, Window(0, run.end)))
 
 
@@ -82,7 +82,7 @@ def is_called(service: str) -> Stretch:
 
 
 def seconds(length: Nanoseconds) -> str:
-    """A length of time in words, short: ``9.9 s``, ``35 ms``."""
+    """Return a duration as short text: ``9.9 s``, ``35 ms``."""
     if 0 < length < SECOND // 10:
         return f"{length / 1e6:.3g} ms"
     return f"{length / SECOND:.3g} s"

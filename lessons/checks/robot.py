@@ -1,4 +1,4 @@
-"""Checks on what the robot does, and on how old the data is that a callback decides on."""
+"""Checks on the robot's turns, and on the age of the data on which a callback decides."""
 
 from collections.abc import Iterator
 
@@ -11,7 +11,7 @@ from sim.trace.timeline import Timeline
 
 
 def turns(times: int) -> Check:
-    """The robot makes a number of turns; a turn goes from a command to turn to the first one not to."""
+    """The robot makes a number of turns; a turn lasts from a command to turn to the first other command."""
     expected = counted(times, "turn")
 
     def judge(run: Timeline) -> Verdict:
@@ -40,7 +40,7 @@ def data_never_older(subscription: str, timer: str, limit: float) -> Check:
 
 
 def _ages(taken: list[Span], decisions: list[Span]) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
-    """How old the newest message was at each decision that had one, and when that was."""
+    """Return the age of the newest message at each decision that had one, and the decision's time."""
     done = sorted((span.end, span.start - span.age) for span in taken if span.end is not None)
     newest: Nanoseconds | None = None
     for decision in decisions:

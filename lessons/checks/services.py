@@ -1,4 +1,4 @@
-"""Checks on service calls and on what is written to the log."""
+"""Checks on service calls and on the log."""
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import requests_of, seconds
@@ -53,7 +53,7 @@ def every_call_answered() -> Check:
 
 
 def _not_taken(run: Timeline) -> set[int]:
-    """The calls whose replies lie in a client's queue when a run is over, or wait for a thread."""
+    """Return the calls whose replies are in a client's queue or wait for a thread at the end of a run."""
     last = run.moment(run.end)
     clients = (entity for entity in last.queues if run.entities[entity].kind is EntityKind.CLIENT)
     queued = {message.id for client in clients for message in last.queues[client].messages}

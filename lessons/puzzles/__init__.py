@@ -1,6 +1,6 @@
-"""Puzzles: the learner chooses which thread goes on, until a node shows what the puzzle asks for.
+"""Puzzles: the learner chooses which thread goes on, until the goal is reached.
 
-A folder a puzzle: ``node.py``, and ``puzzle.toml`` with its goal and a solution.
+Each puzzle is a folder with ``node.py``, and ``puzzle.toml`` with its goal and a solution.
 """
 
 from functools import cache
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from lessons.checks import Check
 
 SECONDS = 0.19
-"""How long a puzzle's run lasts, in its own time."""
+"""The length of a puzzle's run, in its own time."""
 
 
 class Goal(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What is to be brought about: one of these."""
+    """The goal of a puzzle: one of these fields."""
 
     raises: str = ""
-    """A callback that is to raise."""
+    """A callback that has to raise."""
     says: str = ""
-    """What is to stand in the log."""
+    """A text that has to be in the log."""
     deadlock: bool = False
 
     def check(self) -> "Check":
-        """Return the check that passes once it was brought about."""
-        from lessons.checks import gets_stuck, log_says, raises  # the menu needs none
+        """Return the check that passes once the goal is reached."""
+        from lessons.checks import gets_stuck, log_says, raises  # not needed by the menu
 
         if self.raises:
             return raises(self.raises)
@@ -35,7 +35,7 @@ class Goal(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Puzzle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A puzzle; ``lesson`` is the id of the one that it belongs to, ``solution`` a seed of moves."""
+    """A puzzle; ``lesson`` is the id of its lesson, ``solution`` a seed of moves."""
 
     title: str
     lesson: str

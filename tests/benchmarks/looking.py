@@ -22,13 +22,13 @@ def longest_look(seconds: int) -> float:
         timeline.extend(events[start : start + _DELIVERED])
         took.append(_timed(watch))
     began = time.process_time()
-    watch.look()
+    watch.update()
     return max(*took, time.process_time() - began)
 
 
 def _timed(watch: FindingsMonitor) -> float:
     began = time.process_time()
-    watch.look_when_due()
+    watch.update_when_due()
     return time.process_time() - began
 
 

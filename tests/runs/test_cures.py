@@ -15,7 +15,7 @@ from cbtui.runs.judged.cures import (
     cures_of,
     helps,
     problem_of,
-    tried,
+    try_run,
     with_inputs,
 )
 from cbtui.runs.setup.changes import Changes
@@ -48,8 +48,8 @@ def offered(program: str) -> tuple[Problem, RunSetup, list[Cure]]:
 
 def helpful(program: str) -> list[str]:
     problem, setup, cures = offered(program)
-    before = tried(setup, UNTIL, Event())
-    runs = ((cure, tried(cure.changes.applied(setup), UNTIL, Event())) for cure in cures)
+    before = try_run(setup, UNTIL, Event())
+    runs = ((cure, try_run(cure.changes.applied(setup), UNTIL, Event())) for cure in cures)
     return [f"{cure.words}{cure.diff and ' (diff)'}" for cure, after in runs if helps(problem, before, after)]
 
 
@@ -114,8 +114,8 @@ def test_an_edited_copy_is_run_and_the_file_stays() -> None:
 
 def test_threads_alone_do_not_open_a_held_group() -> None:
     problem, setup, _ = offered("held_group")
-    after = tried(Changes(threads=6).applied(setup), UNTIL, Event())
-    assert not helps(problem, tried(setup, UNTIL, Event()), after)
+    after = try_run(Changes(threads=6).applied(setup), UNTIL, Event())
+    assert not helps(problem, try_run(setup, UNTIL, Event()), after)
 
 
 def test_a_second_cure_edits_what_the_first_made() -> None:
@@ -141,12 +141,12 @@ def test_a_trial_can_be_given_up() -> None:
     given_up.set()
     setup = program_setup(PROGRAMS / "held_group.py", 3.0)
     with pytest.raises(GivenUpError):
-        tried(setup, 3 * SECOND, given_up)
+        try_run(setup, 3 * SECOND, given_up)
 
 
 def test_a_trial_tells_how_far_it_is() -> None:
     told: list[int] = []
-    tried(program_setup(PROGRAMS / "held_group.py", 3.0), 3 * SECOND, Event(), told.append)
+    try_run(program_setup(PROGRAMS / "held_group.py", 3.0), 3 * SECOND, Event(), told.append)
     assert told == sorted(told)
     assert told[-1] == 3 * SECOND
 
@@ -183,9 +183,9 @@ def test_the_calls_of_a_run_belong_to_its_trial(tmp_path: Path) -> None:
     program = tmp_path / "served.py"
     program.write_text(text)
     setup = program_setup(program, 3.0)
-    assert tried(setup, 3 * SECOND, Event()).problems == {}
+    assert try_run(setup, 3 * SECOND, Event()).problems == {}
     called = TimedInput(SECOND // 2, input_text(CallService(None, True)))
-    found = tried(with_inputs(setup, (called,)), 3 * SECOND, Event())
+    found = try_run(with_inputs(setup, (called,)), 3 * SECOND, Event())
     assert [rule for rule, _, _ in found.problems] == ["group-starvation"]
 
 

@@ -29,7 +29,7 @@ def calling(*, beats: bool) -> FindingsMonitor:
         spin(node, 2)
 
     watch = FindingsMonitor(diagnosed(program).timeline)
-    watch.look()
+    watch.update()
     return watch
 
 
@@ -84,7 +84,7 @@ def watch_of(run: Run, until: float) -> FindingsMonitor:
     timeline = Timeline()
     timeline.extend(run.until(until))
     watch = FindingsMonitor(timeline)
-    watch.look()
+    watch.update()
     return watch
 
 
@@ -92,7 +92,7 @@ def at_frames(watch: FindingsMonitor, clock: Clock, seconds: Sequence[float]) ->
     looked = []
     for second in seconds:
         clock.now = second
-        looked.append(watch.look_when_due())
+        looked.append(watch.update_when_due())
     return looked
 
 
@@ -135,8 +135,8 @@ def test_what_is_read_of_a_recording_between_two_frames_is_looked_at_before_it_i
     for second in range(0, 600, 8):
         run.log("here", float(second))
         timeline.extend(run.events[-1:])
-        watch.look_when_due()
-    watch.look()
+        watch.update_when_due()
+    watch.update()
     assert max(starts) < ns(30)
     assert len(starts) < 40
 
@@ -144,8 +144,8 @@ def test_what_is_read_of_a_recording_between_two_frames_is_looked_at_before_it_i
 def test_looking_now_waits_for_nothing_and_puts_off_the_next_look() -> None:
     clock = Clock()
     watch, rule = watched(clock)
-    watch.look()
-    watch.look()
+    watch.update()
+    watch.update()
     assert at_frames(watch, clock, [100.4, 100.6]) == [False, True]
     assert rule.asked == 3
 

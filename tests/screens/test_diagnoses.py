@@ -18,9 +18,9 @@ from cbtui.runs.setup.changes import Changes
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.replay import ReplayScreen
 from cbtui.screens.windows.diagnoses import (
-    Chosen,
+    ChosenStep,
     DiagnosesScreen,
-    Way,
+    NextStep,
     cure_details,
     details_of,
     problems_note,
@@ -69,7 +69,7 @@ def told_of(events: Sequence[AnyEvent]) -> tuple[ExplainedFinding, ...]:
     timeline = Timeline()
     timeline.extend(events)
     watch = FindingsMonitor(timeline)
-    watch.look()
+    watch.update()
     return watch.findings
 
 
@@ -303,7 +303,7 @@ class Trial:
 @pytest.mark.parametrize("keys", [("t",), ("down", "enter"), ("down", "t")])
 async def test_a_cure_is_offered_once_it_was_found_to_help(keys: tuple[str, ...]) -> None:
     async with console() as (app, pilot):
-        chosen: list[Chosen | None] = []
+        chosen: list[ChosenStep | None] = []
         findings, trial = told_of(shared_group_run().until(TURNED)), Trial()
         await app.push_screen(DiagnosesScreen(findings, Charset.BRAILLE, trial), chosen.append)
         await app.workers.wait_for_complete()
@@ -314,7 +314,7 @@ async def test_a_cure_is_offered_once_it_was_found_to_help(keys: tuple[str, ...]
         await press(pilot, "down", "down", "t")
         assert chosen == []
         await press(pilot, "up", "up", *keys)
-        assert chosen == [Chosen(findings[0], Way.CURE, EDIT)]
+        assert chosen == [ChosenStep(findings[0], NextStep.CURE, EDIT)]
 
 
 @pytest.mark.slow

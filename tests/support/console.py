@@ -94,7 +94,7 @@ async def settle(pilot: Pilot[None]) -> None:
     """Let everything that was delivered or pressed reach the screen; to be ``run_before`` of a snapshot."""
     await pilot.pause()
     if isinstance(pilot.app.screen, RunScreen):
-        pilot.app.screen.look_for_findings()
+        pilot.app.screen.update_findings()
         pilot.app.screen.draw()
     await pilot.pause()
     async with asyncio.timeout(_LIMIT):

@@ -216,7 +216,7 @@ def test_a_sentence_of_the_moment_keeps_to_one_line() -> None:
 
 def told_of(run: Run, until: float) -> tuple[ExplainedFinding, ...]:
     watch = FindingsMonitor(timeline_of(run, until))
-    watch.look()
+    watch.update()
     return watch.findings
 
 

@@ -50,7 +50,7 @@ def test_the_lines_of_a_check_know_which_one_it_is() -> None:
 def test_what_fails_leads_to_the_editor() -> None:
     sheet = WORDS.judged(checked(True, False))
     assert sheet.news == "1 of 2 checks fails. o opens mine.py; saving it checks it again."
-    assert (sheet.standing, sheet.note) == (CheckStatus.FAILED, "✗ 1 of 2 pass")
+    assert (sheet.status, sheet.note) == (CheckStatus.FAILED, "✗ 1 of 2 pass")
 
 
 def test_when_all_pass_it_is_said_what_comes_next() -> None:
@@ -58,7 +58,7 @@ def test_when_all_pass_it_is_said_what_comes_next() -> None:
     assert sheet.news == (
         "All 2 checks pass: the exercise is done. n opens the next lesson, Exclusive, 2 threads."
     )
-    assert (sheet.standing, sheet.note) == (CheckStatus.PASSED, "✓ 2 of 2 pass")
+    assert (sheet.status, sheet.note) == (CheckStatus.PASSED, "✓ 2 of 2 pass")
 
 
 def test_after_the_last_lesson_no_key_for_another_is_named() -> None:
@@ -69,7 +69,7 @@ def test_after_the_last_lesson_no_key_for_another_is_named() -> None:
 def test_a_file_that_cannot_be_judged_is_told_of_and_no_check_has_a_verdict() -> None:
     sheet = WORDS.judged(checked(trouble="mine.py:3: expected ':'"))
     assert sheet.news.startswith("mine.py:3: expected ':'. o opens mine.py")
-    assert [row.standing for row in sheet.rows] == [CheckStatus.OPEN, CheckStatus.OPEN]
+    assert [row.status for row in sheet.rows] == [CheckStatus.OPEN, CheckStatus.OPEN]
     assert sheet.note == ""
 
 

@@ -31,7 +31,7 @@ class Appearance(NamedTuple):
     keys: "Keymap"
     complaints: Sequence[str]
     screen_reader: bool = False
-    """Whether to tell what happens in lines instead of drawing it."""
+    """Whether to print lines instead of drawing a screen."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -78,14 +78,14 @@ def add_physics(parser: argparse.ArgumentParser) -> None:
 
 
 def physics_of(options: argparse.Namespace) -> "PhysicsChoice | None":
-    """The physics that ``--physics`` asks for, None for the usual one."""
+    """Return the physics that ``--physics`` asks for, None for the usual one."""
     from sim.engine.setup import PhysicsChoice
 
     return None if options.physics is None else PhysicsChoice(options.physics)
 
 
 def add_on(parser: argparse.ArgumentParser, side: str = "") -> None:
-    """Give a command that can run programs on real ROS 2 the options on that.
+    """Add the options on real ROS 2 to a command that can run programs on it.
 
     ``side`` ends their names where two programs are run: ``-a`` or ``-b``.
     """
@@ -119,7 +119,7 @@ def add_traceback(parser: argparse.ArgumentParser) -> None:
 
 
 def changes_of(options: argparse.Namespace) -> "Changes":
-    """The changes that the options make."""
+    """Return the changes that the options make."""
     from cbtui.runs.setup.changes import Changes
 
     return Changes(
@@ -133,7 +133,7 @@ def changes_of(options: argparse.Namespace) -> "Changes":
 
 
 def real_ros_of(options: argparse.Namespace, side: str = "") -> "RealRos | None":
-    """The real ROS 2 that ``--on`` asks for; what contradicts that ends the program with one line and 2."""
+    """Return the real ROS 2 that ``--on`` asks for; exits with code 2 and one line if options contradict."""
     own = side.replace("-", "_")
     ground, chosen = (getattr(options, f"{name}{own}") for name in ("on", "python"))
     if ground == "model":
@@ -151,7 +151,7 @@ def real_ros_of(options: argparse.Namespace, side: str = "") -> "RealRos | None"
 
 
 def chosen_ros(chosen: str | None, side: str = "") -> "RealRos":
-    """The ROS 2 that ``--python`` names; ends the program with one line and 2 if there is none."""
+    """Return the ROS 2 that ``--python`` names; exits with code 2 and one line if there is none."""
     try:
         return real_ros(chosen, f"--python{side}")
     except NoRealRosError as error:
@@ -159,7 +159,7 @@ def chosen_ros(chosen: str | None, side: str = "") -> "RealRos":
 
 
 def real_ros(chosen: str | None, option: str = "python") -> "RealRos":
-    """The ROS 2 of a Python, None for cbtui's own; ``option`` is how one is named.
+    """Return the ROS 2 of a Python, None for cbtui's own; ``option`` is the option that names a Python.
 
     Raises:
         NoRealRosError: there is none.
@@ -187,7 +187,7 @@ def real_ros(chosen: str | None, option: str = "python") -> "RealRos":
 
 
 def release_of(python: str) -> str | None:
-    """The release of the rclpy that a Python has, as ``--distro`` takes it; None if that is not known."""
+    """Return the release of a Python's rclpy in the form of ``--distro``; None if it is unknown."""
     import subprocess
 
     from sim.real.programs import unbootstrapped
@@ -223,7 +223,7 @@ sys.exit(find_spec("rclpy") is None)
 
 
 def _wheels_of(python: str) -> list[str] | None:
-    """The releases whose wheels of rclpy a Python has, none for a sourced ROS 2; None without any rclpy."""
+    """Return the releases of a Python's rclpy wheels, none for a sourced ROS 2; None without any rclpy."""
     import subprocess
 
     asked = subprocess.run([python, "-c", _WHEELS], check=False, capture_output=True, text=True)
@@ -231,7 +231,7 @@ def _wheels_of(python: str) -> list[str] | None:
 
 
 def seeded_changes_of(options: argparse.Namespace) -> "Changes":
-    """The changes that the options make, with what ``--seed``, ``--on`` and ``--traceback`` say."""
+    """Return the changes that the options make, with those of ``--seed``, ``--on`` and ``--traceback``."""
     from dataclasses import replace
 
     return replace(
@@ -240,7 +240,7 @@ def seeded_changes_of(options: argparse.Namespace) -> "Changes":
 
 
 def words(changes: "Changes") -> list[str]:
-    """The options as they stand on a command line, without a seed."""
+    """Return the changes as words of a command line, without a seed."""
     said = [] if changes.threads is None else ["--threads", str(changes.threads)]
     for place, wish in changes.groups.items():
         said += ["--group", f"{_spelt(place)}={wish}"]

@@ -1,4 +1,4 @@
-"""A parser of options whose complaints are one line, and go through ``cbtui.text.output``."""
+"""A parser of options whose error messages are one line, printed through ``cbtui.text.output``."""
 
 import argparse
 from collections.abc import Iterable
@@ -9,14 +9,14 @@ from cbtui.text.output import say, shown
 
 
 class CommandParser(argparse.ArgumentParser):
-    """A parser whose error messages are one line, with the nearest word that there is."""
+    """A parser whose error messages are one line, with the nearest valid word."""
 
     def error(self, message: str) -> NoReturn:
-        """Print what was wrong and where to read more, and exit with code 2."""
+        """Print the error and the command that shows the help, and exit with code 2."""
         self.exit(2, shown(f"{self.prog}: {message} (see {self.prog} --help)\n"))
 
     def parse_known_args(self, args: Any = None, namespace: Any = None) -> Any:
-        """Parse words all of which have to be known: a command's parser is given its words by this."""
+        """Parse words, none of which may be unknown: argparse calls this for the parser of a command."""
         found, unknown = super().parse_known_args(args, namespace)
         if unknown:
             near = _nearest(unknown[0].partition("=")[0], self._option_string_actions)
@@ -42,13 +42,13 @@ class CommandParser(argparse.ArgumentParser):
 
 
 def _can_be_opened(word: str) -> bool:
-    """Whether a word that stands in a command's place is a file or a lesson."""
+    """Whether a word in the place of a command is a file or a lesson."""
     from lessons.catalogue import lessons
 
     return is_file_name(word) or any(word == lesson.id for lesson in lessons())
 
 
 def _nearest(word: str, known: Iterable[str]) -> str:
-    from difflib import get_close_matches  # needed for a wrong word only
+    from difflib import get_close_matches  # only needed for a wrong word
 
     return "".join(f"; did you mean {near}?" for near in get_close_matches(word, list(known), 1, 0.7))

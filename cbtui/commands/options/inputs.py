@@ -61,7 +61,7 @@ def late(
     lines: Iterable[tuple[float, str]],
     typed: Iterable[tuple[float, str]] = (),
 ) -> str | None:
-    """Return a sentence on the first input that comes after a run's end, None if none does."""
+    """Return a sentence on the first input after a run's end, None if there is none."""
     moments = [("call", at) for at in calls] + [("line", at) for at, _ in lines]
     moments += [("key", at) for at, _ in typed]
     for what, at in moments:
@@ -71,7 +71,7 @@ def late(
 
 
 def words(calls: Iterable[float], lines: Iterable[tuple[float, str]]) -> list[str]:
-    """The options as they stand on a command line, in the order of time."""
+    """Return the inputs as words of a command line, in the order of time."""
     return [
         *(word for at in sorted(calls) for word in ("--call", f"{at:.12g}")),
         *(word for at, line in sorted(lines, key=itemgetter(0)) for word in ("--at", f"{at:.12g}", line)),

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def lesson_of(name: str) -> "Lesson":
-    """The lesson of that id; exits with code 2 and one line if there is none."""
+    """Return the lesson with that id; exits with code 2 and one line if there is none."""
     from lessons.catalogue import UnknownLesson, find
 
     try:
@@ -27,7 +27,7 @@ def lesson_of(name: str) -> "Lesson":
 
 
 def puzzle_of(name: str) -> "Puzzle | None":
-    """The puzzle of that id, if there is one."""
+    """Return the puzzle with that id, if there is one."""
     from lessons.puzzles import puzzles
 
     return next((puzzle for puzzle in puzzles() if puzzle.id == name), None)
@@ -59,7 +59,7 @@ class RunTargets(NamedTuple):
 
 
 def targets_of(targets: Sequence[str]) -> RunTargets:
-    """The lesson or the files of some targets; neither if there are no targets."""
+    """Return the lesson or the files of some targets; neither if there are no targets."""
     if not targets or is_file_name(targets[0]):
         return RunTargets(None, [file_of(name) for name in targets])
     if len(targets) > 1:
@@ -73,7 +73,7 @@ def is_file_name(target: str) -> bool:
 
 
 def file_of(name: str) -> Path:
-    """The program file of that name; exits with code 2 and one line if there is none."""
+    """Return the program file of that name; exits with code 2 and one line if there is none."""
     path = Path(name)
     try:
         mode = mode_of(path)
@@ -91,7 +91,7 @@ def file_of(name: str) -> Path:
 
 
 def folder_of(name: str) -> Path:
-    """The folder of that name; exits with code 2 and one line if there is none."""
+    """Return the folder of that name; exits with code 2 and one line if there is none."""
     path = Path(name)
     try:
         if not S_ISDIR(mode_of(path)):
@@ -102,7 +102,7 @@ def folder_of(name: str) -> Path:
 
 
 def same_file(one: Path, other: Path) -> bool:
-    """Tell whether two paths lead to the same file, which need not exist yet."""
+    """Tell whether two paths name the same file, which need not exist yet."""
     try:
         return one.samefile(other)
     except OSError:

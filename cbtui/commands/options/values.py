@@ -98,7 +98,7 @@ def shard(text: str) -> tuple[int, int]:
 
 
 def schedule(text: str) -> "Seed":
-    """Read what names a schedule: a seed, one behind a strategy's name (``pct:5``), or moves."""
+    """Read the name of a schedule: a seed, a strategy with a seed (``pct:5``), or moves."""
     from sim.clock.moves import moves_of
     from sim.clock.strategies import STRATEGIES
 
@@ -136,7 +136,7 @@ def whole_number(text: str, give: str = "one such as 17") -> int:
 
 
 def port(text: str) -> int:
-    """A port that a program may listen on."""
+    """Read a port that a program may listen on."""
     number = whole_number(text)
     if not 1024 <= number <= 65_525:
         raise argparse.ArgumentTypeError(f"{text} is not a port for a program: give one from 1024 to 65525")
@@ -144,7 +144,7 @@ def port(text: str) -> int:
 
 
 def process_or_address(text: str) -> int | tuple[str, int]:
-    """A process's number, or host and port."""
+    """Read a process's number, or host and port."""
     host, colon, number = text.rpartition(":")
     return (host, port(number)) if colon else whole_number(text)
 

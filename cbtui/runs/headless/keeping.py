@@ -87,9 +87,8 @@ class Keeper:
         self._monitor = FindingsMonitor(self._timeline)
 
     def _troubles(self, events: Sequence[AnyEvent]) -> Iterator[str]:
-        """The problems in these events that were not reported yet, as sentences."""
         yield from (event.reason for event in events if isinstance(event, ProcessEnded) and event.status)
-        if self._monitor.look_when_due():
+        if self._monitor.update_when_due():
             for each in self._monitor.findings:
                 key = each.finding.rule.id, each.finding.subject
                 if each.is_problem and each.finding.rule.id in _RECORDED_RULES and key not in self._known:

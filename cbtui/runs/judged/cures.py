@@ -63,12 +63,14 @@ def problem_of(found: Finding, timeline: Timeline) -> Problem:
     return found.rule.id, one, other
 
 
-def cures_of(told: Explanation, setup: RunSetup, before: Changes, timeline: Timeline) -> Iterator[Cure]:
+def cures_of(
+    explanation: Explanation, setup: RunSetup, before: Changes, timeline: Timeline
+) -> Iterator[Cure]:
     """Yield the remedies of an explanation that can be tried on a run of a set-up with changes.
 
     A program's own file may be edited, not a module that it imports.
     """
-    for remedy in told.remedies:
+    for remedy in explanation.remedies:
         changes, edited = _without_edit(remedy, before, timeline), ""
         if remedy.edit is not None:
             file = remedy.edit.file
@@ -116,7 +118,7 @@ def helps(problem: Problem, before: TriedRun, after: TriedRun) -> bool:
     )
 
 
-def tried(
+def try_run(
     setup: RunSetup, until: Nanoseconds, given_up: Event, note: Callable[[Nanoseconds], object] = lambda _: 0
 ) -> TriedRun:
     """Make a run and return its problems. ``note`` gets its progress in nanoseconds.

@@ -273,7 +273,6 @@ def _ends_differ(model: Timeline, real: Timeline) -> Iterator[Difference]:
 
 
 def _diagnoses_differ(model: Timeline, real: Timeline) -> Iterator[Difference]:
-    """Yield the problems of one run only."""
     found = [dict(_problems(timeline)) for timeline in (model, real)]
     for run, ours, theirs in zip(RUN_NAMES, found, found[::-1], strict=True):
         for key in ours.keys() - theirs.keys():
@@ -289,11 +288,11 @@ def _problems(timeline: Timeline) -> Iterator[tuple[tuple[str, str], tuple[Nanos
     for each in diagnose(timeline):
         entity = timeline.entities.get(each.subject)
         if each.rule.weigh(each, timeline) is Weight.PROBLEM and not (entity and is_models(entity)):
-            told = each.rule.explain(each, timeline)
+            explanation = each.rule.explain(each, timeline)
             culprit = timeline.entities.get(each.culprit) if each.rule.by_culprit else None
             named = culprit or entity
-            name = "" if named is None or told.for_ever else named.spoken_name
-            yield (each.rule.id, name), (each.at, told.what)
+            name = "" if named is None or explanation.for_ever else named.spoken_name
+            yield (each.rule.id, name), (each.at, explanation.what)
 
 
 def _orders_differ(model: Timeline, real: Timeline, window: Window) -> Iterator[Difference]:

@@ -78,7 +78,7 @@ def merged(paths: Sequence[Path]) -> Shard:
     first, *others = (_read(path) for path in paths)
     whole = first
     for path, other in zip(paths[1:], others, strict=True):
-        if _of_all_parts(other) != _of_all_parts(first):
+        if _common_fields(other) != _common_fields(first):
             raise BadShardError(f"{path} is of another exploration than {paths[0]}: other options or program")
         whole = msgspec.structs.replace(
             whole,
@@ -93,7 +93,7 @@ def merged(paths: Sequence[Path]) -> Shard:
     return msgspec.structs.replace(whole, results={seed: whole.results[seed] for seed in seeds})
 
 
-def _of_all_parts(shard: Shard) -> Shard:
+def _common_fields(shard: Shard) -> Shard:
     """The fields that are equal in all parts of an exploration."""
     return msgspec.structs.replace(shard, results={}, done=(), preempted={}, branches={})
 

@@ -84,12 +84,14 @@ class FindingsMonitor:
         found = self.stuck_at(timeline.end)
         if found is None or timeline.end - found.at < _STANDS_STILL:
             return None
-        stuck = {each for told in self.findings if told.explanation.for_ever for each in told.finding.stuck}
+        stuck = {
+            entity for each in self.findings if each.explanation.for_ever for entity in each.finding.stuck
+        }
         since = Window(timeline.end - _STANDS_STILL, timeline.end + 1)
         ran = (span.entity for thread in timeline.threads for span in timeline.spans_on(thread, since))
         return found.at if stuck.issuperset(ran) else None
 
-    def look_when_due(self) -> bool:
+    def update_when_due(self) -> bool:
         """Update if it is time, the run has grown much, or its engine has reported something.
 
         Returns whether the findings changed.
@@ -99,10 +101,10 @@ class FindingsMonitor:
         if self._clock() < self._due and grown < _MAX_GROWTH and not has_news:
             return False
         before = self.findings
-        self.look()
+        self.update()
         return self.findings != before
 
-    def look(self) -> None:
+    def update(self) -> None:
         """Update the findings now."""
         began = self._clock()
         timeline = self._timeline

@@ -187,7 +187,6 @@ def _window(timeline: "Timeline", wish: ExportRequest) -> "Window":
 
 
 def _picture_beside(wish: ExportRequest) -> str | None:
-    """The picture's path relative to the report."""
     picture = wish.outputs.get("svg")
     if picture is None:
         return None

@@ -66,7 +66,7 @@ class ChoosingConsole(LinearConsole[LiveRun]):
 
     def turn(self) -> None:
         """Print the news and the current question."""
-        self._choices.look()
+        self._choices.check_goal()
         super().turn()
         choices, sheet = self._choices, self._choices.sheet
         is_under_way = choices.question is None and self.runs.run.alive and not choices.reached

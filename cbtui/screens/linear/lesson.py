@@ -69,8 +69,8 @@ class LessonConsole(LinearConsole[LiveRun]):
         refusals = Refusals(self, lesson, self._is_available)
         of_time = TimeRefusals(self, runs, self._is_available)
         set_up = AskedSetUp(self, runs, self.restarts, subject)
-        told = (self._comparison, self._cures, self._teaching, exercise, set_up, recording, refusals, of_time)
-        more = filter(None, told)
+        own = (self._comparison, self._cures, self._teaching, exercise, set_up, recording, refusals, of_time)
+        more = filter(None, own)
         on = {} if following is None else {"next_lesson": partial(self.open_lesson, following)}
         self.add_parts(*keys, *more, **on)
         runs.begin(1.0)
@@ -206,9 +206,9 @@ class CuresByNumber(ScreenPart):
         self.host.telling.action_diagnoses()
         trial = self.trials.begin()
         cures = {
-            str(place): (told, found)
-            for place, told in enumerate(self.host.runs.findings.findings, 1)
-            if (found := trial.cures(told))
+            str(place): (found, offered)
+            for place, found in enumerate(self.host.runs.findings.findings, 1)
+            if (offered := trial.cures(found))
         }
         if cures:
             self.host.ask(self._choose(trial, cures))
@@ -221,23 +221,23 @@ class CuresByNumber(ScreenPart):
         if line not in cures:
             self.host.tell(f"The cure of {line} cannot be tried." if line else None)
             return
-        told, offered = cures[line]
+        found, offered = cures[line]
         for cure in offered:
             self.host.tell(f"It is tried in the background: {cure.words}.")
 
         def try_out() -> None:
-            helpful = next((each for each in offered if trial.helps(told, each, self.given_up)), None)
+            helpful = next((each for each in offered if trial.helps(found, each, self.given_up)), None)
             self.host.post(
-                lambda: self._take_verdict(told, helpful) if self.host.runs.number == number else None
+                lambda: self._take_verdict(found, helpful) if self.host.runs.number == number else None
             )
 
         Thread(target=try_out, name="cure", daemon=True).start()
 
-    def _take_verdict(self, told: ExplainedFinding, helpful: Cure | None) -> None:
+    def _take_verdict(self, found: ExplainedFinding, helpful: Cure | None) -> None:
         if helpful is None:
-            self.host.tell(f"Tried, it does not help: {told.name} stays, or something worse comes.")
+            self.host.tell(f"Tried, it does not help: {found.name} stays, or something worse comes.")
             return
-        self.host.tell(f"Tried, it helps: {helpful.words}. With that there is no {told.name} any more.")
+        self.host.tell(f"Tried, it helps: {helpful.words}. With that there is no {found.name} any more.")
         for line in helpful.diff.splitlines():
             self.host.tell(line)
         asyncio.run(self.trials.run(helpful))

@@ -98,17 +98,17 @@ class Narrative:
     def _log(self, now: Nanoseconds) -> Iterator[str]:
         new = self._timeline.logs[self._lines : self._timeline.logs_until(now)]
         self._lines += len(new)
-        told = 0
+        shown = 0
         for event in new:
             is_loud = isinstance(event, Logged) and event.severity in _LOUD
             text = _NUMBER.sub("", event.text)
             if self.whole or is_loud or text not in self._known:
                 self._known.add(text)
-                told += 1
-                if self.whole or is_loud or told <= _MOST_LINES:
+                shown += 1
+                if self.whole or is_loud or shown <= _MOST_LINES:
                     yield f"log: {line_of(event)}"
-        if told > _MOST_LINES and not self.whole:
-            yield f"log: {counted(told - _MOST_LINES, 'more line')}"
+        if shown > _MOST_LINES and not self.whole:
+            yield f"log: {counted(shown - _MOST_LINES, 'more line')}"
 
     def _problems_among(self, findings: Sequence[ExplainedFinding], now: Nanoseconds) -> Iterator[str]:
         for each in findings:

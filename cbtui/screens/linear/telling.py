@@ -54,7 +54,7 @@ class Telling(ScreenPart):
     def tell_news(self) -> None:
         """Print the news at the current moment; nothing before a moment that the user went to is news."""
         findings, now = self.runs.findings, self.navigation.now
-        findings.look_when_due()
+        findings.update_when_due()
         if self._moved_to is not None:
             self.narrative.news(min(self._moved_to, now), findings.findings)
             self._moved_to = None
@@ -94,7 +94,6 @@ class Telling(ScreenPart):
             self.action_narrate()
 
     def _move(self) -> None:
-        """Print the moment that the user went to."""
         timeline, now = self.runs.timeline, self.navigation.now
         self._steps, self._moved_to = False, now
         if self.navigation.playhead.at is None:
@@ -121,7 +120,7 @@ class Telling(ScreenPart):
     def action_diagnoses(self) -> None:
         """Print the findings with their numbers."""
         findings = self.runs.findings
-        findings.look()
+        findings.update()
         for number, each in enumerate(findings.findings, start=1):
             what = "problem" if each.is_problem else "remark"
             self.host.tell(f"{number}: {what}: {told_finding(each)}")

@@ -28,7 +28,7 @@ class BarSelection(ScreenPart):
         return next((lanes for lanes in every if lanes.selection is not None), every[0])
 
     def select(self, selection: Selection | None, on: Lanes | None = None) -> None:
-        """Select something on some lanes, on the first where none are given; None selects nothing."""
+        """Select something on the lanes ``on``, by default on the first ones; None selects nothing."""
         every = self.lanes()
         for lanes in every:
             lanes.selection = selection if lanes is (on or every[0]) else None

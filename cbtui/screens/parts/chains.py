@@ -14,12 +14,12 @@ from sim.trace.figures.chains import Chain, ChainError, ChainRun, chain
 from sim.trace.model import Nanoseconds
 
 _GROWTH = 1.1
-"""How much longer a run has to be for its chain to be followed anew."""
+"""Factor by which a run has to grow until its chain is followed again."""
 
 
 @dataclass
 class ChainPath(ScreenPart):
-    """Follows the chain of some ``names``, none for nothing."""
+    """Follows the chain of ``names``; without names it follows nothing."""
 
     host: ScreenHost
     runs: RunController[ShownRun]
@@ -30,7 +30,7 @@ class ChainPath(ScreenPart):
     _until: Nanoseconds = 0
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer it once something was sent."""
+        """Offer it once a message was sent."""
         return bool(self.runs.timeline.names_sent)
 
     def action_chain(self) -> None:
@@ -47,14 +47,14 @@ class ChainPath(ScreenPart):
 
     @property
     def here(self) -> ChainRun | None:
-        """The latest run of the chain that began before the moment on screen, and came to its end."""
+        """The latest complete run of the chain that began before the moment on screen."""
         now = self.navigation.now
         begun = [each for each in self._chain.whole_chain if each.input.at <= now] if self._chain else []
         return max(begun, key=lambda each: each.input.at, default=None)
 
     @property
     def sentence(self) -> str:
-        """How long that run took, and where; "" if there is none."""
+        """How long that run of the chain took, and where; "" if there is none."""
         here, found = self.here, self._chain
         if here is None or found is None or found.critical is None:
             return ""
@@ -65,7 +65,7 @@ class ChainPath(ScreenPart):
 
     @property
     def _chain(self) -> Chain | None:
-        """The chain of the run so far; of a run that goes on it is followed anew now and then."""
+        """The chain of the run so far; it is followed again when the run has grown by ``_GROWTH``."""
         timeline = self.runs.timeline
         if not self.names:
             return None
@@ -76,5 +76,5 @@ class ChainPath(ScreenPart):
             try:
                 self._found = chain(timeline, self.names)
             except ChainError:
-                self._found = None  # of another run, or not sent yet
+                self._found = None  # the names are of another run, or nothing was sent yet
         return self._found

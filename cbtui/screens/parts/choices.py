@@ -1,4 +1,4 @@
-"""Choosing which thread goes on: the choices of a run so far, and what is to be brought about by them."""
+"""Choosing which thread goes on: the choices of a run so far, and the goal of a puzzle."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
@@ -23,9 +23,9 @@ from sim.trace.events import AnyEvent, ChoiceAsked
 
 @dataclass
 class Choices(ScreenPart):
-    """Asks at each choice of a run; what is taken back is left out of another run from its beginning.
+    """Asks at each choice of a run; taking choices back restarts the run without them.
 
-    ``puzzle`` None: nothing particular is to be brought about.
+    ``puzzle`` None: there is no goal.
     """
 
     host: RunHost
@@ -33,31 +33,31 @@ class Choices(ScreenPart):
     restarts: Restarts
     puzzle: Puzzle | None = None
     question: ChoiceAsked | None = None
-    """What is asked now."""
+    """The current question."""
     made: dict[int, int] = field(default_factory=dict)
-    """What was chosen so far, by the numbers of the choices."""
+    """The chosen options by the numbers of the choices."""
     solution: Moves | None = None
     """The moves of the solution while it is shown."""
     reached: bool = False
     """Whether the goal was reached."""
 
     def set_up(self, subject: ShownProgram, speed: float | None) -> RunSetup:
-        """The set-up of a run that asks behind what was chosen so far."""
+        """Return the set-up of a run that repeats the choices so far, and asks from then on."""
         return msgspec.structs.replace(subject.set_up(None, speed), seed=moves_text(self.made, "ask"))
 
     @property
     def moves(self) -> int:
-        """How often another thread was chosen than the one that goes on by itself."""
+        """The number of choices of another thread than the one that would go on by itself."""
         return sum(option > 0 for option in self.made.values())
 
     def take(self, events: Iterable[AnyEvent]) -> None:
-        """Note what the run asks."""
+        """Receive events of the run, questions among them."""
         for event in events:
             if isinstance(event, ChoiceAsked):
                 self.question = event
 
-    def look(self) -> None:
-        """Look whether the goal is reached; then the run goes on to its end without asking."""
+    def check_goal(self) -> None:
+        """Check whether the goal is reached; then the run goes on to its end without questions."""
         puzzle, run = self.puzzle, self.runs.run
         if puzzle is None or self.reached or (self.question is None and run.alive):
             return
@@ -70,7 +70,7 @@ class Choices(ScreenPart):
 
     @property
     def sheet(self) -> ChoiceSheet:
-        """What the pane shows."""
+        """Return the content of the pane."""
         puzzle, question = self.puzzle, self.question
         task = "" if puzzle is None else puzzle.task
         if self.reached and puzzle is not None:
@@ -94,7 +94,7 @@ class Choices(ScreenPart):
         return ChoiceSheet(f"✗ Not this time. {undo} takes a choice back, {again} begins again.", task)
 
     def choose(self, option: int) -> None:
-        """Have an option go on."""
+        """Let the thread of an option go on."""
         if self.question is not None:
             self.made[self.question.number] = option
             self.question = None
@@ -102,7 +102,7 @@ class Choices(ScreenPart):
             self.host.redraw()
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer what there is to take back, to let go on, to solve."""
+        """Offer to take back, resume and solve where that is possible."""
         match action:
             case "undo":
                 return bool(self.made)
@@ -125,7 +125,7 @@ class Choices(ScreenPart):
         await self._run_again()
 
     async def action_solution(self) -> None:
-        """Begin again, and show at each choice what the solution takes."""
+        """Begin again, and show the solution's option at each choice."""
         if self.puzzle is not None:
             self.host.console.progress.look_at_solution(self.puzzle.id)
             self.made.clear()
@@ -137,7 +137,7 @@ class Choices(ScreenPart):
         await self.restarts.start(Changes(), speed=None)
 
     def action_resume(self) -> None:
-        """Let the run go on without asking."""
+        """Let the run go on without questions."""
         self.question = None
         self.runs.run.resume()
         self.host.redraw()
@@ -149,15 +149,15 @@ class Choices(ScreenPart):
 
 
 def solution_of(puzzle: Puzzle) -> Moves:
-    """The moves of a puzzle's solution."""
+    """Return the moves of a puzzle's solution."""
     return moves_of(puzzle.solution)
 
 
 @dataclass
 class TakeOver(ScreenPart):
-    """Makes the learner the scheduler of a run, from the moment on at which it is paused.
+    """Lets the learner schedule the threads of a run from the moment at which it is paused.
 
-    The run is made again up to there, which leaves the one on screen as it is. ``open_choosing`` opens it.
+    Another run is made up to that moment, and ``open_choosing`` opens it; the run on screen stays as it is.
     """
 
     host: RunHost

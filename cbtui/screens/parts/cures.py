@@ -1,4 +1,4 @@
-"""Trying the cure of a finding: out of sight whether it helps, and then beside the run as it was."""
+"""Tries cures of findings in the background, and compares a run with a cure to the one before."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from itertools import chain, takewhile
 from threading import Event
 
 from cbtui.engines.follow import GivenUpError
-from cbtui.runs.judged.cures import Cure, TriedRun, cures_of, helps, problem_of, tried, with_inputs
+from cbtui.runs.judged.cures import Cure, TriedRun, cures_of, helps, problem_of, try_run, with_inputs
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
@@ -25,7 +25,7 @@ _LONGEST: Nanoseconds = 40 * SECOND
 _ONLY_ON_MODEL = "Cures are tried only on the model: open the program without --on ros2 to have them tried."
 
 Note = Callable[[int], object]
-"""Takes how many per cent of a trial are done."""
+"""Receives the progress of a trial in per cent."""
 
 
 @dataclass
@@ -38,7 +38,7 @@ class CureTrials:
     compare: Callable[[], None]
 
     def begin(self) -> "CureTrial":
-        """Return a trial of cures of the run on screen, as far as it has come."""
+        """Return a trial of cures for the run on screen so far."""
         until = min(max(self.runs.timeline.end, _SHORTEST), _LONGEST)
         return CureTrial(self, self.runs.run, self.restarts.changes, until)
 
@@ -60,39 +60,41 @@ class CureTrial:
 
     @property
     def refusal(self) -> str:
-        """Why no cure of this run is tried, as a sentence; "" if cures are."""
+        """A sentence on why no cure of this run is tried; "" if cures are tried."""
         return _ONLY_ON_MODEL if self.run.setup.real is not None else ""
 
-    def cures(self, told: ExplainedFinding) -> tuple[Cure, ...]:
-        """What can be tried out of sight of a finding's cure: on the model, and for problems."""
-        if not told.is_problem or self.refusal:
+    def cures(self, found: ExplainedFinding) -> tuple[Cure, ...]:
+        """Return the cures of a finding that can be tried: only for problems, and only on the model."""
+        if not found.is_problem or self.refusal:
             return ()
-        return tuple(cures_of(told.explanation, self.run.setup, self.changes, self.run.timeline))
+        return tuple(cures_of(found.explanation, self.run.setup, self.changes, self.run.timeline))
 
-    def helps(self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Note = lambda _: None) -> bool:
-        """Whether a cure ends a finding; takes the time of two runs, for further cures of one.
+    def helps(
+        self, found: ExplainedFinding, cure: Cure, given_up: Event, note: Note = lambda _: None
+    ) -> bool:
+        """Tell whether a cure ends a finding; takes two runs, for further cures of a finding one.
 
-        A run that does not come to what was found, in time, tells nothing; then no cure is tried on it.
+        If the run without a cure does not show the finding in time, no cure is tried.
         """
-        problem = problem_of(told.finding, self.run.timeline)
+        problem = problem_of(found.finding, self.run.timeline)
         try:
             if self._before is None:
-                self._before = self._tried(self.changes, given_up, lambda done: note(done // 2))
+                self._before = self._try(self.changes, given_up, lambda done: note(done // 2))
             if problem not in self._before.problems:
                 return False
-            after = self._tried(cure.changes, given_up, lambda done: note(50 + done // 2))
+            after = self._try(cure.changes, given_up, lambda done: note(50 + done // 2))
             return helps(problem, self._before, after)
         except (GivenUpError, OSError, UnknownInputError):
             return False
 
     @cached_property
     def inputs(self) -> tuple[TimedInput, ...]:
-        """What was told to the run from outside."""
+        """Return the inputs that the run got from outside."""
         events = chain.from_iterable(self.run.material().batches())
         given = inputs_of(takewhile(lambda event: event.t <= self.until, events))
         return tuple(each for each in given if not stops(each))
 
-    def _tried(self, changes: Changes, given_up: Event, note: Note) -> TriedRun:
+    def _try(self, changes: Changes, given_up: Event, note: Note) -> TriedRun:
         setup = changes.applied(self.trials.subject.set_up(changes.threads, None))
         until = self.until
-        return tried(with_inputs(setup, self.inputs), until, given_up, lambda end: note(100 * end // until))
+        return try_run(with_inputs(setup, self.inputs), until, given_up, lambda end: note(100 * end // until))

@@ -56,7 +56,7 @@ class PaceKeys(ScreenPart):
 
 @dataclass
 class TimeRefusals(ScreenPart):
-    """Tells why what needs a time of its own is not to be had on real ROS 2.
+    """Explains why actions that need a time of their own do not exist on real ROS 2.
 
     ``is_available`` tells whether an action does something.
     """
@@ -71,7 +71,7 @@ class TimeRefusals(ScreenPart):
         return self.runs.run.setup.real is not None and not self.is_available(str(wanted))
 
     def action_no_time(self, _wanted: str) -> None:
-        """Tell it."""
+        """Show the explanation."""
         self.host.tell(_GOES_ON)
 
 
@@ -79,7 +79,7 @@ class Finisher(Protocol):
     """Finishes files in the background."""
 
     def finish(self, finish: FinishFile | None) -> None:
-        """Finish a file, and report that; does nothing for None."""
+        """Finish a file and report the result; does nothing for None."""
 
 
 @dataclass
@@ -148,11 +148,11 @@ class TypingKeys(ScreenPart):
         return run.asked is not None
 
     def action_prompt(self) -> None:
-        """Let the person type a ros2 line."""
+        """Focus the prompt for ``ros2`` lines."""
         self.panes.show("shell")
         self.shell().focus_prompt()
 
     def action_type(self) -> None:
-        """Let the person type for the program that reads."""
+        """Focus the input of the program that reads."""
         self.panes.show("shell")
         self.shell().focus_keyboard()

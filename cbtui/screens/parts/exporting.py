@@ -41,7 +41,7 @@ class Exports(ScreenPart):
             return None
         return int(100 * export.share)
 
-    def look(self) -> None:
+    def show_progress(self) -> None:
         """Show the progress of an export."""
         if self._export is not None:
             if self._export.over:

@@ -15,7 +15,7 @@ FRAMES_A_SECOND = 15
 """About one for each step of a bar: a dot, half a column, is 60 ms in a window of ten seconds."""
 
 _SOONEST = 0.01
-"""Seconds from one frame with all panes to the next, if keys ask for it."""
+"""Least seconds between two frames with all panes that keys cause."""
 
 _LANES_A_PANE = 3
 """Lane frames per frame of the other panes: their words and figures are read slower than lanes move."""
@@ -91,7 +91,7 @@ class FrameSchedule:
 
 
 class FrameLoop:
-    """Draws the frames of a screen that shows ``runs``: ``draw`` draws what it is told.
+    """Draws the frames of a screen that shows ``runs``: ``draw`` draws a frame.
 
     While something ``holds`` the picture, no frame comes by itself.
     """
@@ -139,7 +139,7 @@ class FrameLoop:
     def _draw_if_due(self) -> None:
         if self._holds():
             return
-        if self._runs.findings.look_when_due():
+        if self._runs.findings.update_when_due():
             self.redraw()
         content = self._schedule.next()
         if content is not FrameContent.NOTHING:

@@ -1,4 +1,4 @@
-"""Jumping: a letter on each pane, lane, bar and row that can be picked."""
+"""Jumping: each pane, lane, bar and row that can be picked gets a letter."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -16,12 +16,12 @@ from cbtui.widgets.jump import Jumpable
 from cbtui.widgets.tabs import Tabs
 
 _LETTERS = "asdfghjklqwertyuiopzxcvbnm" + ascii_uppercase
-"""The easiest keys first; what comes after the last one has no letter."""
+"""The easiest keys first; further places have no letter."""
 
 
 @dataclass
 class Jumps(ScreenPart):
-    """Shows a letter on everything that can be gone to, and goes where the person types."""
+    """Shows letters on the places of the screen, and goes to the place of the typed letter."""
 
     screen: Screen[None]
     host: WindowHost

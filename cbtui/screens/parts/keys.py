@@ -1,4 +1,4 @@
-"""The keys that a run's screen offers, by the state of its parts and by the focus, and why others are not."""
+"""The keys that a run's screen offers, by the state of its parts and the focus; and why others do nothing."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -100,12 +100,12 @@ _REFUSED = {
     "no_solution": "solution",
     "no_comparison": "compare",
 }
-"""The actions that tell why another one is not available."""
+"""The actions that explain why another one is not available."""
 
 
 @dataclass
 class Refusals(ScreenPart):
-    """Tells why an action does nothing; ``is_available`` tells whether it does something.
+    """Explains why an action does nothing; ``is_available`` tells whether it does something.
 
     ``lesson`` is None for a program that belongs to no lesson.
     """
@@ -119,11 +119,11 @@ class Refusals(ScreenPart):
         return not self.is_available(_REFUSED[action])
 
     def action_no_exercise(self) -> None:
-        """Tell that there is no exercise."""
+        """Say that there is no exercise."""
         self._tell("")
 
     def action_no_hint(self) -> None:
-        """Tell when there are hints, or that all were taken."""
+        """Say when there are hints, or that all were taken."""
         self._tell(
             f"There are no more hints; {self.host.key('solution')} shows the solution."
             if self.is_available("solution")
@@ -131,18 +131,18 @@ class Refusals(ScreenPart):
         )
 
     def action_no_solution(self) -> None:
-        """Tell when there is a solution."""
+        """Say when there is a solution."""
         self._tell("The solution can be looked at once the lesson is explained: press {key}.")
 
     def action_no_comparison(self) -> None:
-        """Tell what makes a second run."""
+        """Say what makes a second run."""
         threads, group, set_up = map(self.host.key, ("threads", "group", "set_up"))
         self.host.tell(
             f"There is only one run so far: change something with {threads}, {group} or {set_up} first."
         )
 
     def _tell(self, with_exercise: str) -> None:
-        """Tell that there is no exercise, or something about the one there is."""
+        """Say that there is no exercise, or the sentence about the existing one."""
         if self.lesson is None:
             self.host.tell("Your own program has no exercise; lessons of the menu have.")
         elif self.lesson.exercise is None:

@@ -1,4 +1,4 @@
-"""The narrator of a screen: shown while the person wants it, and from the first step on."""
+"""The narrator of a screen: shown on request, and from the first step on."""
 
 from dataclasses import dataclass
 
@@ -11,7 +11,7 @@ from cbtui.widgets.narrator import Narrator
 
 @dataclass
 class Narration(ScreenPart):
-    """Has a narrator tell what the executor decided; the screen lays its ``widget`` out."""
+    """Shows what the executor decided; the screen lays out its ``widget``."""
 
     host: ScreenHost
     runs: RunController[ShownRun]

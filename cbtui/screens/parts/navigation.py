@@ -16,7 +16,7 @@ class TimeNavigation(ScreenPart):
     """Holds and moves the playhead of one or more runs.
 
     ``end`` returns the last moment, ``moved`` is called after each move, and ``live`` returns the run whose
-    engine can run on, if there is one; ``stepped`` is called when an event is gone to.
+    engine can run on, if there is one; ``stepped`` is called when the cursor goes to an event.
     """
 
     timelines: Callable[[], Sequence[Timeline]]
@@ -83,7 +83,7 @@ class TimeNavigation(ScreenPart):
             self._go_to_event(1)
 
     def action_step_back(self) -> None:
-        """Look at the event before."""
+        """Go to the previous event."""
         self.stepped()
         self._go_to_event(-1)
 
@@ -92,7 +92,7 @@ class TimeNavigation(ScreenPart):
 
     @property
     def run_that_goes_on(self) -> LiveRun | None:
-        """The run whose engine can still run on, and pause at a moment, if there is one."""
+        """Return the run whose engine can go on and pause at a moment, if there is one."""
         run = self.live()
         return run if run is not None and run.can_be_paced else None
 

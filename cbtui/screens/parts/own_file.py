@@ -44,11 +44,11 @@ class OwnFile(ScreenPart):
     panes: PaneLayout
     file: Path
     content: bytes | None = None
-    """What the run on screen was made from."""
+    """The content that the run on screen was made from."""
     _shown: object = field(default=None, init=False)
 
     def begin(self) -> None:
-        """Note that a run of the file as it is now begins."""
+        """Note that a run of the current file begins."""
         self.content = content_of(self.file)
 
     def page(self) -> Mapping[str, str]:
@@ -58,9 +58,9 @@ class OwnFile(ScreenPart):
         return page_of_program(self.file.name, run.setup.clock, run.timeline, problems)
 
     def update_guide(self) -> None:
-        """Write the guide anew if something was found; what only lasts longer is nothing new.
+        """Write the guide again if the findings changed in more than their durations.
 
-        A program that fails before it has a callback, as by an error of syntax, is shown at its line.
+        A program that fails before it has a callback, for example with a syntax error, is shown at its line.
         """
         timeline, findings = self.runs.timeline, self.runs.findings.findings
         what = (timeline.nodes, timeline.executors, timeline.groups, timeline.entities, timeline.names_sent)
@@ -83,6 +83,6 @@ class OwnFile(ScreenPart):
             await self.run_anew(self.file.name)
 
     async def run_anew(self, saved: str) -> None:
-        """Run the file again, since one of the program's files was saved; no longer an edited copy of it."""
+        """Run the file again after one of the program's files was saved; replaces an edited copy."""
         self.host.tell(f"{saved} was saved: it runs again.")
         await self.restarts.again(replace(self.restarts.changes, texts={}))

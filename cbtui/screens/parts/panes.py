@@ -99,7 +99,7 @@ class PaneLayout(ScreenPart):
         self.host.redraw()
 
     def set_robot(self, is_here: bool) -> None:
-        """Have room for the robot's pane, or give it to the code."""
+        """Show the robot's pane, or give its room to the code."""
         if is_here is self.screen.has_class(WITHOUT_ROBOT):
             self.screen.set_class(not is_here, WITHOUT_ROBOT)
             self.screen.query_one(Tabs).empty = "" if is_here else "robot"
@@ -153,4 +153,4 @@ class PaneLayout(ScreenPart):
             await edit(self.screen.app, *code.place)
         except EditorError as error:
             self.host.tell(str(error))
-        code.look_at_disk()
+        code.check_disk()

@@ -33,14 +33,14 @@ class WindowHost(Protocol):
 
 
 class DrawnHost(Protocol):
-    """What shows a run, and can be told that something has changed."""
+    """Something that shows a run and can be redrawn."""
 
     def redraw(self) -> None:
         """Draw everything soon."""
 
 
 class RunHost(DrawnHost, Protocol):
-    """What shows a run, and notifies the person."""
+    """Something that shows a run and sentences about it."""
 
     @property
     def console(self) -> LessonOpener:

@@ -1,4 +1,4 @@
-"""Previews of lessons: one is run out of sight when a person stays on it, and drawn."""
+"""Previews of lessons: a lesson that stays highlighted is run in the background and drawn."""
 
 import asyncio
 from collections.abc import Callable
@@ -28,7 +28,7 @@ _EXIT_TIMEOUT = 1.0
 class Previews:
     """Runs each lesson once for its preview: one engine at a time, only while the screen is active.
 
-    ``wanted`` is the lesson to be drawn now, None if there is none.
+    ``wanted`` returns the lesson to draw now, None if there is none.
     """
 
     class Drawn(Message):
@@ -47,7 +47,7 @@ class Previews:
         wanted: Callable[[], Lesson | None],
     ) -> None:
         self.subjects: dict[str, PreviewPicture | str] = {}
-        """What is shown of lessons, by their ids: a picture, or a sentence on why there is none."""
+        """The previews by lesson ids: a picture, or a sentence on why there is none."""
         self._screen = screen
         self._open_session = open_session
         self._charset = charset
@@ -55,8 +55,8 @@ class Previews:
         self._run: PreviewRun | None = None
         self._delay: Timer | None = None
 
-    def look(self) -> None:
-        """Run the wanted lesson soon, unless another one is wanted before."""
+    def schedule(self) -> None:
+        """Run the wanted lesson after ``HOVER_DELAY``, unless another one is wanted by then."""
         self._stop_delay()
         lesson = self._wanted()
         if lesson is not None and lesson.id not in self.subjects:
@@ -75,7 +75,7 @@ class Previews:
             await asyncio.to_thread(self._run.wait, _EXIT_TIMEOUT)
 
     def take(self, drawn: Drawn) -> None:
-        """Note what was drawn, and go on with the lesson that is wanted now."""
+        """Store a preview, and continue with the lesson that is wanted now."""
         self._run = None
         if drawn.subject is not None:
             self.subjects[drawn.lesson.id] = drawn.subject
@@ -107,9 +107,8 @@ class Previews:
         except GivenUpError:
             subject = None
         else:
-            from cbtui.widgets.lanes import (
-                LanePainter,  # on this thread: the screen must not stand still for it
-            )
+            # imported on this thread, as the screen must not wait for it
+            from cbtui.widgets.lanes import LanePainter
 
             key = keymap_of(self._screen.app).sign(Scope.LESSON, "call_service", self._charset)
             subject = PreviewPicture(timeline, LanePainter(self._charset, lesson.service.name, call_key=key))

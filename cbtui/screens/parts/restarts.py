@@ -48,7 +48,7 @@ class Restarts(ScreenPart):
     before: ComparedSide | None = None
     """The previous run."""
     inputs: tuple[TimedInput, ...] = ()
-    """What the run on screen is given besides what its program asks for."""
+    """The inputs of the run on screen."""
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer ``run_again`` at any time if the run has no robot to reset; ``start_over`` always works."""
@@ -63,7 +63,7 @@ class Restarts(ScreenPart):
         return msgspec.structs.replace(setup, keyboard=Keyboard.LIVE, inputs=self.inputs)
 
     async def again(self, changes: Changes, inputs: tuple[TimedInput, ...] = ()) -> None:
-        """Run again with these changes, and with inputs of a run before."""
+        """Run again with these changes, and with the inputs of an earlier run."""
         await self.start(changes, self.speed(), inputs)
 
     async def start(self, changes: Changes, speed: float | None, inputs: tuple[TimedInput, ...] = ()) -> None:
@@ -102,7 +102,7 @@ class SetUpKeys(ScreenPart):
     subject: ShownProgram
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer to change what the run starts itself, and does not only watch."""
+        """Offer changes of a run that starts its programs itself; others are only watched."""
         return bool(self.runs.run.setup.programs)
 
     def action_threads(self) -> None:

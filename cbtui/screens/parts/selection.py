@@ -12,7 +12,7 @@ from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
-from cbtui.screens.windows.diagnoses import Chosen, DiagnosesScreen, Way
+from cbtui.screens.windows.diagnoses import ChosenStep, DiagnosesScreen, NextStep
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.lanes import Lanes, Selection
 from cbtui.widgets.lanes.details import position_in
@@ -104,9 +104,9 @@ class LaneSelection(ScreenPart):
             code.show_line(position.file, position.line)
 
     def action_diagnoses(self) -> None:
-        """List what the rules found."""
+        """List the findings."""
         monitor = self.runs.findings
-        monitor.look()
+        monitor.update()
         self.host.redraw()
         trial = None if self.cures is None else self.cures.begin()
         screen = DiagnosesScreen(
@@ -114,28 +114,28 @@ class LaneSelection(ScreenPart):
         )
         self.host.ask(screen, self._take)
 
-    def _lesson_on(self, told: ExplainedFinding) -> Lesson | None:
+    def _lesson_on(self, found: ExplainedFinding) -> Lesson | None:
         """The lesson that shows a problem, unless it is on screen."""
-        lesson = lesson_on(told.finding.rule.kind(told.finding)) if told.is_problem else None
+        lesson = lesson_on(found.finding.rule.kind(found.finding)) if found.is_problem else None
         return None if lesson == self.lesson else lesson
 
-    async def _take(self, chosen: Chosen | None) -> None:
+    async def _take(self, chosen: ChosenStep | None) -> None:
         if chosen is None:
             return
         lesson = self._lesson_on(chosen.finding)
         if chosen.cure is not None and self.cures is not None:
             await self.cures.run(chosen.cure)
-        elif chosen.way is Way.LESSON and lesson is not None:
+        elif chosen.step is NextStep.LESSON and lesson is not None:
             self.host.console.open_lesson(lesson)
         else:
             self._go_to_finding(chosen.finding)
 
-    def _go_to_finding(self, told: ExplainedFinding) -> None:
+    def _go_to_finding(self, found: ExplainedFinding) -> None:
         """Go to a finding's moment and code, and select its callback's lane."""
-        if told.at is not None:
-            self.navigation.seek(told.at)
-        self.bars.select(self._last_of(told.finding.subject))
-        place = told.explanation.place
+        if found.at is not None:
+            self.navigation.seek(found.at)
+        self.bars.select(self._last_of(found.finding.subject))
+        place = found.explanation.place
         if place is not None:
             self.panes.show("code")
             self.screen.query_one(CodeView).show_line(place.file, place.first_line)

@@ -1,4 +1,4 @@
-"""The sizes of lanes and panes, which a person changes and finds again."""
+"""The sizes of lanes and panes, which the user changes and which are remembered."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -85,7 +85,7 @@ class SizeKeys(ScreenPart):
         self.panes.pane("code").styles.column_span = _ACROSS - sizes.left - right
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer what changes something."""
+        """Offer the keys that have an effect."""
         if action == "usual_sizes":
             return self._sizes != PaneSizes(self.screen.layout_now)
         return self._changed(action) is not None
@@ -125,7 +125,7 @@ class SizeKeys(ScreenPart):
         return self.panes.current == "robot" or not self.screen.has_class(WITHOUT_ROBOT)
 
     def _changed(self, action: str) -> PaneSizes | None:
-        """The sizes after one of the keys; None if there is no room, or nothing to size."""
+        """The sizes after one of the keys; None if there is no room, or no pane that can be sized."""
         sizes, step = self._sizes, 1 if action in ("wider", "taller") else -1
         lanes, current, is_grid = (
             self.screen.query_one(Lanes),

@@ -36,15 +36,15 @@ class ExerciseHelp(ScreenPart):
     @property
     def _exercise(self) -> Exercise | None:
         """The exercise, if it is unlocked."""
-        standing = self.learning.standing
-        return self.learning.lesson.exercise if standing is not None and self.is_readable(standing) else None
+        state = self.learning.state
+        return self.learning.lesson.exercise if state is not None and self.is_readable(state) else None
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer the hints that are left, and the solution always."""
-        exercise, standing = self._exercise, self.learning.standing
-        if exercise is None or standing is None:
+        exercise, state = self._exercise, self.learning.state
+        if exercise is None or state is None:
             return False
-        return action == "solution" or (standing.progress.hints < len(exercise.hints) and not self.is_done())
+        return action == "solution" or (state.progress.hints < len(exercise.hints) and not self.is_done())
 
     async def action_hint(self) -> None:
         """Take the next hint: it is added to the page, and shown as a notification if the page is hidden."""
@@ -61,7 +61,7 @@ class ExerciseHelp(ScreenPart):
         else:
             title = f"Hint {number} of {len(exercise.hints)}"
             hint = with_keys_in_force(exercise.hints[number - 1], keymap_of(self.screen.app))
-            self.screen.app.clear_notifications()  # the hints before are on the page
+            self.screen.app.clear_notifications()  # earlier hints are on the page
             self.screen.notify(hint, title=title, timeout=_READING, markup=False)
 
     def action_solution(self) -> None:

@@ -72,4 +72,4 @@ class Judging:
     def sheet_at(self, end: Nanoseconds, words: ExerciseTexts) -> ChecksSheet:
         """Return the results to show of a run that has come to ``end``."""
         sheet = self.sheet or words.running(end)
-        return replace(sheet, news=words.gone, standing=CheckStatus.FAILED) if self.is_gone else sheet
+        return replace(sheet, news=words.gone, status=CheckStatus.FAILED) if self.is_gone else sheet

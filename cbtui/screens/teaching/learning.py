@@ -35,7 +35,7 @@ class Learning:
     panes: PaneLayout
     lesson: Lesson
     write: Callable[[PageState], Page]
-    standing: PageState | None = None
+    state: PageState | None = None
     """The state of the page; None until it is shown first."""
     outcome_pending: bool = False
     """Whether the run that shows the true answers is in progress."""
@@ -61,14 +61,14 @@ class Learning:
 
     def page(self) -> Page:
         """Return the unlocked page."""
-        if self.standing is None:
-            self.standing = PageState(self.progress)
-        return self.write(self.standing)
+        if self.state is None:
+            self.state = PageState(self.progress)
+        return self.write(self.state)
 
     def update_state(self, outcome: PredictionOutcome | None = None) -> None:
         """Update the state of the page; a known outcome is kept until the next run for one."""
-        known = None if self.standing is None or self.outcome_pending else self.standing.outcome
-        self.standing = PageState(self.progress, outcome or known, self.outcome_pending)
+        known = None if self.state is None or self.outcome_pending else self.state.outcome
+        self.state = PageState(self.progress, outcome or known, self.outcome_pending)
         self.host.redraw()
 
     async def update_page(self, outcome: PredictionOutcome | None = None) -> None:

@@ -1,4 +1,4 @@
-"""The predictions of a lesson: asked before its run, compared with a separate run, and explained."""
+"""The predictions of a lesson: asked before its run, then compared with a separate run and explained."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
@@ -46,7 +46,7 @@ class Predictions(ScreenPart):
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer open predictions, and the explanation once the page is shown."""
-        return self.learning.standing is not None and (action == "explain" or self.can_predict)
+        return self.learning.state is not None and (action == "explain" or self.can_predict)
 
     @property
     def can_predict(self) -> bool:
@@ -75,10 +75,10 @@ class Predictions(ScreenPart):
         if self.can_predict:
             self.ask(go_on)
 
-    def look_whether_watched(self) -> None:
+    def check_whether_watched(self) -> None:
         """Unlock the explanation once enough of the run was watched."""
         learning = self.learning
-        if learning.standing is None or learning.standing.progress.seen or not self._was_watched():
+        if learning.state is None or learning.state.progress.seen or not self._was_watched():
             return
         learning.store.see(self.learning.lesson.id)
         self._find_out()
@@ -113,7 +113,7 @@ class Predictions(ScreenPart):
 
     async def _explain(self) -> None:
         learning = self.learning
-        if learning.standing is None:
+        if learning.state is None:
             return
         learning.store.explain(self.learning.lesson.id)
         self._wanted = True
@@ -123,10 +123,10 @@ class Predictions(ScreenPart):
 
     def _find_out(self) -> None:
         """Start the separate run of the lesson, unless its outcome is known."""
-        standing = self.learning.standing
+        state = self.learning.state
         if not self.learning.lesson.predictions or self._run is not None:
             return
-        if standing is not None and standing.outcome is not None and standing.outcome.trouble is None:
+        if state is not None and state.outcome is not None and state.outcome.trouble is None:
             return
         real = self.runs.run.setup.real
         run = self._run = OutcomeRun(self.learning.lesson, self.host.console.observe, real)

@@ -13,8 +13,8 @@ from cbtui.screens.windows.typed_line import LineScreen, TypedLine
 class ChainScreen(LineScreen[tuple[str, ...]]):
     """Its result are the names of the chain, none to follow nothing; None if it was closed.
 
-    ``names`` are those that were followed before, ``known`` all that something was sent on. ``follow`` raises
-    ``ChainError`` if a chain cannot be followed.
+    ``names`` is the chain followed so far, ``known`` all topics and services on which something was sent.
+    ``follow`` raises ``ChainError`` if a chain cannot be followed.
     """
 
     SCOPE = Scope.CHAIN

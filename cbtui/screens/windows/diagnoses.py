@@ -29,31 +29,31 @@ from sim.quantities.plural import counted
 
 _ALL_IS_WELL = "✓ Nothing has gone wrong so far: no rule has found a problem."
 _TIME = 10
-_LOOK = 0.5
-"""Seconds between two looks for what is new."""
+_CHECK_INTERVAL = 0.5
+"""Seconds between two checks for new findings."""
 
 
 class Trial(Protocol):
-    """Tries cures out of sight."""
+    """Tries cures in the background."""
 
     @property
     def refusal(self) -> str:
-        """Why no cure of this run is tried, as a sentence; "" if cures are."""
+        """A sentence on why no cure of this run is tried; "" if cures are tried."""
 
-    def cures(self, told: ExplainedFinding) -> Sequence[Cure]:
-        """What can be tried of a finding's cure."""
+    def cures(self, found: ExplainedFinding) -> Sequence[Cure]:
+        """Return the cures of a finding that can be tried."""
 
     def helps(
-        self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
+        self, found: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
     ) -> bool:
-        """Whether a cure ends a finding, when it is tried: called on a thread of its own.
+        """Try a cure and tell whether it ends a finding; called on a worker thread.
 
-        It comes back soon once ``given_up`` is set, and tells ``note`` how many per cent are done.
+        Returns soon after ``given_up`` is set. ``note`` gets the progress in per cent.
         """
 
 
-class Way(Enum):
-    """What can be done about a finding."""
+class NextStep(Enum):
+    """A way to continue from a finding."""
 
     LOOK = auto()
     CURE = auto()
@@ -61,28 +61,28 @@ class Way(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Chosen:
-    """What is to be done about a finding: go to it, try a cure, or open the lesson that shows it."""
+class ChosenStep:
+    """The chosen step: go to a finding, try a cure, or open the lesson that shows the problem."""
 
     finding: ExplainedFinding
-    way: Way = Way.LOOK
+    step: NextStep = NextStep.LOOK
     cure: Cure | None = None
 
 
 @dataclass(frozen=True)
-class _ListedWay:
-    """A row of the list: a finding by its place, a way on from it, and the cure that this way is."""
+class _Row:
+    """A row of the list: the index of a finding, a step, and the cure if the step is to try one."""
 
     place: int
-    way: Way
+    step: NextStep
     cure: Cure | None = None
 
 
-class DiagnosesScreen(WindowScreen[Chosen]):
-    """Lists findings, problems first, each with the ways on; its result is the chosen one, None to stay.
+class DiagnosesScreen(WindowScreen[ChosenStep]):
+    """Lists findings with their steps, problems first; the result is the chosen step, None to stay.
 
     A cure is offered once ``trial`` has found that it helps. ``lesson_on`` returns the lesson that shows a
-    problem. ``latest`` is asked for what is found meanwhile: a new problem has all listed anew.
+    problem. ``latest`` returns the current findings: the list begins again when there is a new problem.
     """
 
     SCOPE = Scope.DIAGNOSES
@@ -109,38 +109,38 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         self._lessons = [self._lesson_on(each) for each in findings]
         cures = [() if trial is None else trial.cures(each) for each in findings]
         self._untried = [len(each) for each in cures]
-        """How many cures of each finding are not yet tried."""
+        """The number of untried cures of each finding."""
         self._cures = [(place, cure) for place, each in enumerate(cures) for cure in each]
         self._helpful: list[tuple[int, Cure]] = []
         self._percent: dict[int, int] = {}
-        """How much of the trial that goes on is done."""
-        self._rows = tuple(self._ways())
+        """The progress of the current trial, by the index of its finding."""
+        self._rows = tuple(self._list_rows())
         self._given_up.set()
         self._given_up = Event()
         self.heading = title_of(findings)
 
     def content(self) -> ComposeResult:
-        """Lay out the list, and what there is to say of the highlighted one."""
+        """Lay out the list, and the details of the highlighted row."""
         yield PlainOptionList(*self._options())
         with VerticalScroll(can_focus=False):
             yield Static(classes="told")
         yield Static(_ALL_IS_WELL, classes="well", markup=False)
 
     def on_mount(self) -> None:
-        """Highlight the worst, and look out for what is new."""
+        """Highlight the worst finding, and check for new ones regularly."""
         self._begin()
         if self._latest is not None:
-            self.set_interval(_LOOK, self._look_for_more)
+            self.set_interval(_CHECK_INTERVAL, self._check_for_new)
 
     def _begin(self) -> None:
         some = bool(self._findings)
-        listed, told = self.query_one(OptionList), self.query_one(VerticalScroll)
-        listed.display, told.display, self.query_one(".well").display = some, some, not some
+        listed, details = self.query_one(OptionList), self.query_one(VerticalScroll)
+        listed.display, details.display, self.query_one(".well").display = some, some, not some
         listed.highlighted = 0 if some else None
         if self._trial is not None:
             self.run_worker(partial(self._try_all, self._trial, self._given_up), thread=True)
 
-    def _look_for_more(self) -> None:
+    def _check_for_new(self) -> None:
         assert self._latest is not None
         findings = self._latest()
         if not _problems(findings) <= _problems(self._findings):
@@ -153,20 +153,20 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         """Stop trying cures."""
         self._given_up.set()
 
-    def _ways(self) -> Iterator[_ListedWay]:
+    def _list_rows(self) -> Iterator[_Row]:
         for place, lesson in enumerate(self._lessons):
-            yield _ListedWay(place, Way.LOOK)
-            yield from (_ListedWay(place, Way.CURE, cure) for about, cure in self._helpful if about == place)
+            yield _Row(place, NextStep.LOOK)
+            yield from (_Row(place, NextStep.CURE, cure) for about, cure in self._helpful if about == place)
             if lesson is not None and lesson not in self._lessons[:place]:
-                yield _ListedWay(place, Way.LESSON)
+                yield _Row(place, NextStep.LESSON)
 
     def _options(self) -> Iterator[Option]:
         for row in self._rows:
             lesson = self._lessons[row.place]
             if row.cure is not None:
-                yield Option(way_row(f"tried, it helps: {row.cure.words}", self._charset))
-            elif row.way is Way.LESSON and lesson is not None:
-                yield Option(way_row(f"lesson {lesson.number} shows this: {lesson.title}", self._charset))
+                yield Option(step_row(f"tried, it helps: {row.cure.words}", self._charset))
+            elif row.step is NextStep.LESSON and lesson is not None:
+                yield Option(step_row(f"lesson {lesson.number} shows this: {lesson.title}", self._charset))
             else:
                 yield Option(row_of(self._findings[row.place], self._charset))
 
@@ -190,7 +190,7 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         self._percent[place] = 0
         if helps:
             self._helpful.append((place, cure))
-        self._rows = tuple(self._ways())
+        self._rows = tuple(self._list_rows())
         self._show_options().highlighted = 0 if chosen is None else self._rows.index(chosen)
 
     def _show_options(self) -> OptionList:
@@ -200,14 +200,14 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         return listed
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer the ways on from the highlighted row."""
+        """Offer the steps of the highlighted row."""
         chosen = self._chosen
         match action:
             case "previous" | "next":
                 return len(self._rows) > 1
             case "go":
                 return chosen is not None and (
-                    chosen.way is not Way.LOOK or self._findings[chosen.place].leads_somewhere
+                    chosen.step is not NextStep.LOOK or self._findings[chosen.place].leads_somewhere
                 )
             case "try_cure":
                 return self._cure_at_hand is not None
@@ -224,18 +224,18 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         return next((cure for place, cure in self._helpful if place == chosen.place), None)
 
     def _tell_highlighted(self) -> None:
-        """Show what there is to say of the highlighted row."""
+        """Show the details of the highlighted row."""
         chosen = self._chosen
         if chosen is None:
             return
         if chosen.cure is not None:
-            told = cure_details(chosen.cure, self._charset)
+            details = cure_details(chosen.cure, self._charset)
         else:
-            told = details_of(self._findings[chosen.place], self._charset, self._about_trial(chosen.place))
-        self.query_one(".told", Static).update(told)
+            details = details_of(self._findings[chosen.place], self._charset, self._about_trial(chosen.place))
+        self.query_one(".told", Static).update(details)
 
     def _about_trial(self, place: int) -> str:
-        """What there is to say about trying the cure of a finding."""
+        """The sentence on the trial of a finding's cures; "" if there is none."""
         if left := self._untried[place]:
             of = sum(about == place for about, _ in self._cures)
             percent = (100 * (of - left) + self._percent.get(place, 0)) // of
@@ -252,15 +252,15 @@ class DiagnosesScreen(WindowScreen[Chosen]):
         """Go where the highlighted row leads."""
         if self._chosen is not None:
             row = self._chosen
-            self.dismiss(Chosen(self._findings[row.place], row.way, row.cure))
+            self.dismiss(ChosenStep(self._findings[row.place], row.step, row.cure))
 
     def action_try_cure(self) -> None:
-        """Run again with the cure of what is highlighted."""
+        """Run again with the highlighted cure."""
         if self._chosen is not None:
-            self.dismiss(Chosen(self._findings[self._chosen.place], Way.CURE, self._cure_at_hand))
+            self.dismiss(ChosenStep(self._findings[self._chosen.place], NextStep.CURE, self._cure_at_hand))
 
     @property
-    def _chosen(self) -> _ListedWay | None:
+    def _chosen(self) -> _Row | None:
         highlighted = next((listed.highlighted for listed in self.query(OptionList)), None)
         return None if highlighted is None else self._rows[highlighted]
 
@@ -286,13 +286,13 @@ def row_of(each: ExplainedFinding, charset: Charset) -> Content:
     )
 
 
-def way_row(text: str, charset: Charset) -> Content:
-    """Return the line of a way on from a finding, below it: ``→ try it: …``."""
+def step_row(text: str, charset: Charset) -> Content:
+    """Return the line of a step below its finding: ``→ try it: …``."""
     return Content.assemble((" " * (_TIME + 4) + "→ ", "bold"), (visible(text, charset), "$text-success"))
 
 
 def details_of(each: ExplainedFinding, charset: Charset, about_trial: str = "") -> Content:
-    """Return what happened, why, what to do, what there is to say about trying that, and where and when."""
+    """Return what happened, why, what to do, the sentence on trials of cures, and where and when."""
     explained = each.explanation
     parts = [
         (f"{visible(explained.what, charset)}.", "bold"),
@@ -312,16 +312,16 @@ _DIFF_STYLES = {"+": "$text-success", "-": "$text-error", "@": "$text-muted"}
 
 def cure_details(cure: Cure, charset: Charset) -> Content:
     """Return what a cure changes: in words, and the lines that it edits, as far left as they can be."""
-    told = [(visible(sentence(cure.words), charset), "bold")]
+    parts = [(visible(sentence(cure.words), charset), "bold")]
     if cure.diff:
-        told.append(("\nYour file stays as it is; a copy is run, with these lines:", ""))
+        parts.append(("\nYour file stays as it is; a copy is run, with these lines:", ""))
     edited = [(line[0], line[1:]) for line in cure.diff.splitlines()[2:]]
     code = [text for sign, text in edited if sign != "@" and text.strip()]
     indent = min((len(text) - len(text.lstrip()) for text in code), default=0)
     for sign, text in edited:
         shown = visible(sign + (text if sign == "@" else text[indent:]), charset)
-        told.append((f"\n{shown}", _DIFF_STYLES.get(sign, "")))
-    return Content.assemble(*told)
+        parts.append((f"\n{shown}", _DIFF_STYLES.get(sign, "")))
+    return Content.assemble(*parts)
 
 
 def problems_note(findings: Sequence[ExplainedFinding], keymap: Keymap, charset: Charset) -> str:

@@ -39,7 +39,7 @@ class JumpScreen(ModalScreen[str], SizedScreen[str]):
         yield KeyBar(self.SCOPE, self._charset)
 
     def on_key(self, event: Key) -> None:
-        """Go where the letter is."""
+        """Go to the place of the letter."""
         event.stop()
         self.dismiss(event.character if event.character in self._places else None)
 

@@ -22,15 +22,15 @@ class PredictionExit(Enum):
     """How the window was left."""
 
     ON = auto()
-    """To the run, with or without answers."""
+    """Continue to the run, with or without answers."""
     BACK = auto()
 
 
 class PredictionScreen(WindowScreen[PredictionExit]):
     """Asks the questions that are not answered yet, one after the other.
 
-    ``answered`` is how many are; ``answer`` takes the place of a question and that of its answer at the
-    moment the person confirms it. Nothing is highlighted at first: an answer is not to be given by mistake.
+    ``answered`` is the number of answered questions; ``answer`` gets the indices of a question and its answer
+    when the user confirms it. Nothing is highlighted at first, so that no answer is given by mistake.
     """
 
     SCOPE = Scope.PREDICTION

@@ -29,7 +29,7 @@ class SettingRow(Protocol):
 
     @property
     def what(self) -> str:
-        """The callback, or what else it is about."""
+        """The callback, or another subject."""
 
     @property
     def aspect(self) -> str:

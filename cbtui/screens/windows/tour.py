@@ -61,7 +61,7 @@ class TourScreen(WindowScreen[None]):
         self._left = SECONDS_A_STOP
 
     def content(self) -> ComposeResult:
-        """Lay out the text and how much of the stop is left."""
+        """Lay out the text, and the time that is left for the stop."""
         yield Prose("")
         yield Static(id="left")
 

@@ -1,4 +1,4 @@
-"""Windows that ask for a line of text, and say why they refuse one."""
+"""Windows that ask for a line of text, and explain a refusal."""
 
 from collections.abc import Callable
 

@@ -85,5 +85,5 @@ class ExerciseTexts:
 
 
 def _row(judged: JudgedCheck) -> CheckRow:
-    standing = CheckStatus.PASSED if judged.verdict.passed else CheckStatus.FAILED
-    return CheckRow(judged.check.asks, standing, verdict_line(judged), judged.verdict.at)
+    status = CheckStatus.PASSED if judged.verdict.passed else CheckStatus.FAILED
+    return CheckRow(judged.check.asks, status, verdict_line(judged), judged.verdict.at)

@@ -49,7 +49,7 @@ class CheckRow:
     """A check: its question, status, expectation and observation, and the moment to look at."""
 
     asks: str
-    standing: CheckStatus = CheckStatus.OPEN
+    status: CheckStatus = CheckStatus.OPEN
     detail: str = ""
     at: Nanoseconds | None = None
 
@@ -63,7 +63,7 @@ class ChecksSheet:
     """
 
     news: str
-    standing: CheckStatus
+    status: CheckStatus
     rows: tuple[CheckRow, ...]
     faults: tuple[str, ...] = ()
     asks: str = ""
@@ -71,18 +71,18 @@ class ChecksSheet:
     @property
     def note(self) -> str:
         """The number of passed checks in brief; "" if none was judged."""
-        judged = any(row.standing is not CheckStatus.OPEN for row in self.rows)
-        return f"{self.standing.sign} {self._passed} of {len(self.rows)} pass" if judged else ""
+        judged = any(row.status is not CheckStatus.OPEN for row in self.rows)
+        return f"{self.status.sign} {self._passed} of {len(self.rows)} pass" if judged else ""
 
     @property
     def count(self) -> str:
         """The number of passed checks: ``2/5``; ``✓`` if the exercise is done."""
-        is_done = self.standing is CheckStatus.PASSED
-        return self.standing.sign if is_done else f"{self._passed}/{len(self.rows)}"
+        is_done = self.status is CheckStatus.PASSED
+        return self.status.sign if is_done else f"{self._passed}/{len(self.rows)}"
 
     @property
     def _passed(self) -> int:
-        return sum(row.standing is CheckStatus.PASSED for row in self.rows)
+        return sum(row.status is CheckStatus.PASSED for row in self.rows)
 
 
 class ChecksLine(NamedTuple):
@@ -98,9 +98,9 @@ def lines_of(sheet: ChecksSheet, width: int) -> list[ChecksLine]:
 
 
 def _lines(sheet: ChecksSheet, width: int) -> Iterator[ChecksLine]:
-    yield from _signed(sheet.standing, sheet.news, ChecksStyle.TITLE, width)
+    yield from _signed(sheet.status, sheet.news, ChecksStyle.TITLE, width)
     for place, row in enumerate(sheet.rows):
-        for line in _signed(row.standing, row.asks, ChecksStyle.ASKS, width):
+        for line in _signed(row.status, row.asks, ChecksStyle.ASKS, width):
             yield line._replace(row=place)
         for text in lines_of_text(row.detail, width - _INDENT):
             yield ChecksLine(((f"{' ' * _INDENT}{text}", ChecksStyle.DETAIL),), place)
@@ -117,8 +117,8 @@ def _titled(title: str) -> Iterator[ChecksLine]:
     yield ChecksLine(((title, ChecksStyle.TITLE),))
 
 
-def _signed(standing: CheckStatus, text: str, kind: ChecksStyle, width: int) -> Iterator[ChecksLine]:
+def _signed(status: CheckStatus, text: str, kind: ChecksStyle, width: int) -> Iterator[ChecksLine]:
     first, *others = lines_of_text(text, width - _INDENT) or [""]
-    yield ChecksLine(((f"{standing.sign} ", standing.kind), (first, kind)))
+    yield ChecksLine(((f"{status.sign} ", status.kind), (first, kind)))
     for other in others:
         yield ChecksLine(((" " * _INDENT, kind), (other, kind)))

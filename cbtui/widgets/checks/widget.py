@@ -46,7 +46,7 @@ class ChecksView(InkedView):
         before, self._sheet = self._sheet, sheet
         self.note = sheet.note
         self._break_lines()
-        if [row.standing for row in before.rows] != [row.standing for row in sheet.rows]:
+        if [row.status for row in before.rows] != [row.status for row in sheet.rows]:
             self._pick_what_fails()
         self.refresh()
 
@@ -60,7 +60,7 @@ class ChecksView(InkedView):
         self.virtual_size = Size(width, len(self._lines))
 
     def _pick_what_fails(self) -> None:
-        failing = (place for place, row in enumerate(self._sheet.rows) if row.standing is CheckStatus.FAILED)
+        failing = (place for place, row in enumerate(self._sheet.rows) if row.status is CheckStatus.FAILED)
         self.picked = next(failing, None)
         self.scroll_to(y=0, animate=False, immediate=True, force=True)
         if self.picked is not None:

@@ -1,4 +1,4 @@
-"""The content of the pane that asks which thread goes on, in words."""
+"""The texts of the pane that asks which thread goes on."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from sim.trace.timeline import Timeline
 
 
 class ChoiceOption(NamedTuple):
-    """A thread that may go on, and the line in front of which it stands; 0 outside of the program."""
+    """A thread that may go on, and its next line; 0 outside of the program."""
 
     text: str
     file: str = ""
@@ -22,7 +22,7 @@ class ChoiceOption(NamedTuple):
 class ChoiceSheet:
     """The content of the pane: the question or the result, and the goal.
 
-    ``kept`` says why the others may not go on, ``advised`` is the option that a solution takes.
+    ``kept`` says why the other threads may not go on, ``advised`` is the index of the solution's option.
     """
 
     news: str

@@ -20,7 +20,7 @@ class ChoiceOptions(OptionList, inherit_bindings=False):
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.CHOICE)]
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer what needs a thread only if there is one; numbers are never those of panes here."""
+        """Offer choosing only if there is a thread; numbers do not switch panes here."""
         if action in ("cursor_up", "cursor_down", "take"):
             return self.option_count > 0
         return super().check_action(action, parameters)

@@ -50,9 +50,9 @@ class CallbackMark:
 
 @dataclass(frozen=True, slots=True)
 class LineMark:
-    """A line at which a callback is: what it does there, from the longest text to the shortest.
+    """A line at which a callback is, with texts on its activity there, the longest first.
 
-    A line that has called on has no text. ``number`` is that of the callback's group. A ``fault`` is what
+    A line that called another one has no text. ``number`` is that of the callback's group. A ``fault``
     ended the program.
     """
 

@@ -164,7 +164,7 @@ class CodeView(InkedView):
         self._marks, self._lines, self._long = {}, {}, set()
         self._open(self._files.of(str(self._file.path.absolute())) or self._files.main)
 
-    def look_at_disk(self, entities: Iterable[EntityInfo] = ()) -> None:
+    def check_disk(self, entities: Iterable[EntityInfo] = ()) -> None:
         """Check whether the files have changed on disk, those of ``entities`` among them."""
         for entity in entities:
             self._files.of(entity.file)
@@ -197,12 +197,10 @@ class CodeView(InkedView):
 
     @property
     def _marked(self) -> list[CallbackMark]:
-        """The callbacks of the file that is shown."""
         return self._marks.get(self._file, [])
 
     @property
     def _here(self) -> LineMarks:
-        """The lines of the file at which callbacks are."""
         return self._lines.get(self._file, {})
 
     # the picked line
@@ -229,11 +227,11 @@ class CodeView(InkedView):
         self._pick_beside(1)
 
     def action_sideways_left(self) -> None:
-        """Show what stands further to the left."""
+        """Scroll left."""
         self.scroll_relative(x=-_SIDEWAYS, animate=False, force=True)
 
     def action_sideways_right(self) -> None:
-        """Show what stands further to the right."""
+        """Scroll right."""
         self.scroll_relative(x=_SIDEWAYS, animate=False, force=True)
 
     def action_pick_callback(self) -> None:

@@ -105,7 +105,6 @@ class BeltPainter:
         return min(_MOST_BOXES, max(belt.entity.depth, 0) or _MOST_BOXES)
 
     def _track(self, belt: Belt, line: int, at: int, box: Ink) -> None:
-        """Draw the belt from ``at`` to the door."""
         self._canvas.fill(at, self._door, line, self._glyphs.belt, FAINT)
         if belt.tick is not None:
             self._tick(belt, line, at, box)

@@ -7,7 +7,7 @@ from cbtui.text.cells import CellRow, fit
 from cbtui.widgets.factory.glyphs import FACTORY_GLYPHS, FactoryGlyphs
 
 PLAIN = Ink(Role.TEXT, 0)
-"""Not the ink of blanks, so that a run of text begins at its first word."""
+"""Ink of text; blanks have none, so that a run of text begins at its first word."""
 FAINT = Ink(Role.FAINT)
 STRONG = Ink(Role.STRONG)
 WARN = Ink(Role.WARN)

@@ -33,7 +33,7 @@ class FigureGlyphs:
 
 @dataclass(frozen=True, slots=True)
 class FactoryGlyphs:
-    """One charset's signs. Seats are pairs: what stands left and right of the worker."""
+    """One charset's signs. Seats are pairs of signs left and right of the worker."""
 
     busy: str
     idle: str

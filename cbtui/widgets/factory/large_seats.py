@@ -1,4 +1,4 @@
-"""Draws seats and workers three rows high, for a picture that a class can see from its seats."""
+"""Draws seats and workers three rows high, for a picture that a whole class can see."""
 
 from cbtui.looks.theme import Ink
 from cbtui.text.callback_names import short_name

@@ -139,7 +139,7 @@ class SeatPainter:
         self._canvas.put(at, line, left, self._line_ink)
         self._canvas.put(at + 2, line, right, self._line_ink)
 
-    # what it consists of
+    # parts of a seat
 
     def _walker(self, worker: FactoryWorker, line: int) -> None:
         """Draw a worker between the area and the yard."""

@@ -29,17 +29,17 @@ class FactoryView(PaintedWidget):
     ring: reactive[tuple[str, ...]] = painted(())
     """Who waits for whom in the deadlock of the moment: ``tick``, ``/add``, ``group A``, ``tick``."""
     note: var[str] = var("")
-    """That there is a deadlock, for the title."""
+    """The title's note on a deadlock."""
     charset: reactive[Charset] = painted(Charset.BRAILLE)
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the factory."""
         painter = FactoryPainter(self.charset)
         ring = f"deadlock: {' → '.join(self.ring)}" if self.ring else ""
-        told = lines_of_text(ring, max(1, size.width - 1), self.charset)[: size.height // 2]
-        height = size.height - len(told)
+        lines = lines_of_text(ring, max(1, size.width - 1), self.charset)[: size.height // 2]
+        height = size.height - len(lines)
         rows = painter.paint(self.timeline, self.now, size.width, height, self.glance)
-        return [*rows, *([TextRun(fit(f" {line}", size.width, self.charset), WARN)] for line in told)]
+        return [*rows, *([TextRun(fit(f" {line}", size.width, self.charset), WARN)] for line in lines)]
 
     def show(self, timeline: Timeline, now: Nanoseconds, speed: float, ring: tuple[str, ...] = ()) -> None:
         """Show a moment of a run that goes at ``speed`` times real time, and the deadlock in it."""

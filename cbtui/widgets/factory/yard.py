@@ -1,4 +1,4 @@
-"""Draws the yard, in which every worker has a place for while it is idle."""
+"""Draws the yard, in which every idle worker has its place."""
 
 from collections.abc import Sequence
 

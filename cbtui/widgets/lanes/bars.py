@@ -1,4 +1,4 @@
-"""What lanes look like between label and status: bars, lines, hatching and the words on them."""
+"""Draws lanes between label and status: bars, lines, hatching and their words."""
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ class BarPainter:
             self._failure(row, stretch)
 
     def inside(self, row: CellRow, positions: Sequence[LaneColumn[Position] | None]) -> None:
-        """Draw what a thread's calls do at their lines, where nothing is drawn yet."""
+        """Draw the lines of code at which a thread's calls are, in free columns."""
         for stretch in stretches(positions):
             if stretch.is_short:
                 continue
@@ -65,7 +65,7 @@ class BarPainter:
             self._words(row, *_longest_part(free), texts)
 
     def nested(self, row: CellRow, calls: Sequence[tuple[int, int, Span]]) -> None:
-        """Draw calls inside other ones, each from a column to the one before another."""
+        """Draw calls inside other calls, each from its first column to before its ``after``."""
         for first, after, span in calls:
             number = self._number(span.entity)
             row.fill(first, after, self.glyphs.left[8], Ink(Role.BAR, number))
@@ -154,9 +154,9 @@ class BarPainter:
         entity: EntityInfo,
         marks: Collection[int] = (),
     ) -> None:
-        """Draw when a callback runs: a mark for a short call, a line with its thread for a long one.
+        """Draw the calls of a callback: a mark for a short call, a line with its thread for a long one.
 
-        No words stand in the columns of ``marks``, which are drawn over them.
+        The columns of ``marks`` stay free of words, as the marks are drawn later.
         """
         number = self._number(entity.id)
         for stretch in stretches(columns):
@@ -173,7 +173,7 @@ class BarPainter:
             self._failure(row, stretch)
 
     def late(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], entity: EntityInfo) -> None:
-        """Write beside a timer's late calls that they were late, where nothing else is drawn."""
+        """Write beside a timer's late calls that they were late, in free columns."""
         for stretch in stretches(columns) if entity.kind is EntityKind.TIMER else ():
             if is_late(stretch.top, entity):
                 self._late(row, stretch)
@@ -185,7 +185,7 @@ class BarPainter:
         calls: Sequence[LaneColumn[Span] | None],
         marks: Collection[int] = (),
     ) -> None:
-        """Draw when a callback waits: hatching, and the reason in words, ``marks`` as for ``calls``."""
+        """Draw the waits of a callback: hatching, and the reason in words; ``marks`` as for ``calls``."""
         for stretch in stretches(columns):
             number = self._number(stretch.top.entity)
             hatch = self.glyphs.hatch[stretch.top.reason]
@@ -198,7 +198,7 @@ class BarPainter:
             self._words(row, first, after, self._reasons(stretch.top))
 
     def _reasons(self, wait: Wait) -> tuple[str, ...]:
-        """Return ways to say why a callback waits, from the fullest to the shortest."""
+        """Return texts on why a callback waits, the fullest first."""
         took = self._took(wait)
         verb = "waits" if wait.end is None or wait.end > self.told else "waited"
         reasons = self._words_of(wait)
@@ -206,7 +206,7 @@ class BarPainter:
         return (*full, f"{took}: {reasons[-1]}", *reasons, f"{verb} {took}", took)
 
     def _took(self, interval: Interval) -> str:
-        """Return how long an interval has lasted at the moment told; its full length if it begins later."""
+        """Return how long an interval has lasted at ``told``; its full length if it begins later."""
         end = self.timeline.end if interval.end is None else interval.end
         if interval.start <= self.told:
             end = min(end, self.told)

@@ -1,4 +1,4 @@
-"""What is known of a timeline's lanes from earlier pictures: aggregates of the past, and painted rows."""
+"""The cache of a timeline's lanes: aggregates of the past, and painted rows."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field

@@ -41,7 +41,7 @@ class Interval(Protocol):
 
     @property
     def entity(self) -> EntityId:
-        """Whose it is."""
+        """The entity that it belongs to."""
 
 
 _Key: TypeAlias = tuple[Nanoseconds, EntityId]
@@ -87,7 +87,7 @@ class MergedColumns(NamedTuple, Generic[I]):
 
 
 class IntervalBudget:
-    """The number of intervals that may be examined for one picture; the next picture goes on from there."""
+    """The number of intervals that may be examined for one picture; the next picture continues from there."""
 
     def __init__(self, looks: float = inf) -> None:
         self._left = looks

@@ -1,4 +1,4 @@
-"""What stands at the left of each lane: names, and the letters and textures of groups."""
+"""The labels at the left of lanes: names, and the letters and textures of groups."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class LaneLabels:
     numbers: Mapping[GroupId, int]
 
     def of(self, lane: Lane) -> list[TextRun]:
-        """Return a lane's label, the last run of which may have to be cut."""
+        """Return a lane's label; its last run may have to be cut."""
         ellipsis = self.glyphs.ellipsis
         match lane:
             case ThreadLane(thread):

@@ -212,7 +212,7 @@ class _LaneFrame:
         return row.runs()
 
     def _steps(self, lane: Lane) -> list[tuple[int, ChainStep]]:
-        """The steps of the path on a lane that took time, each with its number among those of all lanes."""
+        """The steps of the path on a lane that took time, each with its number on the whole path."""
         if not isinstance(lane, MemberLane | SoleLane):
             return []
         shown = self._scale.window
@@ -224,9 +224,9 @@ class _LaneFrame:
         ]
 
     def inside(self, lane: ThreadLane, rows: int) -> list[list[TextRun]]:
-        """Paint what the calls of a thread do at their lines, and the calls inside them, in one row or two.
+        """Paint the lines at which the calls of a thread are, and the calls inside them, in one row or two.
 
-        While the run is followed that is painted once a column: it is read slower than bars move.
+        While the run is followed this is painted once a column: it is read more slowly than bars move.
         """
         key = (self._scale, self._scale.column_of(self._edge), rows) if self._now >= self._edge else None
         kept_key, painted = self._cache.inside.get(lane, (None, []))
@@ -241,7 +241,7 @@ class _LaneFrame:
         rows = [CellRow(self._layout.columns, self._charset) for _ in range(count)]
         columns = self._cache.columns(self._timeline.positions_on, lane.thread.id)
         calls = self._summed(self._cache.spans(lane), unseen)
-        if not unseen:  # the first rows go first
+        if not unseen:  # the first rows are dropped first
             nested = [each for stretch in _several(calls) for each in self._nested(lane.thread, *stretch)]
             self._bars.nested(rows[-1], nested)
             self._bars.inside(rows[0], self._summed(columns, unseen))

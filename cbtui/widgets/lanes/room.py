@@ -1,4 +1,4 @@
-"""How many rows a picture of lanes is worth, and how those that are spare are shared out."""
+"""The number of rows that lanes can use, and the distribution of spare rows."""
 
 from collections.abc import Sequence
 
@@ -29,14 +29,14 @@ def wanted_rows(
 
 
 def _rows_inside(lane: Lane, timeline: Timeline) -> int:
-    """How many rows more a lane is worth: one for what its calls do, one for the calls inside them."""
+    """The further rows that a lane can use: one for the lines of its calls, one for the calls inside them."""
     if not isinstance(lane, ThreadLane):
         return 0
     return timeline.has_positions(lane.thread.id) + timeline.has_nested(lane.thread.id)
 
 
 def rows_granted(lanes: Sequence[Lane], timeline: Timeline, spare: int) -> dict[Lane, int]:
-    """Share out spare rows: to every thread what it is worth, or one, or none to any."""
+    """Distribute spare rows: to every thread all it can use, else one row, else none."""
     worth = {lane: _rows_inside(lane, timeline) for lane in lanes}
     shares = (worth, {lane: min(1, rows) for lane, rows in worth.items()})
     return next((share for share in shares if sum(share.values()) <= spare), dict.fromkeys(lanes, 0))

@@ -12,21 +12,21 @@ from sim.trace.timeline import Timeline
 
 @dataclass(frozen=True, slots=True)
 class ThreadLane:
-    """What a thread runs."""
+    """The calls on a thread."""
 
     thread: ThreadInfo
 
 
 @dataclass(frozen=True, slots=True)
 class GroupLane:
-    """Who holds a group of several callbacks; its members follow in lanes of their own."""
+    """The holders of a group of several callbacks; its members follow in lanes of their own."""
 
     group: GroupInfo
 
 
 @dataclass(frozen=True, slots=True)
 class MemberLane:
-    """When a callback of the group above runs, when it waits and why."""
+    """The calls and waits of a callback of the group above."""
 
     entity: EntityInfo
     group: GroupInfo

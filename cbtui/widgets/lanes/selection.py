@@ -9,7 +9,7 @@ from sim.trace.model import Call, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 Bar: TypeAlias = Span | Wait | Call
-"""What can be selected on lanes: a call of a callback, a wait for one, a call of a service."""
+"""Something that can be selected on lanes: a call or wait of a callback, or a service call."""
 
 _FIRST_REACH: Nanoseconds = 1_000_000
 _REACH_GROWS = 4
@@ -17,14 +17,14 @@ _REACH_GROWS = 4
 
 @dataclass(frozen=True, slots=True)
 class Selection:
-    """A lane, and a bar on it; None where nothing is."""
+    """A lane, and a bar on it; None if no bar is selected."""
 
     lane: Lane
     bar: Bar | None = None
 
     @property
     def entity(self) -> EntityId | None:
-        """The callback that it is about; None for a thread or a group without a bar."""
+        """The selected callback; None for a thread or a group without a bar."""
         match self:
             case Selection(bar=Span() | Wait() as bar):
                 return bar.entity
@@ -42,12 +42,12 @@ class Selection:
 
 
 def start_of(bar: Bar) -> Nanoseconds:
-    """When a bar begins; for a service call, when it was sent."""
+    """Return when a bar begins; a service call begins when it is sent."""
     return bar.sent if isinstance(bar, Call) else bar.start
 
 
 def end_of(bar: Bar) -> Nanoseconds | None:
-    """When a bar ends; for a service call, when its reply came. None while it is open."""
+    """Return when a bar ends, None while it is open; a service call ends when its reply comes."""
     return bar.replied if isinstance(bar, Call) else bar.end
 
 

@@ -15,7 +15,7 @@ MARK = Ink(Role.MARK)
 FAINT = Ink(Role.FAINT)
 
 _LATEST = 500
-"""Calls that a picture looks back on."""
+"""The most calls that a picture shows."""
 
 
 class LatestCalls:
@@ -44,7 +44,7 @@ class LatestCalls:
 
 
 def draw_calls(row: CellRow, calls: Sequence[Call], scale: TimeScale, now: Nanoseconds, key: str) -> None:
-    """Mark where calls left (▲, with the person's ``key`` if it was that) and where the reply came (◂)."""
+    """Mark when calls were sent (▲, with the user's ``key`` if it sent them) and answered (◂)."""
     glyphs = GLYPHS[row.charset]
     sent_at = {scale.column_of(call.sent) for call in calls}
     for call in calls:
@@ -65,7 +65,7 @@ def draw_calls(row: CellRow, calls: Sequence[Call], scale: TimeScale, now: Nanos
 
 
 def marked_columns(calls: Sequence[Call], scale: TimeScale, key: str) -> set[int]:
-    """Return the columns in which calls are marked, and those beside them, so that marks stand apart."""
+    """Return the columns of marked calls and the columns beside them, which keep marks apart."""
     marks: set[int] = set()
     for call in calls:
         sent, replied = scale.column_of(call.sent), scale.column_of(call.replied or call.sent)
@@ -74,6 +74,6 @@ def marked_columns(calls: Sequence[Call], scale: TimeScale, key: str) -> set[int
 
 
 def _written(call: Call, sent: int, key: str, sent_at: Collection[int]) -> str:
-    """The person's key if it made the call, unless the next call is marked where the key would stand."""
+    """The user's key if it made the call, unless the next call's mark needs the key's place."""
     taken = any(column in sent_at for column in range(sent + 1, sent + 1 + len(key)))
     return "" if call.caller or taken else key

@@ -35,9 +35,9 @@ _LEAST_LANES = 3
 """Rows of lanes below which the details of the selection are hidden."""
 
 _JUMP_WIDTH = 4
-"""Columns from which on a bar gets a letter to jump to it."""
+"""Least columns of a bar that gets a letter to jump to it."""
 _MOST_JUMPS = 100
-"""The latest bars of a lane that are examined for that."""
+"""The number of latest bars of a lane that can get a letter."""
 
 _A_FRAME = 1 / 30
 """Seconds between two frames while the lanes fill."""
@@ -49,9 +49,9 @@ class Lanes(PaintedWidget, can_focus=True):
     Set ``timeline`` again (it may be the same one) when it has grown. ``now`` is the cursor that all panes
     share; words and figures are of the moment ``told``, if that is given. ``service`` is another program's
     service that gets a lane before its first call. The selection stands out and is described below the
-    axis. The screen sets ``selection``, ``hint`` (what the frame says
-    of keys), ``keys``, ``path`` (the steps of a chain, to be marked) and ``changes`` (what a person changed
-    about the run).
+    axis. The screen sets ``selection``, ``hint`` (the keys
+    in the frame), ``keys``, ``path`` (the steps of a chain to mark) and ``changes`` (the user's changes of
+    the run, in words).
     """
 
     DEFAULT_CSS = "Lanes { height: auto; }"
@@ -64,7 +64,7 @@ class Lanes(PaintedWidget, can_focus=True):
     charset: reactive[Charset] = reactive(Charset.BRAILLE, repaint=False)
     selection: reactive[Selection | None] = painted(None)
     whole: reactive[Nanoseconds] = reactive(0, layout=True)
-    """The end of an overview that is always there; 0 for one where there is room."""
+    """The end of an overview that is always shown; 0 for one that is shown if there is room."""
     hint: reactive[str] = reactive("", repaint=False)
     path: reactive[Sequence[ChainStep]] = painted(())
     changes: reactive[str] = painted("")
@@ -77,7 +77,7 @@ class Lanes(PaintedWidget, can_focus=True):
     _goes_on = False
 
     class BarPicked(Message):
-        """The person clicked at the moment ``at``; ``selection`` is what lies there on a lane, if any."""
+        """The user clicked at the moment ``at``; ``selection`` is the lane and bar there, if any."""
 
         def __init__(self, lanes: "Lanes", at: Nanoseconds, selection: Selection | None) -> None:
             super().__init__()
@@ -91,7 +91,7 @@ class Lanes(PaintedWidget, can_focus=True):
             return self.lanes
 
     class WheelTurned(Message):
-        """The person turned the wheel: ``steps`` > 0 asks for a longer window, < 0 for a shorter one."""
+        """The user turned the wheel: ``steps`` > 0 asks for a longer window, < 0 for a shorter one."""
 
         def __init__(self, steps: int) -> None:
             super().__init__()
@@ -99,10 +99,10 @@ class Lanes(PaintedWidget, can_focus=True):
 
     @property
     def picture(self) -> LanePicture | None:
-        """The picture that was painted last; its lanes, scale and layout tell what lies under a cell."""
+        """The last picture; its lanes, scale and layout tell what a cell shows."""
         return self._picture
 
-    # what can be selected
+    # the selection
 
     def here(self) -> Selection | None:
         """Return the best first selection: a bar at the cursor, else one before it, else a lane."""
@@ -225,7 +225,7 @@ class Lanes(PaintedWidget, can_focus=True):
         return [*picture.rows, *details_rows(details, size.width, self.charset)]
 
     def _go_on_later(self) -> None:
-        """Paint what is missing in the next frame, even if the run stands still."""
+        """Paint the missing columns in the next frame, even if the run stands still."""
         if self.is_running and not self._goes_on:
             self._goes_on = True
             self.set_timer(_A_FRAME, self._go_on)
@@ -235,7 +235,7 @@ class Lanes(PaintedWidget, can_focus=True):
         self.changed()
 
     def _entitle(self, title: str) -> None:
-        """Set another title, if it differs: Textual draws the widget again even for the same one."""
+        """Set a different title: Textual would draw the widget again even for the same one."""
         if title != self._titled:
             self._titled = title
             self.border_title = Text(title)
@@ -258,8 +258,8 @@ class Lanes(PaintedWidget, can_focus=True):
         return wanted_rows(self.timeline, self.service, width, self.window, self.whole)
 
     def watch_timeline(self) -> None:
-        """Paint again, in another height if there are new lanes."""
-        # Lanes that are out of sight are not laid out: it is asked for again until it was done.
+        """Paint again, with another height if there are new lanes."""
+        # Hidden lanes are not laid out, so the layout is requested until it was done.
         if self._rows_of_lanes(self.size.width) != self._laid_out_for:
             self.refresh(layout=True)
 

@@ -13,7 +13,7 @@ def line_of(event: Logged | Printed) -> str:
 
 
 def width_of(event: Logged | Printed) -> int:
-    """Return how many columns a line takes; plain text has one for each character, whatever that shows as."""
+    """Return the columns of a line; plain text has one for each character, however that is displayed."""
     text = _text_of(event)
     return len(text) if text.isascii() else cell_len(visible(text, Charset.BRAILLE))
 

@@ -33,7 +33,7 @@ COLUMNS_FROM = 64
 """The narrowest log that shows thread and group of each line."""
 
 _SEARCH_BATCH = 2000
-"""Lines that are looked at before the screen and the keys have their turn again: some milliseconds."""
+"""Lines that are searched between two turns of screen and keys; they take some milliseconds."""
 
 _THREAD = 12
 _GROUP = 3
@@ -50,22 +50,22 @@ _CURSOR, _MOMENT = "log--cursor", "log--moment"
 
 
 class LogLines(FollowingView):
-    """The lines that a filter lets through, up to a moment; below them it says how many came later.
+    """The lines that pass a filter, up to a moment; below them stands the number of later lines.
 
-    One of them may be picked with the arrow keys or the pointer: enter, or a click, tells its time.
+    A line can be picked with the arrow keys or the pointer; enter, or a click, posts its time.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {*_STYLES.values(), _CURSOR, _MOMENT}
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.LOG)]
 
     counts: var[tuple[int, int]] = var((0, 0))
-    """How many lines the filter lets through, and how many there are, up to the moment on screen."""
+    """The number of lines that pass the filter, and of all lines, up to the moment on screen."""
 
     picked: var[int | None] = var(None)
     """The place of the picked line in the whole log."""
 
     class FilterWanted(Message):
-        """The person wants to choose which lines are shown."""
+        """The user wants to choose which lines are shown."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -78,7 +78,7 @@ class LogLines(FollowingView):
 
     @property
     def wanted(self) -> Filter:
-        """What decides which lines are shown."""
+        """The filter that decides which lines are shown."""
         return self._search.wanted
 
     @wanted.setter
@@ -102,10 +102,10 @@ class LogLines(FollowingView):
         self._now = now
         self._scan_new_lines()
 
-    # what is shown
+    # the shown lines
 
     def _scan_new_lines(self) -> None:
-        """Look at some new lines, show what was found, and go on when others have had their turn."""
+        """Search some new lines, show the found ones, and continue after other messages."""
         more = self._search.go_on(_SEARCH_BATCH)
         self._grow_to_what_was_found()
         if not more:
@@ -136,12 +136,12 @@ class LogLines(FollowingView):
         self.counts = (count, written)
 
     def watch_scroll_y(self, old_value: float, new_value: float) -> None:
-        """Have room for the lines that come into view."""
+        """Widen the view for lines that come into view."""
         super().watch_scroll_y(old_value, new_value)
         self._widen()
 
     def _widen(self) -> None:
-        """Be as wide as the widest line that has been in view; to measure every line would take too long."""
+        """Take the width of the widest line so far in view; measuring every line would take too long."""
         rows = range(self.scroll_offset.y, min(self.scroll_offset.y + self._height, self._count))
         logs, places = self._search.timeline.logs, self._search.places
         widest = max((width_of(logs[places[row]]) for row in rows), default=0)
@@ -161,7 +161,7 @@ class LogLines(FollowingView):
         return "" if self.picked is None else line_of(self._search.timeline.logs[self.picked])
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer what has a meaning for the lines that are shown."""
+        """Offer the actions that have an effect on the shown lines."""
         match action:
             case "pick_line" | "let_go":
                 return self.picked is not None
@@ -182,7 +182,7 @@ class LogLines(FollowingView):
         self._pick_beside(1)
 
     def action_pick_line(self) -> None:
-        """Tell the picked line's time."""
+        """Post the picked line's time."""
         if self.picked is not None:
             self.post_message(self.MomentPicked(self._search.timeline.logs[self.picked].t))
 
@@ -191,19 +191,19 @@ class LogLines(FollowingView):
         self.post_message(self.FilterWanted())
 
     def action_copy(self) -> None:
-        """Copy the picked line, or else those in view, as they were written and not cut off."""
+        """Copy the picked line, or else the lines in view, in full."""
         first = self.scroll_offset.y
         rows = range(first, min(first + self._height, self._count))
         places = [self._search.places[row] for row in rows] if self.picked is None else [self.picked]
         self.copy([line_of(self._search.timeline.logs[place]) for place in places])
 
     def action_follow(self) -> None:
-        """Let go of the picked line, and follow the end."""
+        """Unpick the line, and follow the end."""
         self.action_let_go()
         self.follow()
 
     def action_stay(self) -> None:
-        """Stay here from now on."""
+        """Stop following the end."""
         self.stay()
 
     def action_let_go(self) -> None:
@@ -212,7 +212,7 @@ class LogLines(FollowingView):
         self.refresh()
 
     def on_click(self, event: Click) -> None:
-        """Pick the line under the pointer, and tell its time."""
+        """Pick the line under the pointer, and post its time."""
         offset = event.get_content_offset(self)
         row = None if offset is None else self.scroll_offset.y + offset.y
         if row is not None and row < self._count:
@@ -290,7 +290,7 @@ class LogLines(FollowingView):
         return [*shown, *(self._columns(event) if beside else [])]
 
     def _ground(self, place: int, row: int) -> Style:
-        """Return what sets a line off from the others: it is picked, or the last before the moment shown."""
+        """Return the component class of the picked line, and of the last line before the cursor."""
         if place == self.picked:
             return Style(bgcolor=self.in_class(_CURSOR).bgcolor, bold=True)
         if row == self._count - 1 and self._now < self._search.timeline.end:

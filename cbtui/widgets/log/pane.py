@@ -1,4 +1,4 @@
-"""The log pane: its lines, and below them the line in which a filter is typed."""
+"""The log pane: the lines, and below them the input of the filter."""
 
 from typing import ClassVar
 
@@ -20,7 +20,7 @@ from sim.trace.timeline import Timeline
 
 
 class LogFilter(Input):
-    """Where a filter is typed: enter keeps it, escape clears it."""
+    """The input of the filter: enter keeps the filter, escape clears it."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.FILTER)]
 
@@ -32,30 +32,30 @@ class LogFilter(Input):
         )
 
     def on_input_submitted(self, event: Input.Submitted) -> None:
-        """Go to the lines that are let through."""
+        """Move the focus to the lines."""
         event.stop()
         self.screen.query_one(LogLines).focus()
 
     def action_drop_filter(self) -> None:
-        """Clear the filter, and go to the lines."""
+        """Clear the filter, and move the focus to the lines."""
         self.value = ""
         self.screen.query_one(LogLines).focus()
 
 
 class LogView(Vertical):
-    """The pane. ``note`` says in a few words how much of the log it shows and whether it follows."""
+    """The pane. ``note`` says how much of the log it shows and whether it follows the end."""
 
     note: var[str] = var("")
 
     def compose(self) -> ComposeResult:
-        """Lay out lines, the picked one if it is long, what is wrong with the filter, and the filter."""
+        """Lay out the lines, the picked line if it is long, the error of the filter, and the filter."""
         yield LogLines()
         yield Label(id="unfolded", markup=False)
         yield Label(id="fault", markup=False)
         yield LogFilter()
 
     def on_mount(self) -> None:
-        """Hide what is not needed yet, and note what the lines say of themselves."""
+        """Hide the parts that are not needed yet, and follow the state of the lines."""
         self._complain("")
         self._show_filter()
         lines = self.query_one(LogLines)
@@ -74,14 +74,14 @@ class LogView(Vertical):
 
     @on(LogLines.FilterWanted)
     def focus_filter(self) -> None:
-        """Let the person type a filter."""
+        """Show the input of the filter, and focus it."""
         entry = self.query_one(LogFilter)
         entry.display = True
         entry.focus()
 
     @on(Input.Changed)
     def _filter(self, event: Input.Changed) -> None:
-        """Take what is typed at once; what means nothing keeps no line back."""
+        """Apply the filter as it is typed; an invalid one passes every line."""
         event.stop()
         wanted, fault = _understood(event.value)
         self.query_one(LogLines).wanted = wanted
@@ -89,11 +89,11 @@ class LogView(Vertical):
         self._show_filter()
 
     def on_descendant_focus(self) -> None:
-        """Keep the filter on screen while it is typed or holds lines back."""
+        """Show the filter while it has the focus or is in use."""
         self._show_filter()
 
     def on_descendant_blur(self) -> None:
-        """Hide an empty one that is left."""
+        """Hide an empty filter without the focus."""
         self._show_filter()
 
     def _show_filter(self) -> None:
@@ -106,7 +106,7 @@ class LogView(Vertical):
         label.display = bool(fault)
 
     def _unfold(self) -> None:
-        """Show all of the picked line below the others, if it is wider than the pane."""
+        """Show the picked line in full below the others, if it is wider than the pane."""
         text = self.query_one(LogLines).picked_text
         label = self.query_one("#unfolded", Label)
         label.update(text)

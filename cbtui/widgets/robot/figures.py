@@ -1,4 +1,4 @@
-"""The robot's figures in a few lines: its position, the command, its velocity, the way ahead."""
+"""The robot's figures in a few lines: its position, the command, its velocity, the free distance."""
 
 import math
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ _Figure = tuple[str, str, Ink]
 def figures(
     robot: RobotMoved, command: VelocityCommanded | None, width: int, charset: Charset
 ) -> list[CellRow]:
-    """Return lines with the figures; their number depends on the width alone, so that nothing below jumps."""
+    """Return lines with the figures; their number depends only on the width, so that nothing below moves."""
     entries = _entries(robot, command, charset)
     rows: list[CellRow] = []
     at = width
@@ -35,13 +35,13 @@ def figures(
 
 def _entries(robot: RobotMoved, command: VelocityCommanded | None, charset: Charset) -> Sequence[_Figure]:
     degree = GLYPHS[charset].degree
-    told = "nothing yet".ljust(22) if command is None else _velocity(command.linear, command.angular)
+    text = "nothing yet".ljust(22) if command is None else _velocity(command.linear, command.angular)
     place = f"{_two_places(robot.x)} {_two_places(robot.y)} m"
     front = f"{robot.front:5.2f} m" if math.isfinite(robot.front) else "   free"
     return (
         ("pose", f"{place} {round(math.degrees(robot.yaw)):4}{degree}", PLAIN),
         ("front", front, PLAIN),
-        ("told", told, PLAIN),
+        ("told", text, PLAIN),
         ("motors", "on " if robot.motors else "OFF", PLAIN if robot.motors else WARN),
         ("real", _velocity(robot.linear, robot.angular), PLAIN),
         ("touching", "YES" if robot.touching else "no ", WARN if robot.touching else PLAIN),

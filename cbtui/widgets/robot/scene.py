@@ -41,7 +41,7 @@ _RAYS = 8
 
 
 class RobotScene:
-    """What a timeline knows of the robot's world at one moment."""
+    """The robot's world at one moment, as far as a timeline knows it."""
 
     def __init__(self, plan: ArenaShown, timeline: Timeline, now: Nanoseconds, robot: RobotMoved) -> None:
         self.plan = plan
@@ -91,7 +91,7 @@ class RobotScene:
         dots.line(view.dot(robot.x, robot.y), view.dot(*tip), layer)
 
     def _draw_flash(self, dots: DotGrid, view: MapView) -> None:
-        """Draw rays around the robot, which turn by half a gap from time to time."""
+        """Draw rays around the robot, which alternate between two positions."""
         if self.hit_age is None:
             return
         first = self.hit_age // _FLASH_TURNS % 2 * math.pi / _RAYS

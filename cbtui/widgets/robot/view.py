@@ -71,16 +71,16 @@ class RobotView(PaintedWidget):
         super().__init__(id=id)
         self._open_camera = open_camera
         self._camera: CameraClient | None = None
-        self._why_none = ""
-        self._asked: Shot | None = None
+        self._failure = ""
+        self._requested: Shot | None = None
         self._resting = False
         self._picture: Picture | None = None
-        self._film: Sequence[Strip] = ()
+        self._strips: Sequence[Strip] = ()
         self._painting = RobotPainting(())
 
     def cycle_camera(self) -> None:
-        """Show the scene, the map, the camera's picture, both, and so on; retry a camera that failed."""
-        self._why_none = ""
+        """Show the next of scene, map, camera's picture and both; retry a camera that failed."""
+        self._failure = ""
         if self.shows_robot or not self.actors:
             self.look = self.look.following
         self.shows_robot = self.look is not RobotViewMode.MAP or not self.shows_robot
@@ -92,7 +92,7 @@ class RobotView(PaintedWidget):
         if self.actors and not self.shows_robot:
             self._painting = RobotPainting(())
             return paint_scene(self.actors, self.timeline, self.now, size.width, size.height, self.charset)
-        note = "" if self._fits() else self._why_none or _STARTING
+        note = "" if self._fits() else self._failure or _STARTING
         painter = RobotPainter(self.charset)
         self._painting = painter.paint(self.timeline, self.now, size.width, size.height, self.look, note)
         return self._painting.rows
@@ -103,23 +103,23 @@ class RobotView(PaintedWidget):
         place = self._painting.camera
         if place is None or not place.y <= y < place.bottom or not self._fits():
             return painted
-        around, picture = Strip(painted, self.size.width), self._film[y - place.y]
+        around, picture = Strip(painted, self.size.width), self._strips[y - place.y]
         return [*around.crop(0, place.x), *picture, *around.crop(place.right)]
 
     def changed(self) -> None:
         """Paint again and request another picture, after the current message."""
         super().changed()
         if self.is_running and self.look is not RobotViewMode.MAP:
-            self.call_next(self._ask)
+            self.call_next(self._request)
 
     def notify_style_update(self) -> None:
         """Draw the picture for the new theme."""
         super().notify_style_update()
-        self._develop()
+        self._render_picture()
 
     def watch_charset(self) -> None:
         """Paint in other glyphs."""
-        self._develop()
+        self._render_picture()
 
     def on_resize(self) -> None:
         """Request a picture of the new size."""
@@ -127,21 +127,21 @@ class RobotView(PaintedWidget):
 
     # the camera
 
-    def _ask(self) -> None:
+    def _request(self) -> None:
         """Request the picture of the cursor's moment, unless the last request is too recent."""
         shot = self._shot()
-        if shot is None or shot == self._asked or self._resting or self._why_none:
+        if shot is None or shot == self._requested or self._resting or self._failure:
             return
         if self._camera is None:
-            self._camera = self._open_camera(self._take, self._lose)
-        self._asked = shot
+            self._camera = self._open_camera(self._take, self._report_loss)
+        self._requested = shot
         self._camera.want(shot)
         self._resting = True
-        self.set_timer(1 / PICTURES_A_SECOND, self._ask_again)
+        self.set_timer(1 / PICTURES_A_SECOND, self._request_again)
 
-    def _ask_again(self) -> None:
+    def _request_again(self) -> None:
         self._resting = False
-        self._ask()
+        self._request()
 
     def _shot(self) -> Shot | None:
         """The request for the picture's region; poses that look the same are equal."""
@@ -155,28 +155,28 @@ class RobotView(PaintedWidget):
         """Pass a picture from the camera's thread to the screen's."""
         self.post_message(self.PictureTaken(picture))
 
-    def _lose(self, why: str) -> None:
+    def _report_loss(self, why: str) -> None:
         self.post_message(self.CameraLost(why))
 
     @on(PictureTaken)
     def _show_picture(self, message: PictureTaken) -> None:
         message.stop()
-        before, fitted = self._film, self._fits()
+        before, fitted = self._strips, self._fits()
         self._picture = message.picture
-        self._develop()
+        self._render_picture()
         place = self._painting.camera
         if place is None or not self._fits():
             return
-        lines = [y for y, strip in enumerate(self._film) if not fitted or strip != before[y]]
+        lines = [y for y, strip in enumerate(self._strips) if not fitted or strip != before[y]]
         if lines:
             self.refresh(*(Region(place.x, place.y + y, place.width, 1) for y in lines))
 
     @on(CameraLost)
     async def _show_why(self, message: CameraLost) -> None:
         message.stop()
-        self._why_none = message.why
+        self._failure = message.why
         self._picture = None
-        self._asked = None
+        self._requested = None
         await self._close_camera()
         self.changed()
 
@@ -190,17 +190,17 @@ class RobotView(PaintedWidget):
             await asyncio.to_thread(camera.stop)
 
     def _fits(self) -> bool:
-        """Whether there is a picture of its region's size."""
+        """Whether there is a picture of the size of its region."""
         place, picture = self._painting.camera, self._picture
         if place is None or picture is None:
             return False
         return (picture.width, picture.height) == (place.width, 2 * place.height)
 
-    def _develop(self) -> None:
-        """Turn the picture into strips."""
+    def _render_picture(self) -> None:
+        """Render the picture as strips in the region's size."""
         if self._picture is None:
-            self._film = ()
+            self._strips = ()
         elif self.charset is Charset.ASCII or self.app.no_color:
-            self._film = ramp(self._picture, self.app.current_theme.dark, self.rich_style)
+            self._strips = ramp(self._picture, self.app.current_theme.dark, self.rich_style)
         else:
-            self._film = half_blocks(self._picture)
+            self._strips = half_blocks(self._picture)

@@ -1,4 +1,4 @@
-"""The figures of scenes as lines of dots: what stands still, and what moves, with how far it goes.
+"""The figures of scenes as lines of dots: their resting and moving parts.
 
 A figure has 20 dots across and 8 down, which are ten by two cells of braille. A line is ``(x, y, x, y)``.
 """
@@ -17,7 +17,7 @@ class Moving(NamedTuple):
 
 
 class Figure(NamedTuple):
-    """What stands still, and the parts that move."""
+    """The lines of the resting part, and the moving parts."""
 
     still: tuple[Line, ...]
     moving: tuple[Moving, ...]

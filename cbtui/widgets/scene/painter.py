@@ -1,4 +1,4 @@
-"""Paints a scene at a moment: each figure where its callback has brought it, and what that callback does."""
+"""Paints a scene at a moment: each figure as far as its callback has moved it, and the callback's state."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -17,15 +17,15 @@ from sim.trace.timeline import Timeline
 _COLUMNS, _ROWS = 10, 2
 _GAP = 2
 _HALF_WAY: Nanoseconds = 300_000_000
-"""How long a callback runs until its figure has gone half of its way."""
+"""Duration of a callback at which its figure has gone half of its way."""
 _BACK: Nanoseconds = 500_000_000
-"""How long its figure needs back."""
+"""Duration of a figure's way back."""
 _LATELY: Nanoseconds = 1_000_000_000
 _FAINT, _PLAIN, _STRONG, _WARN = Ink(Role.FAINT), Ink(Role.TEXT), Ink(Role.STRONG), Ink(Role.WARN)
 
 
 class _State(NamedTuple):
-    """A figure's progress from 0 to 1, what its callback does, and why."""
+    """A figure's progress from 0 to 1, its callback's state, and the reason."""
 
     progress: float
     words: str
@@ -54,8 +54,8 @@ def paint_scene(
             ],
             [TextRun(state.reason, _WARN if state.is_trouble else _FAINT)],
         )
-        for figure, told in zip(_figure(actor.figure, state.progress, ink, charset), texts, strict=True):
-            rows.append(_fitted([*figure, TextRun(" " * _GAP, _PLAIN), *told], width, charset))
+        for figure, text in zip(_figure(actor.figure, state.progress, ink, charset), texts, strict=True):
+            rows.append(_fitted([*figure, TextRun(" " * _GAP, _PLAIN), *text], width, charset))
         rows += [blank] if apart else []
     return rows[:height]
 
@@ -74,7 +74,6 @@ def _figure(name: str, progress: float, ink: Ink, charset: Charset) -> list[list
 
 
 def _fitted(runs: Sequence[TextRun], width: int, charset: Charset) -> list[TextRun]:
-    """Cut runs to a width, or fill it."""
     shown, room = list[TextRun](), width
     for text, ink in runs:
         shown.append(TextRun(fit(text, min(len(text), room), charset) if text and room else "", ink))

@@ -201,7 +201,7 @@ async def test_a_file_that_changed_on_disk_is_run_again_as_it_is_now(tmp_path: P
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
         path.write_text("second = 2\n")
-        app.screen.query_one(CodeView).look_at_disk()
+        app.screen.query_one(CodeView).check_disk()
         await settle(pilot)
         assert "2 Code node.py · changed on disk ─" in text_of(app)
         app.screen.post_message(RunController.Over(1, None))

@@ -19,7 +19,7 @@ def told(*until: float, least: int = LEAST[2], whole: bool = False) -> list[str]
     for seconds in until:
         timeline.extend([event for event in events if event.t <= ns(seconds)])
         events = [event for event in events if event.t > ns(seconds)]
-        monitor.look()
+        monitor.update()
         lines += narrative.news(timeline.end, monitor.findings)
     return lines
 
@@ -61,7 +61,7 @@ def test_a_run_that_is_known_already_is_told_up_to_a_moment_and_once_more_from_a
     timeline = Timeline()
     timeline.extend(EVENTS)
     monitor, narrative = FindingsMonitor(timeline), Narrative(timeline)
-    monitor.look()
+    monitor.update()
     assert not any("returns" in line for line in narrative.news(ns(5.0), monitor.findings))
     narrative.news(ns(20.0), monitor.findings)
     again = narrative.news(ns(14.2), monitor.findings)

@@ -188,7 +188,7 @@ async def test_a_file_that_changed_on_disk_says_so_until_it_is_read_anew(talker:
     async with app.run_test(size=(60, 10)) as pilot:
         talker.write_text("# new\n")
         assert app.view.note == "talker.py"
-        app.view.look_at_disk()
+        app.view.check_disk()
         assert app.view.note == "talker.py · changed on disk"
         app.view.over = True
         assert app.view.note == "talker.py · changed; r runs it again"
