@@ -72,5 +72,5 @@ class Drawn:
             "factory": lambda: self._factory.paint(timeline, end, _WIDTH, _HEIGHT),
             "sentence": lambda: diagnosis_at(timeline, end, self._concurrency),
             "code": lambda: marks_at(timeline, end, self._files),
-            "rules": self._watch.look,
+            "rules": self._watch.update,
         }

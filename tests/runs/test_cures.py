@@ -173,7 +173,7 @@ def test_what_was_an_effect_of_the_problem_is_no_worse_one_in_its_place() -> Non
 
 
 def test_a_trial_tells_which_rules_found_effects_alone() -> None:
-    before = tried(program_setup(PROGRAMS / "held_group.py", 3.0), UNTIL, Event())
+    before = try_run(program_setup(PROGRAMS / "held_group.py", 3.0), UNTIL, Event())
     assert {rule for rule, *_ in before.problems} == {"group-starvation"}
     assert before.effects <= {"dropped-messages", "stale-data", "overrun-timer"}
 

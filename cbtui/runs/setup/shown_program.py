@@ -90,7 +90,7 @@ class ShownProgram:
     counts_processes: bool = False
 
     def heading_of(self, timeline: "Timeline") -> str:
-        """The heading of a run, as things stand at its end."""
+        """Return the heading of a run, with what is known at its end."""
         if not self.counts_processes:
             return self.heading
         running = timeline.processes.keys() - timeline.processes_ended.keys()

@@ -12,7 +12,7 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.terminal.processor import cpu_wait, time_off_cpu
 
 FRAMES_A_SECOND = 15
-"""About one for each step of a bar: a dot, half a column, is 60 ms in a window of ten seconds."""
+"""About one frame for each step of a bar: a dot, half a column, is 60 ms in a window of ten seconds."""
 
 _SOONEST = 0.01
 """Least seconds between two frames with all panes that keys cause."""

@@ -49,7 +49,7 @@ def options_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[ChoiceOpti
 
 
 def kept_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[str]:
-    """Why each of the other threads and callbacks may not go on."""
+    """Yield why each of the other threads and callbacks may not go on."""
     moment = timeline.moment(timeline.end)
     for wait in moment.waiting.values():
         free = wait.reason is Reason.NO_FREE_WORKER and "" in question.functions

@@ -113,7 +113,7 @@ class RobotScene:
 
 @lru_cache(maxsize=8)
 def _arena_dots(plan: ArenaShown, view: MapView, charset: Charset) -> DotGrid:
-    """Return what stays the same in a view: its grid, the walls and the sphere. Not to be changed."""
+    """Return the constant dots of a view: its grid, the walls and the sphere. Not to be changed."""
     dots = DotGrid(view.columns, view.lines, charset)
     across, along = view.grid()
     dots.plot(*view.dots(np.repeat(across, len(along)), np.tile(along, len(across))), _GRID)
