@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Coroutine, Generator
     from types import FrameType
 
-    from .entities import WatchedEntity
     from .recorder import Here, Recorder
+    from .states import WatchedEntity
 
 _SHIFT = 1_000_000
 """The tolerance of a timer's phase in nanoseconds: reading it takes time, and clocks drift."""

@@ -7,8 +7,8 @@ from functools import wraps
 from typing import TYPE_CHECKING, Any
 
 from .callbacks import Calls
-from .entities import state_of
 from .recorder import now
+from .states import state_of
 from .unseen import UNSEEN
 
 if TYPE_CHECKING:

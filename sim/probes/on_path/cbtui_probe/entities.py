@@ -17,6 +17,7 @@ from rclpy.qos import QoSPolicyKind
 from .callbacks import Calls, is_own
 from .naming import written_at
 from .recorder import now
+from .states import STATE, WatchedEntity, nothing, state_of
 from .unseen import UNSEEN, leave_out_probe
 
 if TYPE_CHECKING:
@@ -28,46 +29,6 @@ if TYPE_CHECKING:
 
 _INCOMPATIBLE = "RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS"
 _ADVICE = "return the value from a pre-set callback, or refuse what was asked for"
-STATE = "_cbtui"
-"""The attribute of rclpy's entities, nodes, publishers and groups that holds the probe's own state."""
-
-
-class WatchedEntity:
-    """The probe's state of one entity: its id, and whether it waits."""
-
-    def __init__(self, kind: str) -> None:
-        self.kind = kind
-        self.number = 0
-        self.due = 0
-        """When a timer is due next, or when a guard condition was triggered, in nanoseconds of the monotonic
-        clock; 0: not known, or not triggered."""
-        self.period = 0
-        """A timer's period in nanoseconds, kept since asking rclpy costs more."""
-        self.wait: tuple[str, int, bool] | None = None
-        """The reason for which it waits, the entity that holds it up, and whether no worker is free; None: it
-        does not wait."""
-        self._since = 0
-        self.made: Callable[[], Any] = _nothing
-        """Returns rclpy's object; None before its creation and after its destruction."""
-
-    def waits(self, recorder: Recorder, since: int, wait: tuple[str, int, bool]) -> None:
-        """Record why it does not run, if that is new; ``since`` is when it became ready, as far as known."""
-        if self.wait is None:
-            self._since = since
-            recorder.put("ready", now(), self.number, 1, 0)
-        if self.wait != wait:
-            self.wait = wait
-            recorder.put("wait_start", now(), self.number, self._since, *wait)
-
-    def waits_no_more(self, recorder: Recorder) -> None:
-        """Record that it no longer waits: it runs, or what it was ready for is gone."""
-        if self.wait is not None:
-            self.wait = None
-            recorder.put("wait_end", now(), self.number)
-
-
-def _nothing() -> None:
-    return None
 
 
 def _type_of(made: Any) -> str:
@@ -83,11 +44,6 @@ def _overruled(name: str, frame: FrameType | None) -> str:
     if frame is not None:
         place = f" ({Path(frame.f_code.co_filename).name}:{frame.f_lineno}, in {frame.f_code.co_name})"
     return f"a parameter callback sets '{name}' while that is being set{place}"
-
-
-def state_of(thing: object) -> Any:
-    """The probe's state of one of rclpy's objects; None if it has none."""
-    return getattr(thing, STATE, None)
 
 
 class _Execution:
@@ -293,7 +249,7 @@ class Entities:
         def destroy_known(node: Any, thing: Any) -> Any:
             entity = state_of(thing)
             if entity is not None and entity.made() is not None:
-                entity.made = _nothing
+                entity.made = nothing
                 entity.waits_no_more(recorder)
                 recorder.put("entity_gone", now(), entity.number)
             with UNSEEN:

@@ -9,8 +9,8 @@ from functools import wraps
 from typing import TYPE_CHECKING, Any
 
 from .callbacks import is_own
-from .entities import STATE, state_of
 from .recorder import now
+from .states import STATE, state_of
 from .unseen import UNSEEN, leave_out_probe
 
 if TYPE_CHECKING:

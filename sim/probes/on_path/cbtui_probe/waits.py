@@ -10,13 +10,14 @@ from __future__ import annotations
 from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
-from .entities import state_of
 from .recorder import now
+from .states import state_of
 
 if TYPE_CHECKING:
-    from .entities import Entities, WatchedEntity
+    from .entities import Entities
     from .executors import Executors, Spinner
     from .recorder import Recorder
+    from .states import WatchedEntity
 
 GROUP_HELD, NO_FREE_WORKER, NOBODY_SPINS = "group held", "no free worker", "nobody spins"
 EVENT_QUEUE = "behind others in the event queue"
