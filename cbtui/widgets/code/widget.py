@@ -38,6 +38,7 @@ from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
 _GUTTER = 7
+_LEAST_CUT = 14  # columns below which a text that does not fit is left out
 _SIDEWAYS = 8
 """Columns of a step sideways."""
 
@@ -376,8 +377,8 @@ class CodeView(InkedView):
         """Put the longest text that fits beside the code at the right of a line, or a part of the last."""
         room = width - line.cell_length - 1
         padded = [f" {text} " if text else "" for text in texts]
-        text = next((text for text in padded if len(text) <= room), padded[-1])
-        text = fit(text, max(0, min(len(text), room)), Charset.BRAILLE)
+        cut = fit(padded[-1], room, Charset.BRAILLE) if room >= _LEAST_CUT else ""
+        text = next((text for text in padded if len(text) <= room), cut)
         mark = Segment(text, self.in_ink(ink))
         return Strip([*line.adjust_cell_length(width - len(text), self.in_class("")), mark], width)
 
