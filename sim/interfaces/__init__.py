@@ -1,8 +1,8 @@
 """ROS 2 message, service and action classes that behave as rclpy's, without a ROS 2 installation.
 
-The messages are those of Jazzy's standard packages, taken from the rosbags library; services,
-actions and the messages it lacks lie in ``definitions/`` as the files ROS 2 uses. A class is built
-when it is first asked for, so importing this package is cheap.
+The messages of Jazzy's standard packages come from the rosbags library. Services, actions and the messages
+that rosbags lacks are in ``definitions/``, as files in ROS 2's notation. A class is built when it is first
+used, so importing this package is cheap.
 """
 
 from sim.interfaces.base import ActionType, Message, ServiceType, copy_message, type_name

@@ -18,7 +18,7 @@ _STAMP: Final[tuple[str, FieldDesc]] = ("stamp", (Nodetype.NAME, "builtin_interf
 
 @frozen
 class ActionDefinition:
-    """The three structures of an ``.action`` file, and those that carry them between two programs.
+    """The three structures of an ``.action`` file, and the structures that carry them between programs.
 
     Source: "Actions" in ROS 2's design documents, and ``rosidl_parser.definition.Action``.
     """

@@ -11,35 +11,35 @@ from attrs import frozen
 
 from sim.interfaces.field_types import FieldType, NamespacedType
 from sim.interfaces.interface_definition import Definition
-from sim.interfaces.sequences import Handling
+from sim.interfaces.sequences import FieldRules
 
 
 @frozen(eq=False)
 class Interface:
-    """What a message class knows of itself."""
+    """The definition, types and behaviour of a message class."""
 
     definition: Definition
     types: Mapping[str, FieldType]
     """The type of every field, in the order of definition."""
     parts: Mapping[NamespacedType, type[Message]]
-    """The classes of the messages in its fields."""
-    handlings: Mapping[str, Handling]
-    """What every field does with a value."""
+    """The classes of the messages that its fields contain."""
+    field_rules: Mapping[str, FieldRules]
+    """How each field checks, makes and copies its value."""
     fixed_names: frozenset[str]
-    """The names of its constants and of the default values it declares."""
+    """The names of the class attributes for constants and declared default values."""
     copy: Callable[[Any], Any]
     """Returns a message as a subscriber receives it."""
 
 
 class MessageType(type):
-    """The class of message classes, whose constants and default values cannot be set."""
+    """The metaclass of messages; constants and default values cannot be set."""
 
     if TYPE_CHECKING:
         # Constants are made at run time from definitions.
         def __getattr__(cls, name: str) -> Any: ...
 
     def __setattr__(cls, name: str, value: object) -> None:
-        # Only these names are in capitals; a class under construction has no interface yet.
+        # Only these names are in capitals. A class under construction has no __interface__ yet.
         if name.isupper() and name in cls.__interface__.fixed_names:
             raise AttributeError(f"property {name!r} of 'Metaclass_{cls.__name__}' object has no setter")
         super().__setattr__(name, value)
@@ -48,16 +48,16 @@ class MessageType(type):
 class Message(metaclass=MessageType):
     """A ROS 2 message, or the request or response of a service.
 
-    Its classes come from `message` and `service`. As in rclpy, the constructor takes field values
-    by keyword, every field has a default, values are stored in slots named ``_<field>`` behind
-    properties of the fields' names, and every assignment is checked; ``check_fields=True``, which
-    asks rosidl's newer classes for that, is taken too.
+    `message` and `service` return its subclasses. As in rclpy, the constructor takes field values
+    by keyword, every field has a default, values are stored in slots ``_<field>`` behind
+    properties of the fields' names, and every assignment is checked. ``check_fields=True``, an argument
+    of rosidl's newer classes, is accepted too.
 
     Raises:
         AssertionError: on construction or assignment, if a value does not fit the field or the
-            field does not exist; the text is the one of rosidl's generated code.
+            field does not exist; the text is that of rosidl's generated code.
         NotImplementedError: construction with ``check_fields=False``.
-        AttributeError: assignment to an attribute that is no field.
+        AttributeError: assignment to an attribute that is not a field.
     """
 
     __slots__: tuple[str, ...] = ()
@@ -66,7 +66,7 @@ class Message(metaclass=MessageType):
     SLOT_TYPES: ClassVar[tuple[FieldType, ...]] = ()
     """The type of every field, in the order of definition."""
     _fields_and_field_types: ClassVar[dict[str, str]] = {}
-    """What ``get_fields_and_field_types`` returns a copy of; code made for rosidl's classes reads it too."""
+    """The result of ``get_fields_and_field_types``; code written for rosidl's classes reads it, too."""
     _check_fields: ClassVar[bool] = True
 
     if TYPE_CHECKING:
@@ -88,7 +88,7 @@ class Message(metaclass=MessageType):
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, type(self)):
             return False
-        # Not as tuples: these would call a NaN equal to itself.
+        # Not compared as tuples: a tuple counts a NaN as equal to itself.
         return all(_same(getattr(self, name), getattr(other, name)) for name in self.__interface__.types)
 
     __hash__ = None  # type: ignore[assignment]
@@ -102,7 +102,7 @@ MessageT = TypeVar("MessageT", bound=Message)
 
 
 class ServiceType(type):
-    """The class of service classes such as ``std_srvs.srv.SetBool``, which are never instantiated."""
+    """The metaclass of services such as ``std_srvs.srv.SetBool``, which are never instantiated."""
 
     Request: type[Message]
     Response: type[Message]
@@ -110,7 +110,7 @@ class ServiceType(type):
 
     @property
     def Event(cls) -> type[Message]:
-        """The message that tells of one step of a call."""
+        """The message that reports one step of a call."""
         return _message_class(f"{cls.__type_name__}_Event")
 
     def __call__(cls, *args: object, **values: object) -> NoReturn:
@@ -119,7 +119,7 @@ class ServiceType(type):
 
 
 class ActionType(type):
-    """The class of action classes such as ``example_interfaces.action.Fibonacci``, never instantiated."""
+    """The metaclass of actions such as ``example_interfaces.action.Fibonacci``, never instantiated."""
 
     Goal: type[Message]
     Result: type[Message]
@@ -139,22 +139,22 @@ class ActionImpl:
     GetResultService: ClassVar[ServiceType]
     FeedbackMessage: ClassVar[type[Message]]
     CancelGoalService: ClassVar[ServiceType]
-    """Of every action: ``action_msgs/srv/CancelGoal``."""
+    """``action_msgs/srv/CancelGoal`` for every action."""
     GoalStatusMessage: ClassVar[type[Message]]
-    """Of every action: ``action_msgs/msg/GoalStatusArray``."""
+    """``action_msgs/msg/GoalStatusArray`` for every action."""
 
 
 def copy_message(message: MessageT) -> MessageT:
-    """Return a copy that shares nothing with the message, as a subscriber would receive it.
+    """Return a copy that shares nothing with the message, as a subscriber receives it.
 
-    What a transport does to values is done: 32-bit floats lose the digits they cannot hold,
-    subclasses of Python's numbers become plain numbers, tuples and sets in a field become lists.
+    Values change as in a transport: 32-bit floats lose the digits that they cannot hold,
+    subclasses of Python's numbers become plain numbers, and tuples and sets in a field become lists.
     """
     return cast("MessageT", message.__interface__.copy(message))
 
 
 def assemble(cls: type[MessageT], values: Mapping[str, Any]) -> MessageT:
-    """Return a message with a value for every field, stored as they are: they were checked once."""
+    """Return a message with a value for every field; the values are stored unchecked."""
     message = cls.__new__(cls)
     for name, value in values.items():
         setattr(message, f"_{name}", value)
@@ -165,8 +165,8 @@ _message_class: Callable[[str], type[Message]]
 
 
 def look_up_by(message_class: Callable[[str], type[Message]]) -> None:
-    """Have ``message_class`` build the classes that pickles and services know by their full names only."""
-    global _message_class  # noqa: PLW0603 -- what knows all classes is built upon this module
+    """Make ``message_class`` the function that pickles and services use to get a class by its full name."""
+    global _message_class  # noqa: PLW0603 -- the registry of all classes imports this module
     _message_class = message_class
 
 

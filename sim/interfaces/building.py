@@ -1,4 +1,4 @@
-"""Making a message class from its definition."""
+"""Builds a message class from its definition."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from typing import Any
 from attrs import evolve
 
 from sim.interfaces.base import Interface, Message
-from sim.interfaces.elements import check_of, message_element, plain_element
+from sim.interfaces.elements import check_of, message_rules, plain_rules
 from sim.interfaces.field_types import FieldType, NamespacedType, SequenceType, element_type
 from sim.interfaces.interface_definition import Definition, DefinitionError, UnknownInterfaceError
 from sim.interfaces.literals import constant_values, default_value
-from sim.interfaces.sequences import Handling, handling_of
+from sim.interfaces.sequences import FieldRules, sequence_rules
 
 FindMessage = Callable[[NamespacedType], type[Message]]
-"""Returns the class of a message that another one contains; `UnknownInterfaceError` if it cannot."""
+"""Returns the class of a contained message; raises `UnknownInterfaceError` without such a message."""
 
 _Puts = Mapping[str, Callable[[Any, Any], None]]
 """Stores a value in a message's slot, unchecked, by field name."""
@@ -30,22 +30,22 @@ def build_class(definition: Definition, find_message: FindMessage) -> type[Messa
     """
     types = definition.field_types()
     parts = _parts(definition, types, find_message)
-    handlings = {
-        name: _with_declared_default(definition, name, of, _handling(name, of, parts))
+    field_rules = {
+        name: _with_declared_default(definition, name, of, _field_rules(name, of, parts))
         for name, of in types.items()
     }
-    cls = _bare_class(definition, types, handlings)
+    cls = _bare_class(definition, types, field_rules)
     puts = {name: vars(cls)[f"_{name}"].__set__ for name in types}
-    for name, handling in handlings.items():
-        setattr(cls, name, property(attrgetter(f"_{name}"), _setter(puts[name], handling)))
-    init = _initialiser(handlings, puts)
+    for name, rules in field_rules.items():
+        setattr(cls, name, property(attrgetter(f"_{name}"), _setter(puts[name], rules)))
+    init = _initialiser(field_rules, puts)
     init.__qualname__ = f"{cls.__name__}.__init__"
     cls.__init__ = init  # type: ignore[method-assign]
     fixed_names = frozenset(
         (*(constant for constant, _, _ in definition.constants), *map(_default_name, definition.defaults))
     )
-    copier = _copier(cls, handlings, puts)
-    cls.__interface__ = Interface(definition, types, parts, handlings, fixed_names, copier)
+    copier = _copier(cls, field_rules, puts)
+    cls.__interface__ = Interface(definition, types, parts, field_rules, fixed_names, copier)
     return cls
 
 
@@ -64,10 +64,10 @@ def _parts(
 
 
 def _bare_class(
-    definition: Definition, types: Mapping[str, FieldType], handlings: Mapping[str, Handling]
+    definition: Definition, types: Mapping[str, FieldType], field_rules: Mapping[str, FieldRules]
 ) -> type[Message]:
-    """Return the class with slots and constants, without behaviour of its fields."""
-    defaults = {_default_name(name): handlings[name].make() for name in definition.defaults}
+    """Return the class with slots and constants, without properties for its fields."""
+    defaults = {_default_name(name): field_rules[name].make() for name in definition.defaults}
     return type(
         definition.name,
         (Message,),
@@ -89,8 +89,8 @@ def _default_name(field: str) -> str:
     return f"{field.upper()}__DEFAULT"
 
 
-def _setter(put: Callable[[Any, Any], None], handling: Handling) -> Callable[[Any, Any], None]:
-    check = handling.check
+def _setter(put: Callable[[Any, Any], None], rules: FieldRules) -> Callable[[Any, Any], None]:
+    check = rules.check
 
     def set_field(message: Any, value: Any) -> None:
         put(message, check(value))
@@ -98,9 +98,9 @@ def _setter(put: Callable[[Any, Any], None], handling: Handling) -> Callable[[An
     return set_field
 
 
-def _initialiser(handlings: Mapping[str, Handling], puts: _Puts) -> Callable[..., None]:
-    steps = tuple((name, puts[name], handling.make, handling.check) for name, handling in handlings.items())
-    known = frozenset(handlings)
+def _initialiser(field_rules: Mapping[str, FieldRules], puts: _Puts) -> Callable[..., None]:
+    steps = tuple((name, puts[name], rules.make, rules.check) for name, rules in field_rules.items())
+    known = frozenset(field_rules)
 
     def initialise(self: Message, /, **values: Any) -> None:
         if not values.keys() <= known:
@@ -118,8 +118,8 @@ def _require_known(values: Mapping[str, Any], known: frozenset[str]) -> None:
         raise NotImplementedError("check_fields=False is not supported: every field is always checked")
 
 
-def _copier(cls: type[Message], handlings: Mapping[str, Handling], puts: _Puts) -> Callable[[Any], Any]:
-    steps = tuple((puts[name], handling.copy, attrgetter(f"_{name}")) for name, handling in handlings.items())
+def _copier(cls: type[Message], field_rules: Mapping[str, FieldRules], puts: _Puts) -> Callable[[Any], Any]:
+    steps = tuple((puts[name], rules.copy, attrgetter(f"_{name}")) for name, rules in field_rules.items())
     new = cls.__new__
 
     def copy(message: Any) -> Any:
@@ -131,17 +131,19 @@ def _copier(cls: type[Message], handlings: Mapping[str, Handling], puts: _Puts) 
     return copy
 
 
-def _handling(field: str, of: FieldType, parts: Mapping[NamespacedType, type[Message]]) -> Handling:
+def _field_rules(field: str, of: FieldType, parts: Mapping[NamespacedType, type[Message]]) -> FieldRules:
     inner = element_type(of)
-    element = message_element(parts[inner]) if isinstance(inner, NamespacedType) else plain_element(inner)
+    element = message_rules(parts[inner]) if isinstance(inner, NamespacedType) else plain_rules(inner)
     if isinstance(of, SequenceType):
-        return handling_of(field, of, element)
-    return Handling(check_of(field, element), element.make, element.copy)
+        return sequence_rules(field, of, element)
+    return FieldRules(check_of(field, element), element.make, element.copy)
 
 
-def _with_declared_default(definition: Definition, field: str, of: FieldType, handling: Handling) -> Handling:
+def _with_declared_default(
+    definition: Definition, field: str, of: FieldType, rules: FieldRules
+) -> FieldRules:
     if field not in definition.defaults:
-        return handling
-    value = default_value(definition, field, of, handling.check)
+        return rules
+    value = default_value(definition, field, of, rules.check)
     copied = isinstance(of, SequenceType)
-    return evolve(handling, make=(lambda: handling.copy(value)) if copied else (lambda: value))
+    return evolve(rules, make=(lambda: rules.copy(value)) if copied else (lambda: value))

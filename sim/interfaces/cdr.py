@@ -1,4 +1,4 @@
-"""Messages as bytes on the wire (CDR): written by encoders of their own, read through rosbags' typestore."""
+"""Converts messages to CDR by the encoders of ``cdr_writing``, and back by rosbags' typestore."""
 
 from __future__ import annotations
 
@@ -24,23 +24,23 @@ MessageT = TypeVar("MessageT", bound=Message)
 _Convert: TypeAlias = Callable[[Any], Any]
 
 _WIDE_TEXT = "sim/msg/WideText"
-"""How rosbags is told of a wide string: as a message that holds its units."""
+"""The name under which rosbags gets a wide string: a message that holds its UTF-16 units."""
 
 
 def to_cdr(message: Message) -> bytes:
     """Return a message as little-endian CDR with its four bytes of header. Thread-safe.
 
-    Wide strings become their number of UTF-16 units and these units in four bytes each, as in
+    A wide string is written as its number of UTF-16 units and the units in four bytes each, as in
     rosidl_typesupport_fastrtps.
     """
     return _encoder(type(message))(message)
 
 
 def from_cdr(cls: type[MessageT], data: bytes) -> MessageT:
-    """Return the message of class ``cls`` that CDR bytes of either byte order hold. Thread-safe.
+    """Return the message of class ``cls`` in CDR bytes of either byte order. Thread-safe.
 
     Raises:
-        ValueError: the bytes are no such message.
+        ValueError: the bytes do not encode such a message.
     """
     from rosbags.serde import SerdeError
 
@@ -53,10 +53,10 @@ def from_cdr(cls: type[MessageT], data: bytes) -> MessageT:
 
 @cache
 def typestore_of(cls: type[Message]) -> Typestore:
-    """Return rosbags' typestore of a class and all that it contains.
+    """Return rosbags' typestore of a class and the classes that it contains.
 
-    It knows no wide strings; they are messages ``sim/msg/WideText`` with a sequence of units. Every class
-    has its own, because two classes may have one name: an interface and what replaced it.
+    A wide string is a message ``sim/msg/WideText`` there, with a sequence of units. Every class
+    has a typestore of its own, because two classes may have one name: an interface and its replacement.
     """
     from rosbags.typesys.store import Typestore
 
@@ -80,7 +80,7 @@ def _register(store: Typestore, cls: type[Message]) -> None:
 
 
 def _on_wire(of: FieldDesc) -> FieldDesc:
-    """Return the type to give rosbags, which knows no wide strings."""
+    """Return a field's type for rosbags, which has no wide strings."""
     if of[0] == Nodetype.BASE:
         return (Nodetype.NAME, _WIDE_TEXT) if of[1][0] == "wstring" else of
     if of[0] == Nodetype.NAME:
@@ -91,12 +91,12 @@ def _on_wire(of: FieldDesc) -> FieldDesc:
 
 @cache
 def _encoder(kind: type[Message]) -> Encode:
-    """Return the encoder of the class made from the definition, of which a message's may be a subclass."""
+    """Return the encoder of the built class, of which ``kind`` may be a subclass."""
     return encoder_of(next(cls for cls in kind.__mro__ if "__interface__" in vars(cls)))
 
 
 def _inward(cls: type[Message], values: Sequence[Any]) -> Message:
-    """Return the message of the values rosbags read, which stand in the order of the fields."""
+    """Return the message of the values that rosbags read, in the order of the fields."""
     conversions = _conversions(cls.__interface__).items()
     pairs = zip(conversions, values, strict=False)
     return assemble(cls, {name: convert(value) for (name, convert), value in pairs})
@@ -108,7 +108,7 @@ def _conversions(interface: Interface) -> dict[str, _Convert]:
 
 
 def _conversion(of: FieldType) -> _Convert:
-    """Return what makes a field's value of what rosbags read."""
+    """Return the function that converts a value from rosbags to a field's value."""
     if isinstance(of, SequenceType):
         return _sequence_conversion(of)
     if isinstance(of, AbstractWString):

@@ -1,9 +1,8 @@
-"""How messages become CDR: for every class the steps that write its fields, found once.
+"""Encodes messages as CDR. The steps that write the fields of a class are determined once.
 
-Numbers that follow each other, those of messages in the message among them, are packed at one go. Where
-they lie relative to their alignment depends on the texts and sequences before them, so every such run has
-a format for each of the eight places it can begin at. Source: OMG's CDR with alignments up to 8, as Fast
-CDR writes it for ROS 2.
+Consecutive numbers, also those in nested messages, are packed in one call. Their alignment depends on the
+texts and sequences before them, so every such run of numbers has a format for each of its eight possible
+offsets. Source: OMG's CDR with alignments up to 8, as Fast CDR writes it for ROS 2.
 """
 
 from __future__ import annotations
@@ -33,18 +32,18 @@ if TYPE_CHECKING:
 
 Encode: TypeAlias = Callable[[Any], bytes]
 _Write: TypeAlias = Callable[[Any, bytearray], None]
-"""Appends a value to the CDR before it."""
+"""Appends a value to a buffer of CDR."""
 
 _LITTLE_ENDIAN = b"\x00\x01\x00\x00"
-"""The header that tells the byte order; alignments count from behind it."""
+"""The header with the byte order; alignments count from its end."""
 _FORMATS = {"boolean": "?", "octet": "1s", **TYPECODES}
 _PADDINGS = {size: tuple(bytes(-place % size) for place in range(8)) for size in (1, 2, 4, 8)}
-"""What fills up to the next multiple of a size, by the rest modulo 8 of the place before."""
+"""The padding before a value of a size, by the offset modulo 8."""
 
 
 @frozen
 class _WriteStep:
-    """``write`` appends what ``get`` returns of a message."""
+    """``write`` appends the value that ``get`` returns for a message."""
 
     get: Callable[[Any], Any]
     write: _Write
@@ -52,7 +51,7 @@ class _WriteStep:
 
 @frozen
 class _Number:
-    """A number, truth value or byte, and the slots that lead to it."""
+    """A number, truth value or byte, and the path of slots to it."""
 
     path: str
     format: str
@@ -60,7 +59,7 @@ class _Number:
 
 @cache
 def encoder_of(cls: type[Message]) -> Encode:
-    """Return what makes CDR of messages of a class. It is thread-safe."""
+    """Return the thread-safe encoder for messages of a class."""
     pieces = list(_pieces(cls.__interface__, ""))
     if all(isinstance(piece, _Number) for piece in pieces):
         return _flat_encoder(cast("list[_Number]", pieces))
@@ -76,7 +75,7 @@ def encoder_of(cls: type[Message]) -> Encode:
 
 
 def _flat_encoder(numbers: Sequence[_Number]) -> Encode:
-    """Return the encoder of messages that contain nothing but numbers."""
+    """Return the encoder of messages that contain only numbers."""
     pack = Struct("<4s" + _layout(numbers, 0)).pack
     get = _getter(numbers)
     if len(numbers) == 1:
@@ -85,7 +84,7 @@ def _flat_encoder(numbers: Sequence[_Number]) -> Encode:
 
 
 def _pieces(interface: Interface, path: str) -> Iterator[_Number | _WriteStep]:
-    """What a message consists of, in order, with the messages in it taken apart."""
+    """Yield the parts of a message in order, with nested messages flattened."""
     for name, of in interface.types.items():
         slot = f"{path}_{name}"
         if isinstance(of, NamespacedType):
@@ -99,7 +98,7 @@ def _pieces(interface: Interface, path: str) -> Iterator[_Number | _WriteStep]:
 
 
 def _steps(pieces: Sequence[_Number | _WriteStep]) -> Iterator[_WriteStep]:
-    """Put numbers that follow each other together."""
+    """Yield the steps of writing; consecutive numbers are one step."""
     run: list[_Number] = []
     for piece in pieces:
         if isinstance(piece, _Number):
@@ -114,7 +113,7 @@ def _steps(pieces: Sequence[_Number | _WriteStep]) -> Iterator[_WriteStep]:
 
 
 def _getter(numbers: Sequence[_Number]) -> Callable[[Any], Any]:
-    """Return what returns the numbers: one as it is, several as a tuple."""
+    """Return the function that gets the numbers: one number as it is, several as a tuple."""
     return attrgetter(*(number.path for number in numbers))
 
 
@@ -131,7 +130,7 @@ def _write_run(numbers: Sequence[_Number]) -> _Write:
 
 
 def _layout(numbers: Sequence[_Number], place: int) -> str:
-    """Return the format of numbers and their padding, from a place that leaves this rest modulo 8."""
+    """Return the format of numbers and their padding, from an offset modulo 8."""
     layout = ""
     for number in numbers:
         size = calcsize(f"<{number.format}")
@@ -142,7 +141,7 @@ def _layout(numbers: Sequence[_Number], place: int) -> str:
 
 
 def _writer(name: str, of: FieldType, interface: Interface) -> _Write:
-    """Return what writes the value of a field that is neither number nor message."""
+    """Return the function that writes a field which is neither a number nor a message."""
     if not isinstance(of, SequenceType):
         return _write_wide_text if isinstance(of, AbstractWString) else _write_text
     code = typecode(of)
@@ -154,7 +153,7 @@ def _writer(name: str, of: FieldType, interface: Interface) -> _Write:
 
 
 def _values_writer(of: ElementType, interface: Interface) -> Callable[[Any, bytearray], None]:
-    """Return what writes the values of a sequence, one after another."""
+    """Return the function that writes the values of a sequence."""
     if isinstance(of, NamespacedType):
         return _write_messages(interface.parts[of].__interface__)
     if isinstance(of, BasicType):
@@ -188,10 +187,10 @@ def _with_count(write_values: _Write) -> _Write:
 
 
 def _counted(name: str, size: int, write_values: _Write) -> _Write:
-    """Write as many values as there must be."""
+    """Return the function that writes exactly ``size`` values."""
 
     def write(values: Any, out: bytearray) -> None:
-        # Their number was right when they were assigned; a list can have been changed since.
+        # The length was checked at assignment, but the program may have changed the list since.
         if len(values) != size:
             raise ValueError(f"the field '{name}' holds {len(values)} values and must hold {size}")
         write_values(values, out)
@@ -200,7 +199,7 @@ def _counted(name: str, size: int, write_values: _Write) -> _Write:
 
 
 def _write_numbers(size: int) -> _Write:
-    """Write an ``array.array`` of numbers; ``size`` is the bytes of each."""
+    """Return the function that writes an ``array.array`` of numbers with ``size`` bytes each."""
     paddings = _PADDINGS[size]
 
     def write(values: Any, out: bytearray) -> None:
@@ -213,7 +212,7 @@ def _write_numbers(size: int) -> _Write:
 
 
 def _write_array(size: int) -> _Write:
-    """Write a numpy array of numbers of so many bytes each."""
+    """Return the function that writes a numpy array of numbers with ``size`` bytes each."""
     paddings = _PADDINGS[size]
 
     def write(values: Any, out: bytearray) -> None:
@@ -256,4 +255,4 @@ def _write_filler(_nothing: None, out: bytearray) -> None:
 
 
 def _nothing(_message: Any) -> None:
-    """Get what a message without fields holds."""
+    """Get the value of the filler: None."""

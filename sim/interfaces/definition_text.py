@@ -1,4 +1,4 @@
-"""Writing definitions in the ``.msg`` notation."""
+"""Writes definitions in the ``.msg`` notation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def definition(cls: type[Message]) -> str:
-    """Return a message's definition with all it contains, in the ``ros2msg`` form of MCAP schemas."""
+    """Return the definitions of a message and of all contained messages, as a ``ros2msg`` schema of MCAP."""
     own, *contained = _with_contained(cls)
     return _lines(own) + "".join(
         f"{'=' * 80}\nMSG: {part.package}/{part.name}\n{_lines(part)}" for part in contained
@@ -23,7 +23,7 @@ def definition(cls: type[Message]) -> str:
 
 
 def message_text(definition: Definition) -> str:
-    """Return a definition as a ``.msg`` file of its package writes it, with default values."""
+    """Return a definition as a ``.msg`` file, with default values and short names for its own package."""
     constants = [f"{of} {name}={_literal(value)}" for name, of, value in definition.constants]
     fields = [
         f"{_type_text(of, definition.package)} {name}{_default(definition, name)}"
@@ -33,7 +33,7 @@ def message_text(definition: Definition) -> str:
 
 
 def _with_contained(cls: type[Message]) -> list[Definition]:
-    """Return a class's definition and then, each once, those that it needs, deepest last."""
+    """Return a class's definition, and then those of all contained messages, each once, deepest last."""
     found: dict[str, Definition] = {}
 
     def visit(cls: type[Message]) -> None:
@@ -58,7 +58,7 @@ def _full_lines(definition: Definition) -> Iterator[str]:
 
 
 def _type_text(of: FieldDesc, package: str | None) -> str:
-    """Return a field's type; messages of ``package`` itself stand without it."""
+    """Return a field's type; messages of ``package`` are written without the package."""
     if of[0] == Nodetype.BASE:
         base, length = of[1]
         return f"{base}<={length}" if length else base

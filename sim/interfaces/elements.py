@@ -1,4 +1,4 @@
-"""How a single value of a field is recognised, made and copied; the error texts are rosidl's."""
+"""Rules for a single value of a field: checking, default and copy. The error texts are rosidl's."""
 
 from __future__ import annotations
 
@@ -20,35 +20,35 @@ from sim.interfaces.field_types import (
 )
 
 Check: TypeAlias = Callable[[Any], Any]
-"""Takes an assigned value, returns the value to store, raises `AssertionError` with rosidl's text."""
+"""Takes an assigned value and returns the value to store; raises `AssertionError` with rosidl's text."""
 
 
 @frozen
-class Element:
-    """The rules for one value, whichever field or sequence it stands in."""
+class ValueRules:
+    """The rules for one value, in a field or in a sequence."""
 
     python: type | tuple[type, ...]
-    """Instances of it are taken."""
+    """The class, or classes, of accepted values."""
     name: str
-    """Its name in the error text of a sequence."""
+    """The class's name in the error text of a sequence."""
     wanted: str
-    """What the field must be, for a value of another class."""
+    """What the field must be: the error text for a value of another class."""
     make: Callable[[], Any]
     """Returns the default value."""
     copy: Callable[[Any], Any]
     """Returns the value as a subscriber receives it."""
     within: Callable[[Any], bool] | None = None
-    """Whether a value of the right class is in range; ``None`` if every one is."""
+    """Whether a value of the right class is in range; ``None`` if all values are."""
     all_within: Callable[[Collection[Any]], bool] | None = None
     """The same for many values at once."""
     limit: str = ""
-    """What the field must be, for a value out of range."""
+    """What the field must be: the error text for a value out of range."""
     each: str = ""
-    """What each value of a sequence must be, beside its class."""
+    """What each value of a sequence must be, besides its class."""
 
 
-def check_of(field: str, element: Element) -> Check:
-    """Return the check of a field that holds one value."""
+def check_of(field: str, element: ValueRules) -> Check:
+    """Return the check of a field with a single value."""
     python, within = element.python, element.within
     wrong_class = f"The '{field}' field must be {element.wanted}"
     out_of_range = f"The '{field}' field must be {element.limit}"
@@ -72,7 +72,7 @@ def check_of(field: str, element: Element) -> Check:
 
 
 @cache
-def plain_element(of: BasicType | StringType) -> Element:
+def plain_rules(of: BasicType | StringType) -> ValueRules:
     """Return the rules of a number, truth value, byte or text."""
     if not isinstance(of, BasicType):
         return _string(of)
@@ -80,20 +80,22 @@ def plain_element(of: BasicType | StringType) -> Element:
         return _integer(of.typename)
     if of.typename in FLOAT_LIMITS:
         return _floating_point(of.typename)
-    return Element(bool, "bool", "of type 'bool'", bool, bool) if of.typename == "boolean" else _octet()
+    return ValueRules(bool, "bool", "of type 'bool'", bool, bool) if of.typename == "boolean" else _octet()
 
 
-def message_element(cls: type[Any]) -> Element:
+def message_rules(cls: type[Any]) -> ValueRules:
     """Return the rules of a message inside a message."""
-    return Element(cls, cls.__name__, f"a sub message of type '{cls.__name__}'", cls, cls.__interface__.copy)
+    return ValueRules(
+        cls, cls.__name__, f"a sub message of type '{cls.__name__}'", cls, cls.__interface__.copy
+    )
 
 
-def _string(of: StringType) -> Element:
+def _string(of: StringType) -> ValueRules:
     if not isinstance(of, BoundedString | BoundedWString):
-        return Element(str, "str", "of type 'str'", str, str)
+        return ValueRules(str, "str", "of type 'str'", str, str)
     bound = of.maximum_size
     text = f"string value not longer than {bound}"
-    return Element(
+    return ValueRules(
         str,
         "str",
         text,
@@ -106,10 +108,10 @@ def _string(of: StringType) -> Element:
     )
 
 
-def _integer(typename: str) -> Element:
+def _integer(typename: str) -> ValueRules:
     low, high = INTEGER_LIMITS[typename]
     noun = "integer" if low else "unsigned integer"
-    return Element(
+    return ValueRules(
         int,
         "int",
         "of type 'int'",
@@ -122,19 +124,19 @@ def _integer(typename: str) -> Element:
     )
 
 
-def _floating_point(typename: str) -> Element:
+def _floating_point(typename: str) -> ValueRules:
     bound = FLOAT_LIMITS[typename]
     each = f"each {typename} in [{-bound:f}, {bound:f}]"
     if typename == "double":
-        return Element(float, "float", "of type 'float'", float, float, each=each)
+        return ValueRules(float, "float", "of type 'float'", float, float, each=each)
     single = Struct("f")
     pack, unpack = single.pack, single.unpack
 
     def all_within(values: Collection[float]) -> bool:
-        # The first test is the quick one; infinities, which are allowed, fail it.
+        # The first test is fast, but fails for infinities, which are allowed.
         return not values or max(map(abs, values)) <= bound or not any(bound < abs(v) < inf for v in values)
 
-    return Element(
+    return ValueRules(
         float,
         "float",
         "of type 'float'",
@@ -147,9 +149,9 @@ def _floating_point(typename: str) -> Element:
     )
 
 
-def _octet() -> Element:
+def _octet() -> ValueRules:
     text = "of type 'bytes' or 'ByteString' with length 1"
-    return Element(
+    return ValueRules(
         (bytes, bytearray),
         "bytes",
         text,

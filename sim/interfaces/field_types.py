@@ -1,10 +1,10 @@
-"""The types a message field can have, named as ROS 2's IDL names them.
+"""The types of message fields, with the names of ROS 2's IDL.
 
-The classes and their attributes match ``rosidl_parser.definition``, because a message class shows
-them to everyone in ``SLOT_TYPES``. ``str()`` of a type is its text in ``get_fields_and_field_types()``.
+The classes and their attributes match ``rosidl_parser.definition``, because programs see
+them in ``SLOT_TYPES``. ``str()`` of a type is its text in ``get_fields_and_field_types()``.
 
-``isinstance`` and ``issubclass`` answer as for rosidl's classes, which stand five deep: here the two deep
-branches, texts and sequences, are registered with the bases above them.
+``isinstance`` and ``issubclass`` answer as for rosidl's classes, whose hierarchy is five deep: here texts and
+sequences are registered as virtual subclasses of the bases above them.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ INTEGER_LIMITS: Final = {
 """Smallest and largest value of every integer type."""
 
 FLOAT_LIMITS: Final = {"float": 3.402823466e38, "double": 1.7976931348623157e308}
-"""Largest finite magnitude of every floating point type, in the digits rosidl uses."""
+"""Largest finite magnitude of every floating point type, with rosidl's digits."""
 
 
-class AbstractType(ABC):  # noqa: B024 -- programs only ask whether something is one
+class AbstractType(ABC):  # noqa: B024 -- programs only use it in isinstance()
     """Any type."""
 
 
 class AbstractNestableType(AbstractType):
-    """The type of a single value, which a sequence may have several of."""
+    """The type of a single value, which a sequence can contain."""
 
 
 @AbstractNestableType.register
@@ -38,7 +38,7 @@ class AbstractGenericString(ABC):  # noqa: B024
     """A text."""
 
     def has_maximum_size(self) -> bool:
-        """Whether its length is bounded."""
+        """Whether the text's length is bounded."""
         return hasattr(self, "maximum_size")
 
 
@@ -62,7 +62,7 @@ class AbstractNestedType(ABC):
 
 
 class AbstractSequence(AbstractNestedType):
-    """Any number of values, perhaps up to a bound."""
+    """Any number of values, or any number up to a bound."""
 
 
 @frozen

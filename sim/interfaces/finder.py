@@ -1,4 +1,4 @@
-"""Importing interfaces as ROS 2 code does: ``from std_srvs.srv import SetBool``."""
+"""Imports of interfaces as in ROS 2: ``from std_srvs.srv import SetBool``."""
 
 from __future__ import annotations
 
@@ -28,17 +28,17 @@ _ACTION_PARTS = (
 
 
 class InterfaceFinder:
-    """A finder for ``sys.meta_path`` of the modules of all interface packages.
+    """Finds the modules of all interface packages, for ``sys.meta_path``.
 
-    The caller installs it, before Python's own finders: to these, a folder ``my_interfaces/msg``
-    beside the file that is run would be a package without content.
+    The caller installs it before Python's own finders: these would take a folder ``my_interfaces/msg``
+    beside the program for an empty package.
 
-    It knows ``std_msgs``, ``std_msgs.msg`` and, as rosidl has a module for each interface,
-    ``std_msgs.msg._int32``, which is what a pickled class refers to.
+    It finds ``std_msgs``, ``std_msgs.msg`` and, as rosidl has a module for each interface,
+    ``std_msgs.msg._int32``, which a pickled class refers to.
     """
 
     def __init__(self) -> None:
-        # What is known is read before the first import asks here, as reading it imports modules too.
+        # The packages are read before the first import, because reading them imports modules, too.
         packages()
 
     def find_spec(
@@ -55,11 +55,11 @@ class _InterfaceLoader:
         return interface_module(spec.name)
 
     def exec_module(self, module: ModuleType) -> None:
-        """Do nothing: the module fills itself when it is used."""
+        """Do nothing: the module builds its classes when they are used."""
 
 
 class InterfaceModule(ModuleType):
-    """A module whose classes are built when they are first asked for."""
+    """A module whose classes are built when they are first used."""
 
     def __init__(self, name: str, doc: str, makers: _Makers) -> None:
         super().__init__(name, doc)
@@ -116,7 +116,7 @@ def _is_interface_module(name: str) -> bool:
 
 
 def _owner(package: str, kind: Kind, stem: str) -> str:
-    """Return the interface that has a module of its own of this name; empty if none has."""
+    """Return the interface whose own module has this name; empty without one."""
     return next((name for name in names(package, kind) if module_stem(name) == stem), "")
 
 

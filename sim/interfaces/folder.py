@@ -1,4 +1,4 @@
-"""Reading ``.msg``, ``.srv`` and ``.action`` files from a folder of interface packages."""
+"""Reads ``.msg``, ``.srv`` and ``.action`` files from a folder of interface packages."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ _MANIFEST_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
 
 
 class _File(NamedTuple):
-    """A file, and what tells that it changed."""
+    """A file, with the time and size that show whether it changed."""
 
     path: Path
     modified: int
@@ -32,11 +32,11 @@ class _File(NamedTuple):
 
 
 class DefinitionFolder:
-    """Source of the definitions in one interface package, or in packages that lie side by side.
+    """The definitions in one interface package, or in packages side by side.
 
-    A package holds ``msg/<Name>.msg``, ``srv/<Name>.srv`` or ``action/<Name>.action``; its name is
-    the one in its ``package.xml``, or the folder's if it has none. The files are listed once, when
-    this is made, and read when asked for.
+    A package contains ``msg/<Name>.msg``, ``srv/<Name>.srv`` or ``action/<Name>.action``. Its name is
+    that in ``package.xml``, or the folder's name without such a file. The files are listed once, when
+    the object is created, and read when they are needed.
 
     Raises:
         DefinitionError: the folder does not exist.
@@ -54,40 +54,45 @@ class DefinitionFolder:
                 files[path.stem] = _File(path, status.st_mtime_ns, status.st_size)
 
     def __eq__(self, other: object) -> bool:
-        """Whether the other one found the same files, unchanged since."""
+        """Whether the other folder found the same files, unchanged since."""
         return isinstance(other, DefinitionFolder) and self._files == other._files
 
     __hash__ = None  # type: ignore[assignment]
 
     def packages(self) -> frozenset[str]:
-        """Return the packages that hold at least one definition."""
+        """Return the packages with at least one definition."""
         return frozenset(package for package, _ in self._files)
 
     def names(self, package: str, kind: Kind) -> tuple[str, ...]:
         """Return the sorted names of a package's interfaces of one kind."""
         return tuple(self._files.get((package, kind), ()))
 
-    def message(self, package: str, name: str) -> Definition:
-        """Read a ``.msg`` file."""
-        path = self._files[package, "msg"][name].path
-        return parse(self.text(package, "msg", name), package, "msg", name, origin=str(path))
-
-    def service(self, package: str, name: str) -> tuple[Definition, Definition]:
-        """Read a ``.srv`` file."""
-        request, response = self._parts(package, "srv", name)
-        return request, response
-
-    def action(self, package: str, name: str) -> tuple[Definition, Definition, Definition]:
-        """Read an ``.action`` file."""
-        goal, result, feedback = self._parts(package, "action", name)
-        return goal, result, feedback
+    def parts(self, package: str, kind: Kind, name: str) -> tuple[Definition, ...]:
+        """Read a file; lines of ``---`` divide the parts of a service or an action."""
+        path = self._files[package, kind][name].path
+        text = self.text(package, kind, name)
+        if kind == "msg":
+            return (parse(text, package, kind, name, origin=str(path)),)
+        lines = text.splitlines()
+        divisions = [index for index, line in enumerate(lines) if line.strip() == "---"]
+        if len(divisions) != len(_PARTS[kind]) - 1:
+            raise DefinitionError(f"{path}: {_DIVISIONS[kind]}, not {len(divisions)}")
+        starts = [0, *(division + 1 for division in divisions)]
+        ends = [*divisions, len(lines)]
+        # Blank lines replace the parts before, so that errors have the right line numbers.
+        return tuple(
+            parse(
+                "\n".join([""] * start + lines[start:end]), package, kind, f"{name}_{part}", origin=str(path)
+            )
+            for part, start, end in zip(_PARTS[kind], starts, ends, strict=True)
+        )
 
     def text(self, package: str, kind: Kind, name: str) -> str:
-        """Return what the file says, word for word.
+        """Return the content of the file.
 
         Raises:
-            DefinitionError: the file is not UTF-8 text or cannot be read, or the name of the
-                package or interface is not one ROS 2 takes.
+            DefinitionError: the file is not UTF-8 text or cannot be read, or ROS 2 does not allow the name of
+                the package or interface.
         """
         path = self._files[package, kind][name].path
         require_package_name(package, str(path))
@@ -104,27 +109,9 @@ class DefinitionFolder:
                 f"{path}:{line}: the byte 0x{content[error.start]:02x} is not UTF-8; save the file as UTF-8"
             ) from None
 
-    def _parts(self, package: str, kind: Kind, name: str) -> list[Definition]:
-        """Read the parts of a service or an action, which lines of ``---`` divide."""
-        path = self._files[package, kind][name].path
-        lines = self.text(package, kind, name).splitlines()
-        divisions = [index for index, line in enumerate(lines) if line.strip() == "---"]
-        if len(divisions) != len(_PARTS[kind]) - 1:
-            raise DefinitionError(f"{path}: {_DIVISIONS[kind]}, not {len(divisions)}")
-        starts = [0, *(division + 1 for division in divisions)]
-        # Blank lines in place of the parts before keep the line numbers true in errors.
-        texts = [
-            "\n".join([""] * start + lines[start:end])
-            for start, end in zip(starts, [*divisions, len(lines)], strict=True)
-        ]
-        return [
-            parse(text, package, kind, f"{name}_{part}", origin=str(path))
-            for part, text in zip(_PARTS[kind], texts, strict=True)
-        ]
-
 
 def is_package(folder: Path) -> bool:
-    """Whether a folder itself holds definition files in ``msg``, ``srv`` or ``action``."""
+    """Whether a folder has definition files in ``msg``, ``srv`` or ``action``."""
     return any(True for _ in _definition_files(folder))
 
 

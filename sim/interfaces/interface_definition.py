@@ -1,4 +1,4 @@
-"""What a ``.msg`` file, or a part of a ``.srv`` or ``.action`` file, says: constants, fields, defaults."""
+"""The content of a ``.msg`` file, or of a part of a ``.srv`` or ``.action`` file."""
 
 from __future__ import annotations
 
@@ -32,26 +32,26 @@ _IDL_NAMES = {"bool": "boolean", "byte": "octet", "char": "uint8", "float32": "f
 
 
 FILLER_FIELD = "structure_needs_at_least_one_member"
-"""The field rosbags adds to a message without fields, as ROS 2's IDL does."""
+"""The field that rosbags adds to a message without fields, as ROS 2's IDL does."""
 
 
 class DefinitionError(ImportError, ValueError):
-    """A ``.msg``, ``.srv`` or ``.action`` text cannot be used; the message names file, line and reason.
+    """A ``.msg``, ``.srv`` or ``.action`` file cannot be used; the message names file, line and reason.
 
-    It is an `ImportError` too, because it is the import of the class that fails.
+    It is also an `ImportError`, because the import of the class fails.
     """
 
 
 class UnknownInterfaceError(LookupError):
-    """No package, message, service or action has this name; the text names the nearest one."""
+    """No package, message, service or action has this name; the message names the most similar one."""
 
 
 @frozen
 class Definition:
     """One structure: a message, or a part of a service or an action.
 
-    Constants and fields are kept in rosbags' notation, so that its typestore can be given them as
-    they are. A structure without fields has none here (rosbags gives it a filler byte).
+    Constants and fields have rosbags' notation, so that its typestore can use them as they are.
+    A structure without fields has none here (rosbags adds a filler byte).
     """
 
     package: str
@@ -60,9 +60,9 @@ class Definition:
     constants: Constdefs
     fields: Fielddefs
     defaults: Mapping[str, object] = field(factory=dict)
-    """Declared default values by field name, as written; other fields start as zero, empty or false."""
+    """Declared default values by field name; other fields default to zero, empty or false."""
     places: Mapping[str, str] = field(factory=dict, repr=False)
-    """Where each constant and field was read, as ``file:line``, if it came from a file."""
+    """``file:line`` of each constant and field that was read from a file."""
 
     @property
     def type_name(self) -> str:
@@ -71,12 +71,12 @@ class Definition:
 
     @property
     def module_name(self) -> str:
-        """The module in which rosidl puts the Python class, such as ``geometry_msgs.msg._twist``."""
+        """The module of rosidl's Python class, such as ``geometry_msgs.msg._twist``."""
         owner = self.name if self.kind == "msg" else owner_of(self.name)
         return f"{self.package}.{self.kind}.{module_stem(owner)}"
 
     def place(self, name: str) -> str:
-        """Return where a constant or field stands, for an error; without a file, the full name."""
+        """Return ``file:line`` of a constant or field for an error; without a file, the type's full name."""
         return self.places.get(name, self.type_name)
 
     def field_types(self) -> dict[str, FieldType]:
@@ -85,25 +85,22 @@ class Definition:
 
 
 class DefinitionSource(Protocol):
-    """A place that definitions come from."""
+    """A source of definitions."""
 
     def packages(self) -> frozenset[str]:
-        """Return the names of all packages it knows."""
+        """Return the names of all packages of the source."""
 
     def names(self, package: str, kind: Kind) -> tuple[str, ...]:
         """Return the sorted names of a package's interfaces of one kind; empty for an unknown package."""
 
-    def message(self, package: str, name: str) -> Definition:
-        """Return a message listed by ``names``; `DefinitionError` if its text is wrong."""
+    def parts(self, package: str, kind: Kind, name: str) -> tuple[Definition, ...]:
+        """Return the structures of an interface listed by ``names``; `DefinitionError` if its text is wrong.
+
+        A message has one, a service has request and response, an action has goal, result and feedback.
+        """
 
     def text(self, package: str, kind: Kind, name: str) -> str:
         """Return the definition of an interface listed by ``names``, as its author wrote it."""
-
-    def service(self, package: str, name: str) -> tuple[Definition, Definition]:
-        """Return request and response of a service listed by ``names``; `DefinitionError` as above."""
-
-    def action(self, package: str, name: str) -> tuple[Definition, Definition, Definition]:
-        """Return goal, result and feedback of an action listed by ``names``; errors as above."""
 
 
 def owner_of(name: str) -> str:
@@ -112,7 +109,7 @@ def owner_of(name: str) -> str:
 
 
 def module_stem(name: str) -> str:
-    """Return the file name rosidl gives the module of an interface: ``SetBool`` → ``_set_bool``.
+    """Return rosidl's file name for the module of an interface: ``SetBool`` → ``_set_bool``.
 
     Rule: rosidl_pycommon's ``convert_camel_case_to_lower_case_underscore``.
     """
@@ -122,7 +119,7 @@ def module_stem(name: str) -> str:
 
 
 def field_type(description: FieldDesc) -> FieldType:
-    """Translate rosbags' description of a field into its ROS 2 type."""
+    """Convert rosbags' description of a field to the ROS 2 type."""
     if description[0] == Nodetype.BASE or description[0] == Nodetype.NAME:
         return _element_type(description)
     inner, size = description[1]

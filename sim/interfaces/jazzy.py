@@ -1,4 +1,4 @@
-"""The messages of ROS 2 Jazzy's standard packages, as the rosbags library defines them."""
+"""The messages of ROS 2 Jazzy's standard packages, as defined by the rosbags library."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ DEFAULTS: Mapping[str, Mapping[str, object]] = {
 
 
 class JazzyMessages:
-    """Source of every message in rosbags' Jazzy typestore; it knows no services and actions."""
+    """The definitions of all messages in rosbags' Jazzy typestore, which has no services and actions."""
 
     def __init__(self) -> None:
         names: dict[str, list[str]] = {}
@@ -39,37 +39,28 @@ class JazzyMessages:
         return frozenset(self._names)
 
     def names(self, package: str, kind: Kind) -> tuple[str, ...]:
-        """Return a package's message names; it has no services and actions."""
+        """Return a package's message names; empty for services and actions."""
         return self._names.get(package, ()) if kind == "msg" else ()
 
-    def message(self, package: str, name: str) -> Definition:
+    def parts(self, package: str, kind: Kind, name: str) -> tuple[Definition]:
         """Return a message's definition with its default values."""
         type_name = f"{package}/msg/{name}"
         constants, fields = jazzy_tables()[type_name]
         own_fields = [entry for entry in fields if entry[0] != FILLER_FIELD]
-        return Definition(package, "msg", name, constants, own_fields, DEFAULTS.get(type_name, {}))
+        return (Definition(package, "msg", name, constants, own_fields, DEFAULTS.get(type_name, {})),)
 
     def text(self, package: str, kind: Kind, name: str) -> str:
-        """Return a message's definition; rosbags keeps no comments."""
-        return message_text(self.message(package, name))
-
-    def service(self, package: str, name: str) -> tuple[Definition, Definition]:
-        """Raise `LookupError`: ``names`` lists no services."""
-        raise LookupError(f"rosbags defines no services, so not {package}/srv/{name} either")
-
-    def action(self, package: str, name: str) -> tuple[Definition, Definition, Definition]:
-        """Raise `LookupError`: ``names`` lists no actions."""
-        raise LookupError(f"rosbags defines no actions, so not {package}/action/{name} either")
+        """Return a message's definition, without comments: rosbags does not keep them."""
+        return message_text(*self.parts(package, kind, name))
 
 
 @cache
 def jazzy_tables() -> Typesdict:
     """Return rosbags' table of Jazzy messages: constants and fields by type name.
 
-    rosbags builds its Jazzy module on the modules of the six releases before, which decorate about
-    300 dataclasses; that is nine tenths of their import time, and only the tables are of use here.
-    So the modules are run privately, with a decorator that does nothing. The ordinary modules
-    stay as they are for anyone who imports them.
+    rosbags' Jazzy module imports the modules of six earlier releases, which decorate about 300 dataclasses.
+    That takes nine tenths of the import time, and only the tables are needed here. So the modules are
+    executed privately, with a decorator that does nothing. The ordinary modules are not affected.
     """
     spec = find_spec("rosbags")
     assert spec is not None

@@ -1,4 +1,12 @@
-"""The interfaces this process knows: rosbags' Jazzy messages, this package's definitions, a learner's own."""
+"""The interfaces of this process: rosbags' Jazzy messages, this package's definitions, a learner's own.
+
+A class, and the classes of the messages that it contains, are built when they are first used. Every call with
+the same name returns the same class. All functions are thread-safe.
+
+Raises:
+    UnknownInterfaceError: there is no such package or interface; the text names the most similar one.
+    DefinitionError: the definition file cannot be read.
+"""
 
 from __future__ import annotations
 
@@ -15,41 +23,20 @@ _FULL_NAME = re.compile(r"(?P<package>\w+)/(?P<kind>msg(?=/[^/]+$)|(?:srv|action
 
 
 def message(package: str, name: str) -> type[Message]:
-    """Return a message class: ``message("std_msgs", "Int32")``.
-
-    The class, and those of the messages it contains, are built when first asked for. Safe to call
-    from several threads; every call returns the same class.
-
-    Raises:
-        UnknownInterfaceError: there is no such package or message; the text names the nearest.
-        DefinitionError: its ``.msg`` file cannot be read.
-    """
+    """Return a message class: ``message("std_msgs", "Int32")``."""
     return _registry().message(package, name)
 
 
 def service(package: str, name: str) -> ServiceType:
-    """Return a service class with its ``Request`` and ``Response``: ``service("std_srvs", "SetBool")``.
-
-    Calling the service class itself raises `NotImplementedError`, as in rclpy. Safe to call from
-    several threads; every call returns the same class.
-
-    Raises:
-        UnknownInterfaceError: there is no such package or service; the text names the nearest.
-        DefinitionError: its ``.srv`` file cannot be read.
-    """
+    """Return a service class with its ``Request`` and ``Response``: ``service("std_srvs", "SetBool")``."""
     return _registry().service(package, name)
 
 
 def action(package: str, name: str) -> ActionType:
     """Return an action class: ``action("example_interfaces", "Fibonacci")``.
 
-    It has the messages ``Goal``, ``Result`` and ``Feedback``, and in ``Impl`` the services and
-    messages that carry them. Calling the class itself raises `NotImplementedError`, as in rclpy.
-    Safe to call from several threads; every call returns the same class.
-
-    Raises:
-        UnknownInterfaceError: there is no such package or action; the text names the nearest.
-        DefinitionError: its ``.action`` file cannot be read.
+    It has the messages ``Goal``, ``Result`` and ``Feedback``, and in ``Impl`` the services and messages that
+    carry them.
     """
     return _registry().action(package, name)
 
@@ -60,35 +47,24 @@ def packages() -> frozenset[str]:
 
 
 def names(package: str, kind: Kind) -> tuple[str, ...]:
-    """Return the sorted names of a package's messages (``"msg"``), services (``"srv"``) or actions.
-
-    Raises:
-        UnknownInterfaceError: there is no such package; the text names the nearest.
-    """
+    """Return the sorted names of a package's messages (``"msg"``), services (``"srv"``) or actions."""
     return _registry().names(package, kind)
 
 
 def text(package: str, kind: Kind, name: str) -> str:
-    """Return the definition of an interface as its author wrote it.
-
-    Raises:
-        UnknownInterfaceError: there is no such package or interface; the text names the nearest.
-        DefinitionError: the file cannot be read.
-    """
+    """Return the definition of an interface as its author wrote it."""
     return _registry().text(package, kind, name)
 
 
 def add_definitions(folder: Path) -> None:
-    """Make the interfaces of a folder known.
+    """Add the interfaces of a folder: an interface package, or packages side by side.
 
-    The folder is an interface package (it holds ``msg``, ``srv`` or ``action`` with definition
-    files), or holds such packages side by side. An interface that is already known by the same
-    name is replaced, as by a workspace that overlays another; other names of its package stay.
-    Classes handed out before stay as they are, so add folders before nodes are imported.
+    They replace known interfaces of the same names, as a workspace overlays another one. Classes that were
+    returned before stay as they are, so add folders before nodes are imported. Errors in a file are raised
+    when its class is first used.
 
     Raises:
-        DefinitionError: the folder does not exist. What is wrong with a file is told when its
-            class is first asked for.
+        DefinitionError: the folder does not exist.
     """
     from sim.interfaces.folder import DefinitionFolder
 
@@ -96,13 +72,10 @@ def add_definitions(folder: Path) -> None:
 
 
 def message_of_type(type_name: str) -> type[Message]:
-    """Return a message class by full name; a request is ``std_srvs/srv/SetBool_Request``.
+    """Return a message class by its full name, such as ``std_srvs/srv/SetBool_Request``.
 
-    The parts of an action are named as rosidl does: ``example_interfaces/action/Fibonacci_Goal``,
-    ``…_Result``, ``…_Feedback``, ``…_FeedbackMessage``, ``…_SendGoal_Request`` and so on.
-
-    Raises:
-        UnknownInterfaceError: the name has another form, or as `message` and `service`.
+    The parts of an action have rosidl's names: ``example_interfaces/action/Fibonacci_Goal``, ``…_Result``,
+    ``…_Feedback``, ``…_FeedbackMessage``, ``…_SendGoal_Request`` and so on.
     """
     form = _FULL_NAME.fullmatch(type_name)
     if form is None:

@@ -1,4 +1,4 @@
-"""Interfaces as text, as the ``ros2 interface`` commands show them."""
+"""Interfaces as text, as the ``ros2 interface`` commands print them."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _PLURALS = {"msg": "messages", "srv": "services", "action": "actions"}
 def interface_text(type_name: str) -> str:
     """Return a definition as ``ros2 interface show`` prints it.
 
-    It is the text of the file with its comments; below every field that is a message stand that
+    It is the text of the file with its comments. Below every field that is a message are that
     message's lines, without comments and indented by a tab.
 
     Raises:
@@ -50,12 +50,12 @@ def _parts_of(type_name: str) -> tuple[str, Kind, str]:
 
 
 def kinds_sentence(package: str) -> str:
-    """Which kinds of interfaces a known package has: what to tell someone who imports another one."""
+    """A sentence on the kinds of interfaces of a known package, for an import of another kind."""
     return f"{package} has {' and '.join(_PLURALS[kind] for kind in _KINDS if names(package, kind))} only"
 
 
 def _nested(line: str, package: str, depth: int) -> Iterator[str]:
-    """Yield the lines of the message that a field holds."""
+    """Yield the lines of the message in a field."""
     field = line_of(line, place=package) if line.strip() != "---" else None
     form = type_text(field.type) if field else None
     if form is None or is_primitive(form.base):

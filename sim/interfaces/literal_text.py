@@ -1,4 +1,4 @@
-"""Reading the constants and default values of a definition, as rosidl_adapter does."""
+"""Parses the constants and default values of a definition, as rosidl_adapter does."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from sim.interfaces.field_types import INTEGER_LIMITS
 _TRUTHS: Final = {"true": True, "1": True, "false": False, "0": False}
 
 _ITEM = re.compile(r"""\s*("(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'|[^,]*?)\s*(?:,|$)""")
-"""One item of a list, in quotes or without, and the comma after it."""
+"""One item of a list, with or without quotes, and the comma after it."""
 
 
 def literal_of(text: str, base: str, *, is_list: bool) -> object:
-    """Return the value of a literal of a primitive type; a list of them for a field of several.
+    """Return the value of a literal of a primitive type, or (``is_list``) a list of such values.
 
     Raises:
-        ValueError: it is not a value of this type.
+        ValueError: the text is not a literal of this type.
     """
     if not is_list:
         return _scalar(text, base)

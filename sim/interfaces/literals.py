@@ -1,4 +1,4 @@
-"""Turning the constants and default values of a definition into the values Python code sees."""
+"""Converts the constants and default values of a definition to Python values."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from typing import Any
 
 from rosbags.interfaces import Nodetype
 
-from sim.interfaces.elements import Check, check_of, plain_element
+from sim.interfaces.elements import Check, check_of, plain_rules
 from sim.interfaces.field_types import BasicType, ElementType, FieldType, NamespacedType, SequenceType
 from sim.interfaces.interface_definition import Definition, DefinitionError, field_type
 
 
 def constant_values(definition: Definition) -> dict[str, Any]:
-    """Return the constants of a definition; those of type ``byte`` are bytes, as in rosidl.
+    """Return the constants of a definition; constants of type ``byte`` are bytes, as in rosidl.
 
     Raises:
         DefinitionError: a constant does not fit its type.
@@ -21,7 +21,7 @@ def constant_values(definition: Definition) -> dict[str, Any]:
     for name, typename, literal in definition.constants:
         of = field_type((Nodetype.BASE, (typename, 0)))
         assert not isinstance(of, NamespacedType | SequenceType)
-        values[name] = _fitted(definition, name, literal, of, check_of(name, plain_element(of)))
+        values[name] = _fitted(definition, name, literal, of, check_of(name, plain_rules(of)))
     return values
 
 
@@ -45,7 +45,7 @@ def _fitted(definition: Definition, name: str, literal: object, of: FieldType, c
 
 
 def _converted(literal: Any, of: ElementType) -> Any:
-    """Return a literal in its type's own class: ``1`` means ``1.0`` for a float, ``True`` for a bool."""
+    """Convert a literal to its type's class: ``1`` means ``1.0`` for a float, ``True`` for a bool."""
     if isinstance(of, NamespacedType):
         raise TypeError(f"a field of type {of} has no literal")
     if not isinstance(of, BasicType):

@@ -1,4 +1,4 @@
-"""Reading the ``.msg`` notation, line by line, with the rules of ROS 2's rosidl_adapter."""
+"""Parses the ``.msg`` notation line by line, by the rules of ROS 2's rosidl_adapter."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _MISLEADING: Final = {
     "boolean": "bool",
     "str": "string",
 }
-"""What is meant by the type names that ROS 1 or other languages use."""
+"""The ROS 2 types for the type names of ROS 1 and of other languages."""
 
 _FIELD_NAME = re.compile(r"(?!.*__)(?!.*_$)[a-z][a-z0-9_]*")
 _PACKAGE_NAME = _FIELD_NAME
@@ -52,16 +52,16 @@ class DefinitionLine(NamedTuple):
     """One line of a definition that is neither blank nor a comment."""
 
     place: _Place
-    """Where it stands, as ``file:line``."""
+    """The place of the line as ``file:line``."""
     type: str
     name: str
     value: str
-    """What follows the name, or the ``=`` of a constant; empty if nothing does."""
+    """The text after the name, or after the ``=`` of a constant."""
     is_constant: bool
 
 
 class _Structure:
-    """What was read so far."""
+    """The constants and fields read so far."""
 
     def __init__(self) -> None:
         self.constants: Constdefs = []
@@ -71,14 +71,14 @@ class _Structure:
 
 
 def parse(text: str, package: str, kind: Kind, name: str, *, origin: str) -> Definition:
-    """Read one structure in the ``.msg`` notation.
+    """Parse one structure in the ``.msg`` notation.
 
-    Types without a package are messages of the same package, in a service too. ``origin`` names
-    the text in errors, which add the number of the line.
+    Types without a package are messages of the same package, also in a service. ``origin`` names
+    the text in errors, together with the line number.
 
     Raises:
-        DefinitionError: a line is not in the notation, a name is unusable or given twice, a type
-            is none, or a value cannot be read.
+        DefinitionError: a line is not in the notation, a name is invalid or defined twice, a type is
+            unknown, or a value cannot be read.
     """
     structure = _Structure()
     for number, written in enumerate(text.splitlines(), start=1):
@@ -94,10 +94,10 @@ def parse(text: str, package: str, kind: Kind, name: str, *, origin: str) -> Def
 
 
 def line_of(written: str, *, place: _Place) -> DefinitionLine | None:
-    """Take one line apart; ``None`` for a blank line or a comment.
+    """Parse one line; ``None`` for a blank line or a comment.
 
     Raises:
-        DefinitionError: it has no name after the type.
+        DefinitionError: the name after the type is missing.
     """
     content = written.partition("#")[0].strip()
     if not content:
@@ -115,24 +115,24 @@ def line_of(written: str, *, place: _Place) -> DefinitionLine | None:
 
 
 def type_text(written: str) -> TypeText | None:
-    """Take a type apart; ``None`` if it is not written as one."""
+    """Parse a type; ``None`` if the text is not a type."""
     form = _TYPE.fullmatch(written)
     return form and TypeText(form["base"], form["length"], form["size"])
 
 
 def is_primitive(base: str) -> bool:
-    """Whether this names a type that is no message."""
+    """Whether this is the name of a primitive type, not of a message."""
     return base in _PRIMITIVES
 
 
 def require_package_name(name: str, place: _Place) -> None:
-    """Raise `DefinitionError` for a name ROS 2 does not take for a package."""
+    """Raise `DefinitionError` for a package name that ROS 2 does not allow."""
     if not _PACKAGE_NAME.fullmatch(name):
         raise DefinitionError(f"{place}: the package name {name!r} must be lower case words joined by '_'")
 
 
 def require_interface_name(name: str, place: _Place) -> None:
-    """Raise `DefinitionError` for a name ROS 2 does not take for a message, service or action."""
+    """Raise `DefinitionError` for a message, service or action name that ROS 2 does not allow."""
     if not _INTERFACE_NAME.fullmatch(name):
         raise DefinitionError(f"{place}: the name {name!r} must be letters and digits, the first a capital")
 
@@ -186,7 +186,7 @@ def _read(line: DefinitionLine, subject: str, base: str, *, is_list: bool) -> ob
 
 
 def _described(line: DefinitionLine, package: str) -> tuple[FieldDesc, str, bool]:
-    """Return a field's type as rosbags describes it, its base, and whether it has several values."""
+    """Return a field's type in rosbags' notation, its base type, and whether it has several values."""
     form = type_text(line.type)
     if form is None:
         raise DefinitionError(f"{line.place}: {line.type!r} is not a type; write for example int32[<=5]")

@@ -1,4 +1,4 @@
-"""Making the classes of services and actions, which hold those of their parts and are never instantiated."""
+"""Builds the classes of services and actions, which contain the classes of their parts."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def service_class(request: Definition, response: Definition, build: Build) -> Se
 def action_class(
     parts: ActionDefinition, build: Build, cancel_goal: ServiceType, goal_status: type[Message]
 ) -> ActionType:
-    """Return a new class for an action; the last two arguments are what all actions share."""
+    """Return a new class for an action; all actions share the last two arguments."""
     package, module = parts.goal.package, parts.goal.module_name
     name = parts.goal.name.removesuffix("_Goal")
     own = {"Goal": build(parts.goal), "Result": build(parts.result), "Feedback": build(parts.feedback)}

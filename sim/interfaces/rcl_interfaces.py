@@ -1,4 +1,4 @@
-"""The messages and services of the package rcl_interfaces, each built when it is first asked for."""
+"""The messages and services of the package rcl_interfaces, each built when it is first used."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Finding message, service and action classes by name, and building each when it is first asked for."""
+"""Finds message, service and action classes by name, and builds each class at its first use."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from sim.interfaces.service_events import event_definition
 _NOUNS: Mapping[Kind, str] = {"msg": "message", "srv": "service", "action": "action"}
 
 _COMMON_PACKAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "std_srvs", "nav_msgs")
-"""Those whose interface is meant first where several packages have one of the same name."""
+"""The packages to suggest first if several packages have an interface of the same name."""
 
 BuiltT = TypeVar("BuiltT")
 
 
 class Registry:
-    """All interfaces of some sources. Safe to use from several threads.
+    """The interfaces of several sources. Thread-safe.
 
-    Where two sources have an interface of the same name, the later one's counts, as with the
-    workspaces of ROS 2 that overlay one another.
+    If two sources have an interface of the same name, the later source counts, as for the
+    overlaid workspaces of ROS 2.
     """
 
     def __init__(self, *sources: DefinitionSource) -> None:
@@ -46,9 +46,9 @@ class Registry:
         self._lock = RLock()
 
     def add(self, source: DefinitionSource) -> None:
-        """Put a source before all others. Classes that it changes are built anew when next asked for.
+        """Put a source before all others. The classes that it changes are rebuilt at their next use.
 
-        A source that is already there and unchanged stays where it is.
+        An unchanged source that was added before keeps its place.
         """
         with self._lock:
             replaced = {
@@ -74,15 +74,15 @@ class Registry:
         return tuple(sorted(self._known(package, kind)))
 
     def message(self, package: str, name: str) -> type[Message]:
-        """Return a message class, built with all it contains on the first call."""
+        """Return a message class; the first call builds it and the classes that it contains."""
         return self._built(self._messages, f"{package}/msg/{name}", lambda: self._new_message(package, name))
 
     def service(self, package: str, name: str) -> ServiceType:
-        """Return a service class, built with request and response on the first call."""
+        """Return a service class; the first call builds it with request and response."""
         return self._built(self._services, f"{package}/srv/{name}", lambda: self._new_service(package, name))
 
     def action(self, package: str, name: str) -> ActionType:
-        """Return an action class, built with its messages and services on the first call."""
+        """Return an action class; the first call builds it with its messages and services."""
         return self._built(self._actions, f"{package}/action/{name}", lambda: self._new_action(package, name))
 
     def part(self, package: str, kind: Kind, name: str) -> type[Message]:
@@ -121,15 +121,19 @@ class Registry:
             return classes[type_name]
 
     def _new_message(self, package: str, name: str) -> type[Message]:
-        return self._build(self._source(package, "msg", name).message(package, name))
+        return self._build(*self._parts(package, "msg", name))
 
     def _new_service(self, package: str, name: str) -> ServiceType:
-        return service_class(*self._source(package, "srv", name).service(package, name), self._build)
+        request, response = self._parts(package, "srv", name)
+        return service_class(request, response, self._build)
 
     def _new_action(self, package: str, name: str) -> ActionType:
-        parts = ActionDefinition(*self._source(package, "action", name).action(package, name))
+        parts = ActionDefinition(*self._parts(package, "action", name))
         cancel_goal, status = ("action_msgs", "CancelGoal"), ("action_msgs", "GoalStatusArray")
         return action_class(parts, self._build, self.service(*cancel_goal), self.message(*status))
+
+    def _parts(self, package: str, kind: Kind, name: str) -> tuple[Definition, ...]:
+        return self._source(package, kind, name).parts(package, kind, name)
 
     def _known(self, package: str, kind: Kind) -> frozenset[str]:
         return frozenset().union(*(source.names(package, kind) for source in self._sources))
@@ -178,7 +182,7 @@ class Registry:
 
 
 def _owner(cls: type[Message]) -> str:
-    """Return the full name of the message, service or action that a class is or belongs to."""
+    """Return the full name of the message, or of the service or action that a class belongs to."""
     definition = cls.__interface__.definition
     name = definition.name if definition.kind == "msg" else owner_of(definition.name)
     return f"{definition.package}/{definition.kind}/{name}"

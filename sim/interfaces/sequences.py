@@ -1,7 +1,7 @@
-"""How lists and arrays in a field are checked, made and copied; the error texts are rosidl's.
+"""Rules for lists and arrays in a field: checking, default and copy. The error texts are rosidl's.
 
-Numbers of one type lie in an ``array.array``, or in a numpy array if their count is fixed. All
-other values, truth values and bytes among them, stay in the list, tuple or set that was assigned.
+Numbers are stored in an ``array.array``, or in a numpy array if their count is fixed. All
+other values, also truth values and bytes, stay in the assigned list, tuple or set.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from attrs import frozen
 
-from sim.interfaces.elements import Check, Element
+from sim.interfaces.elements import Check, ValueRules
 from sim.interfaces.field_types import (
     FLOAT_LIMITS,
     INTEGER_LIMITS,
@@ -36,12 +36,12 @@ TYPECODES = {
     "int64": "q",
     "uint64": "Q",
 }
-"""The letters by which ``array`` and ``struct`` know the types of numbers."""
+"""The codes of ``array`` and ``struct`` for the types of numbers."""
 
 
 @frozen
-class Handling:
-    """What a field does with its value."""
+class FieldRules:
+    """How a field checks, makes and copies its value."""
 
     check: Check
     make: Callable[[], Any]
@@ -55,29 +55,29 @@ def typecode(of: SequenceType) -> str | None:
     return TYPECODES.get(of.value_type.typename) if isinstance(of.value_type, BasicType) else None
 
 
-def handling_of(field: str, of: SequenceType, element: Element) -> Handling:
-    """Return what a field of this sequence type does with its value."""
+def sequence_rules(field: str, of: SequenceType, element: ValueRules) -> FieldRules:
+    """Return the rules of a field of this sequence type."""
     code = typecode(of)
     if code is None:
         count, make, copy = (of.size if isinstance(of, Array) else 0), element.make, element.copy
-        return Handling(
+        return FieldRules(
             _check_items(field, of, element),
             lambda: [make() for _ in range(count)],
             lambda values: [copy(value) for value in values],
         )
     if isinstance(of, Array):
-        # By its name, because numpy has two types of 64-bit integers and shows them differently.
+        # By name, because numpy has two types of 64-bit integers with different reprs.
         size, dtype = of.size, np.dtype(np.dtype(code).name)
-        return Handling(
+        return FieldRules(
             _check_fixed(field, of, dtype, element),
             lambda: np.zeros(size, dtype),
             lambda values: values.copy(),
         )
-    return Handling(_check_numbers(field, of, code, element), lambda: array(code), lambda values: values[:])
+    return FieldRules(_check_numbers(field, of, code, element), lambda: array(code), lambda values: values[:])
 
 
-def _complaint(field: str, of: SequenceType, element: Element) -> str:
-    """Return the error text for anything that is no collection of fitting values."""
+def _complaint(field: str, of: SequenceType, element: ValueRules) -> str:
+    """Return the error text for a value that is not a collection of valid values."""
     length = ""
     if isinstance(of, Array):
         length = f" with length {of.size}"
@@ -85,13 +85,13 @@ def _complaint(field: str, of: SequenceType, element: Element) -> str:
         length = f" with length <= {of.maximum_size}"
     each = f" and {element.each}" if element.each else ""
     of_class = f" and each value of type '{element.name}'"
-    # rosidl puts the limit on a text's length before the class, limits on numbers after it.
+    # rosidl writes the limit of a text's length before the class, and limits of numbers after it.
     details = each + of_class if element.python is str else of_class + each
     return f"The '{field}' field must be a set or sequence{length}{details}"
 
 
-def _check_items(field: str, of: SequenceType, element: Element) -> Check:
-    """Return the check of count, class and range of the values; it returns what it was given."""
+def _check_items(field: str, of: SequenceType, element: ValueRules) -> Check:
+    """Return the check of count, class and range of the values; it returns the values themselves."""
     python, all_within, fits = element.python, element.all_within, _length_rule(of)
     complaint = _complaint(field, of, element)
 
@@ -108,10 +108,10 @@ def _check_items(field: str, of: SequenceType, element: Element) -> Check:
     return check
 
 
-def _check_numbers(field: str, of: SequenceType, code: str, element: Element) -> Check:
+def _check_numbers(field: str, of: SequenceType, code: str, element: ValueRules) -> Check:
     """Return the check of a sequence of numbers; it returns an ``array.array``.
 
-    What has its numbers in memory is looked at in one piece, as pictures have millions.
+    Buffers of numbers are checked in one piece, since pictures have millions of them.
     """
     check_items, fits = _check_items(field, of, element), _length_rule(of)
     complaint = _complaint(field, of, element)
@@ -135,13 +135,13 @@ def _check_numbers(field: str, of: SequenceType, code: str, element: Element) ->
             if not fits(values.size) or not (fitting or _holds(values, number)):
                 raise AssertionError(complaint)
             return array(code, values.astype(native, copy=False).tobytes())
-        # A list, because an array would take bytes as its memory.
+        # A list, because an array would read bytes as raw memory.
         return array(code, list(check_items(values)))
 
     return check
 
 
-def _check_fixed(field: str, of: Array, dtype: np.dtype[Any], element: Element) -> Check:
+def _check_fixed(field: str, of: Array, dtype: np.dtype[Any], element: ValueRules) -> Check:
     """Return the check of a fixed count of numbers; it returns a numpy array."""
     check_items, size = _check_items(field, of, element), of.size
     wrong_dtype = f"The '{field}' numpy.ndarray() must have the dtype of 'numpy.{dtype.name}'"
@@ -160,7 +160,7 @@ def _check_fixed(field: str, of: Array, dtype: np.dtype[Any], element: Element) 
 
 
 def _length_rule(of: SequenceType) -> Callable[[int], bool]:
-    """Return whether a count of values fits."""
+    """Return the check of the number of values."""
     if isinstance(of, Array):
         return of.size.__eq__
     return of.maximum_size.__ge__ if isinstance(of, BoundedSequence) else lambda _: True
@@ -173,7 +173,7 @@ def _is_collection(values: Any) -> bool:
 
 
 def _holds(values: np.ndarray[Any, Any], typename: str) -> bool:
-    """Whether a numpy array is a row of numbers that fit the type."""
+    """Whether a numpy array is one-dimensional and all its numbers fit the type."""
     if values.ndim != 1 or values.dtype.kind not in ("f" if typename in FLOAT_LIMITS else "iu"):
         return False
     if typename in INTEGER_LIMITS:

@@ -1,4 +1,4 @@
-"""The message that tells of one step of a service call: ``std_srvs/srv/SetBool_Event`` for SetBool."""
+"""The message that reports one step of a service call: ``std_srvs/srv/SetBool_Event`` for SetBool."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def event_definition(service: ServiceType) -> Definition:
-    """Return what rosidl adds to a service: the step, and at most one request and one response."""
+    """Return the event that rosidl adds to a service: the step, and at most one request and one response."""
 
     def at_most_one(part: type[Message]) -> FieldDesc:
         return Nodetype.SEQUENCE, ((Nodetype.NAME, part.__type_name__), 1)

@@ -1,4 +1,4 @@
-"""Finding the interface packages around a learner's file."""
+"""Finds the interface packages around a learner's file."""
 
 from __future__ import annotations
 
@@ -11,29 +11,29 @@ from sim.files.untrusted import mode_of
 from sim.interfaces.folder import is_package
 
 MOST_FOLDERS: Final = 2000
-"""How many folders one search looks into; what lies behind them is not found."""
+"""The most folders that one search visits; further packages are not found."""
 
 MOST_STEPS_UP: Final = 6
-"""How far above the file its workspace may begin."""
+"""How many levels above the file its workspace can be."""
 
 MOST_STEPS_DOWN: Final = 4
-"""How deep in a workspace's ``src`` a package may lie."""
+"""How many levels below a workspace's ``src`` a package can be."""
 
 _NEVER: Final = frozenset(
     ("build", "install", "log", "node_modules", "site-packages", "__pycache__", "venv", "env")
 )
-"""Folders in which colcon and Python keep what they made; copies of packages lie there."""
+"""Folders of build results and of environments; they contain copies of packages."""
 
 
 def find_definition_folders(start: Path) -> list[Path]:
     """Return the interface packages around a file or folder, for `add_definitions` in this order.
 
-    Looked into are the folder of the file, those directly beside that folder, and the workspace:
-    the nearest folder above that has a ``src`` and is no package, or that holds several packages.
-    A package is a folder with definition files in ``msg``, ``srv`` or ``action``. The nearest come
-    last, so that of two packages of one name the nearer one counts. Folders that are hidden,
-    marked with ``COLCON_IGNORE`` or made by colcon are left out, links are not followed, and at
-    most `MOST_FOLDERS` are looked into, the nearest first.
+    The search visits the folder of the file, the folders beside that folder, and the workspace:
+    the nearest folder above that has a ``src`` and is not a package, or that contains several packages.
+    A package is a folder with definition files in ``msg``, ``srv`` or ``action``. The nearest packages are
+    last, so that of two packages with one name the nearer one counts. Folders that are hidden,
+    marked with ``COLCON_IGNORE`` or made by colcon are skipped, links are not followed, and at
+    most `MOST_FOLDERS` are visited, the nearest first.
     """
     start = start.absolute()
     beside = start if start.is_dir() else start.parent
@@ -50,7 +50,7 @@ def find_definition_folders(start: Path) -> list[Path]:
 
 
 class _Search:
-    """One search, with the number of folders it may still look into."""
+    """One search, with the number of folders that it may still visit."""
 
     def __init__(self) -> None:
         self.left = MOST_FOLDERS
@@ -68,8 +68,8 @@ class _Search:
 
 
 def _folders_above(beside: Path) -> Iterator[Path]:
-    """Yield the nearest folders above, as far as the learner's own things may lie there."""
-    # Not needed by most programs, and slow to import.
+    """Yield the nearest folders above, up to the home, the temporary and the root folder."""
+    # Most programs do not need it, and it is slow to import.
     import tempfile
 
     ends = {*_home(), Path(tempfile.gettempdir()), Path(beside.anchor)}
@@ -82,12 +82,12 @@ def _folders_above(beside: Path) -> Iterator[Path]:
 def _home() -> Iterator[Path]:
     try:
         yield Path.home()
-    except RuntimeError:  # a user number without a name, and no HOME
+    except RuntimeError:  # the user id has no name, and HOME is not set
         return
 
 
 def _packages_of_workspace(folder: Path) -> Path | None:
-    """Return the folder that holds the packages of a workspace; ``None`` if this is no workspace."""
+    """Return the folder with the packages of a workspace; ``None`` if this is not a workspace."""
     if (folder / "src").is_dir() and not (folder / "package.xml").is_file():
         return folder / "src"
     with_manifest = [inner for inner in _folders_in(folder) if (inner / "package.xml").is_file()]
@@ -111,5 +111,5 @@ def _is_searched(entry: Path) -> bool:
             and entry.is_dir()
             and not mode_of(entry / "COLCON_IGNORE")
         )
-    except OSError:  # it is somebody else's alone, as some in /tmp are
+    except OSError:  # another user's private folder, as in /tmp
         return False

@@ -38,9 +38,9 @@ class Recording(JazzyMessages):
         super().__init__()
         self.asked: list[str] = []
 
-    def message(self, package: str, name: str) -> Definition:
+    def parts(self, package: str, kind: Kind, name: str) -> tuple[Definition]:
         self.asked.append(name)
-        return super().message(package, name)
+        return super().parts(package, kind, name)
 
 
 def every(kind: Kind) -> list[tuple[str, str]]:
@@ -93,7 +93,7 @@ def test_files_of_messages_rosbags_knows_say_the_same() -> None:
     ]
     assert ("geometry_msgs", "Twist") in both
     for package, name in both:
-        ours, theirs = files.message(package, name), jazzy.message(package, name)
+        (ours,), (theirs,) = files.parts(package, "msg", name), jazzy.parts(package, "msg", name)
         assert (ours.constants, ours.fields) == (theirs.constants, theirs.fields)
         assert ours.defaults == theirs.defaults
 

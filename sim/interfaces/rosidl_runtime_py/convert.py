@@ -1,6 +1,6 @@
 """Messages as dictionaries, YAML and CSV; mirrors ``rosidl_runtime_py.convert``.
 
-Messages are asked only what those of rosidl answer, too.
+Only what rosidl's messages have is used, so that these can be converted, too.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ def message_to_ordereddict(
 ) -> OrderedDict[str, Any]:
     """Return a message as a dictionary of plain values.
 
-    Sequences and texts longer than ``truncate_length`` end in ``...``; ``no_arr`` and ``no_str``
-    put the type and length in place of sequences and texts.
+    Sequences and texts longer than ``truncate_length`` are shortened and end in ``...``. ``no_arr`` and
+    ``no_str`` replace sequences and texts by their type and length.
     """
     plain = partial(_plain, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
     return OrderedDict((name, plain(getattr(msg, name), of)) for name, of in field_types(msg).items())
@@ -47,7 +47,7 @@ def message_to_yaml(
 def message_to_csv(
     msg: Message, *, truncate_length: int | None = None, no_arr: bool = False, no_str: bool = False
 ) -> str:
-    """Return the values of a message, messages in it included, parted by commas."""
+    """Return the values of a message and of its nested messages, separated by commas."""
 
     def written(value: Any, of: FieldType | None = None) -> str:
         if isinstance(value, _COLLECTIONS):
@@ -108,7 +108,7 @@ def _shortened(value: str | bytes, length: int | None) -> str | bytes:
 
 
 def _length_of(value: Any, of: SequenceType) -> str:
-    """Return what stands in place of a sequence: its type and length."""
+    """Return the type and length of a sequence, which replace its values."""
     inner: Any = of.value_type
     if hasattr(inner, "namespaced_name"):
         name = "/".join(inner.namespaced_name())

@@ -1,4 +1,4 @@
-"""Which interfaces there are; mirrors ``rosidl_runtime_py.get_interfaces``."""
+"""Lists interfaces; mirrors ``rosidl_runtime_py.get_interfaces``."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def get_action_interfaces(package_names: Iterable[str] = ()) -> dict[str, list[s
 
 
 def get_interface_path(interface_name: str) -> NoReturn:
-    """Raise `NotImplementedError`: the standard interfaces do not lie in files of their own."""
+    """Raise `NotImplementedError`: the standard interfaces have no files of their own."""
     raise NotImplementedError("rosidl_runtime_py.get_interface_path is not supported")
 
 

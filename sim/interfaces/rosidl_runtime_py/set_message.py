@@ -1,4 +1,4 @@
-"""Filling a message from a dictionary; mirrors ``rosidl_runtime_py.set_message``."""
+"""Fills a message from a dictionary; mirrors ``rosidl_runtime_py.set_message``."""
 
 from __future__ import annotations
 
@@ -14,20 +14,20 @@ from sim.interfaces.rosidl_runtime_py.convert import field_types, is_nested
 from sim.interfaces.rosidl_runtime_py.utilities import import_message_from_namespaced_type
 
 SetStamp = Callable[[Message], None]
-"""Gives a field the time, a ``builtin_interfaces/msg/Time``."""
+"""Sets a field to a time, a ``builtin_interfaces/msg/Time``."""
 
 
 def set_message_fields(
     msg: Message, values: Mapping[str, Any], expand_header_auto: bool = False, expand_time_now: bool = False
 ) -> list[SetStamp]:
-    """Set the fields of a message that ``values`` gives; messages in it are dictionaries.
+    """Set fields of a message to ``values``; nested messages are dictionaries.
 
     Numbers and texts are converted to the class of their field. With ``expand_header_auto`` a
-    header may be ``"auto"``, with ``expand_time_now`` a time ``"now"``: a function is returned for
-    each, which is to be called with the time as a message.
+    header may be ``"auto"``, and with ``expand_time_now`` a time may be ``"now"``: a function is returned for
+    each of them, to be called with the time as a message.
 
     Raises:
-        TypeError: ``values`` is no dictionary, or something else stands where one is needed.
+        TypeError: ``values``, or the value of a nested message, is not a dictionary.
         AttributeError: a field does not exist.
         ValueError: a number cannot be read.
         AssertionError: a value does not fit its field.
@@ -36,7 +36,7 @@ def set_message_fields(
 
 
 class _Filling:
-    """One call, with the words that stand for the time."""
+    """One call, with the words that mean the time."""
 
     def __init__(self, header_auto: bool, time_now: bool) -> None:
         self._words = {

@@ -10,10 +10,10 @@ from sim.interfaces.field_types import NamespacedType
 
 
 def get_namespaced_type(interface_identifier: str) -> NamespacedType:
-    """Return the type that ``std_msgs/msg/Int32`` names, known or not.
+    """Return the type with the name ``std_msgs/msg/Int32``, which need not be known.
 
     Raises:
-        ValueError: it has not three parts, or one of them is empty.
+        ValueError: the name does not have three parts, or one of them is empty.
     """
     parts = interface_identifier.split("/")
     if len(parts) != 3:
@@ -27,7 +27,7 @@ def import_message_from_namespaced_type(message_type: NamespacedType) -> Any:
     """Return the class of a type.
 
     Raises:
-        ModuleNotFoundError, AttributeError: there is none.
+        ModuleNotFoundError, AttributeError: there is no such class.
     """
     return getattr(importlib.import_module(".".join(message_type.namespaces)), message_type.name)
 
@@ -43,7 +43,7 @@ def get_interface(identifier: str) -> Any:
 
 
 def get_message(identifier: str) -> type[Message]:
-    """Return a message class; `ValueError` if the name is one of something else."""
+    """Return a message class; `ValueError` if the interface is not a message."""
     found = get_interface(identifier)
     if not is_message(found):
         raise ValueError(f"Expected '{identifier}' to be a message")
@@ -51,7 +51,7 @@ def get_message(identifier: str) -> type[Message]:
 
 
 def get_service(identifier: str) -> ServiceType:
-    """Return a service class; `ValueError` if the name is one of something else."""
+    """Return a service class; `ValueError` if the interface is not a service."""
     found = get_interface(identifier)
     if not is_service(found):
         raise ValueError(f"Expected '{identifier}' to be a service")
@@ -59,7 +59,7 @@ def get_service(identifier: str) -> ServiceType:
 
 
 def get_action(identifier: str) -> ActionType:
-    """Return an action class; `ValueError` if the name is one of something else."""
+    """Return an action class; `ValueError` if the interface is not an action."""
     found = get_interface(identifier)
     if not is_action(found):
         raise ValueError(f"Expected '{identifier}' to be an action")

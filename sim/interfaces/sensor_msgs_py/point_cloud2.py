@@ -24,7 +24,7 @@ __all__ = [
 ]
 
 DUMMY_FIELD_PREFIX = "unnamed_field"
-"""What a field without a name is called, with its number behind it."""
+"""The prefix of the name of an unnamed field; its number follows."""
 
 _PointField: Any = message("sensor_msgs", "PointField")
 _PointCloud2: Any = message("sensor_msgs", "PointCloud2")
@@ -48,14 +48,14 @@ def read_points(
     uvs: Iterable[Any] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> npt.NDArray[Any]:
-    """Read the points of a ``PointCloud2`` into a structured array, one element a point.
+    """Read the points of a ``PointCloud2`` into a structured array with one element per point.
 
-    ``field_names`` are the fields to keep, None all of them; ``skip_nans`` leaves out points with a NaN;
+    ``field_names`` are the fields to keep (None: all); ``skip_nans`` drops points with a NaN;
     ``uvs`` are the indices of the points to keep, numbers or (for an organised cloud) ``(u, v)`` pairs;
     ``reshape_organized_cloud`` gives an organised cloud its two dimensions, ``width`` by ``height``.
 
     Raises:
-        AssertionError: ``cloud`` is no PointCloud2, or it has no field of one of the names.
+        AssertionError: ``cloud`` is not a PointCloud2, or lacks one of the fields.
     """
     assert isinstance(cloud, _PointCloud2), "Cloud is not a sensor_msgs.msg.PointCloud2"
     layout = dtype_from_fields(cloud.fields, point_step=cloud.point_step)
@@ -100,10 +100,10 @@ def read_points_numpy(
     uvs: Iterable[Any] | None = None,
     reshape_organized_cloud: bool = False,
 ) -> npt.NDArray[Any]:
-    """Read the points into a plain array, a row a point and a column a field; see ``read_points``.
+    """Read the points into a plain array, with a row per point and a column per field; see ``read_points``.
 
     Raises:
-        AssertionError: the fields asked for are not all of one type.
+        AssertionError: the chosen fields are not all of one type.
     """
     assert all(cloud.fields[0].datatype == field.datatype for field in cloud.fields[1:]) or field_names, (
         "All fields need to have the same datatype. Use `read_points()` otherwise."
@@ -128,7 +128,7 @@ def read_points_list(
 
 
 def dtype_from_fields(fields: Iterable[Any], point_step: int | None = None) -> np.dtype[Any]:
-    """Tell the type of a point with the given ``PointField`` messages, ``point_step`` bytes long."""
+    """The dtype of a point of ``point_step`` bytes with the given ``PointField`` messages."""
     names, offsets, formats = [], [], []
     for number, field in enumerate(fields):
         names.append(field.name or f"{DUMMY_FIELD_PREFIX}_{number}")
@@ -149,12 +149,12 @@ def create_cloud(
     step: int | None = None,
     point_step: int | None = None,
 ) -> Any:
-    """Make a ``PointCloud2`` of points: a structured array, or rows with a value for each field.
+    """Make a ``PointCloud2`` from a structured array, or from rows with a value for each field.
 
-    An array with a dimension more makes an organised cloud: its first is the height, its second the width.
+    A two-dimensional array of points makes an organised cloud of height by width.
 
     Raises:
-        AssertionError: the points do not have the fields' types, or not as many values.
+        AssertionError: the points have other types than the fields, or another number of values.
     """
     fields = list(fields)
     points = points if isinstance(points, np.ndarray) else _as_array(points, fields, point_step or step)

@@ -1,1 +1,1 @@
-"""What the package test_msgs has beside its interfaces."""
+"""The modules of the package test_msgs, besides its interfaces."""

@@ -1,4 +1,4 @@
-"""Messages of test_msgs to test with: of each type an empty one, and one with a value in every field."""
+"""Test messages of test_msgs: for each type an empty message and one with a value in every field."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from sim.interfaces.field_types import (
 
 _PACKAGE = "test_msgs"
 _SEVERAL = 3
-"""How many values a sequence gets; the bounded ones of test_msgs have room for as many."""
+"""The number of values in a sequence; the bounded sequences of test_msgs allow as many."""
 
 
 def get_test_msg(message_name: str) -> list[Message]:
-    """Messages of that type.
+    """Test messages of a type.
 
     Raises:
         NotImplementedError: test_msgs has no such message.
