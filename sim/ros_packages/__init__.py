@@ -1,1 +1,1 @@
-"""Packages that nodes import besides rclpy: each folder is what the package of its name gives."""
+"""Packages that nodes import besides rclpy; each folder is the ROS 2 package of that name."""

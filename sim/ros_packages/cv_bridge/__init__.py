@@ -1,4 +1,4 @@
-"""``cv_bridge``: images as numpy arrays. OpenCV itself is not needed."""
+"""``cv_bridge``: images as numpy arrays, without OpenCV."""
 
 from sim.ros_packages.cv_bridge.core import CvBridge, CvBridgeError
 

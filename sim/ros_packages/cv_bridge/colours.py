@@ -1,4 +1,4 @@
-"""Images in other colours, with OpenCV's rounding."""
+"""Conversion of images between colour encodings, with OpenCV's rounding."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ import numpy as np
 from sim.ros_packages.cv_bridge.encodings import Encoding
 
 _RED, _GREEN, _BLUE = 9798, 19235, 3735
-"""How bright each colour is, of 32768."""
+"""The brightness of each colour, in 1/32768."""
 
 
 def convert(image: Any, source: Encoding, wanted: Encoding) -> Any:
-    """An image of one colour encoding in another."""
+    """Convert an image from one colour encoding to another."""
     planes = _planes(image, source.colour)
     converted = _arranged(planes, wanted.colour, np.iinfo(source.type).max)
     if source.type == wanted.type:
@@ -23,7 +23,7 @@ def convert(image: Any, source: Encoding, wanted: Encoding) -> Any:
 
 
 def _planes(image: Any, colour: str) -> dict[str, Any]:
-    """The image's channels by letter; a grey one has all three colours alike."""
+    """The image's channels by letter; a grey image has three equal colours."""
     if colour == "mono8":
         return dict.fromkeys("rgb", image.reshape(image.shape[:2])) | {"grey": image.reshape(image.shape[:2])}
     return {letter: image[..., place] for place, letter in enumerate(colour.removesuffix("8"))}

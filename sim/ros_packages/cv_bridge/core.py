@@ -1,4 +1,4 @@
-"""``cv_bridge.core``: ``sensor_msgs/Image`` messages as numpy arrays, and arrays as messages."""
+"""``cv_bridge.core``: converts ``sensor_msgs/Image`` messages to numpy arrays and back."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ CvBridgeError.__module__ = "cv_bridge.core"
 
 
 class CvBridge:
-    """Converts images. An array has rows, columns and, for more than one channel, channels, as OpenCV has it.
+    """Converts images. As in OpenCV, an array has rows, columns and, if there are several, channels.
 
-    Arrays that are not converted share no memory with the message.
+    Arrays share no memory with the message.
     """
 
     def __init__(self) -> None:
@@ -44,13 +44,13 @@ class CvBridge:
         """The numpy type and number of channels of an encoding.
 
         Raises:
-            CvBridgeError: it is unknown.
+            CvBridgeError: the encoding is unknown.
         """
         known = _known(encoding)
         return str(known.type), known.channels
 
     def encoding_to_cvtype2(self, encoding: str) -> int:
-        """OpenCV's number for an encoding; CvBridgeError if it is unknown."""
+        """OpenCV's number for an encoding; CvBridgeError for an unknown encoding."""
         known = _known(encoding)
         return list(TYPES.values()).index(known.type) + (known.channels - 1) * 8
 
@@ -59,14 +59,14 @@ class CvBridge:
         return str(list(TYPES.values())[cvtype % 8]), cvtype // 8 + 1
 
     def dtype_with_channels_to_cvtype2(self, dtype: Any, n_channels: int) -> str:
-        """OpenCV's name for a numpy type and a number of channels, as ``8UC3``."""
+        """OpenCV's name for a numpy type and a number of channels, such as ``8UC3``."""
         return f"{self.numpy_type_to_cvtype[np.dtype(dtype).name]}C{n_channels}"
 
     def imgmsg_to_cv2(self, img_msg: Any, desired_encoding: str = "passthrough") -> Any:
-        """A message's picture as an array, converted to ``desired_encoding`` unless that is ``passthrough``.
+        """Convert a message to an array, in ``desired_encoding`` unless that is ``passthrough``.
 
         Raises:
-            CvBridgeError: an encoding is unknown, one cannot become the other, or bytes are missing.
+            CvBridgeError: an encoding is unknown, the conversion is not possible, or bytes are missing.
         """
         source = _known(img_msg.encoding)
         layout = source.type.newbyteorder(">" if img_msg.is_bigendian else "<")
@@ -94,11 +94,11 @@ class CvBridge:
         raise CvBridgeError(f"Unsupported conversion from [{img_msg.encoding}] to [{desired_encoding}]")
 
     def cv2_to_imgmsg(self, cvim: Any, encoding: str = "passthrough", header: Any = None) -> Any:
-        """An array as a message; ``encoding`` says what its channels are, and converts nothing.
+        """Convert an array to a message; ``encoding`` describes its channels and converts nothing.
 
         Raises:
-            TypeError: it is no array.
-            CvBridgeError: the encoding is unknown, or is for other types or numbers of channels.
+            TypeError: ``cvim`` is not an array.
+            CvBridgeError: the encoding is unknown, or has another type or number of channels.
         """
         if not isinstance(cvim, np.ndarray):
             raise TypeError("Your input type is not a numpy array")

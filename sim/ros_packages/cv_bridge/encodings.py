@@ -1,4 +1,4 @@
-"""The encodings of ``sensor_msgs/Image``: how many channels of what type, and what colours they are."""
+"""The encodings of ``sensor_msgs/Image``: number, type and colours of the channels."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ TYPES: dict[str, np.dtype[Any]] = {
     "32F": np.dtype(np.float32),
     "64F": np.dtype(np.float64),
 }
-"""The types of a channel, by OpenCV's names, in the order of OpenCV's numbers."""
+"""The types of a channel by OpenCV's names, in the order of OpenCV's numbers."""
 
 _COLOURS: dict[str, tuple[str, str]] = {
     **{
@@ -39,22 +39,22 @@ _NUMBERED = re.compile(r"(8U|8S|16U|16S|32S|32F|64F)C?(\d*)")
 
 @dataclass(frozen=True, slots=True)
 class Encoding:
-    """What the bytes of an image mean."""
+    """The meaning of an image's bytes."""
 
     name: str
     type: np.dtype[Any]
     channels: int
     colour: str
-    """The order of its colours, as ``rgb8``; empty where none is known."""
+    """The order of the colours, such as ``rgb8``; empty if the colours are unknown."""
 
     @property
     def cv_type(self) -> str:
-        """OpenCV's name for images of this type and number of channels, as ``8UC3``."""
+        """OpenCV's name for images of this type and number of channels, such as ``8UC3``."""
         return f"{next(name for name, known in TYPES.items() if known == self.type)}C{self.channels}"
 
 
 def encoding_of(name: str) -> Encoding | None:
-    """What an encoding's name says, None for an unknown one."""
+    """The encoding of a name; None for an unknown name."""
     cv_type, colour = _COLOURS.get(name, (name, ""))
     found = _NUMBERED.fullmatch(cv_type)
     return None if found is None else Encoding(name, TYPES[found[1]], int(found[2] or 1), colour)

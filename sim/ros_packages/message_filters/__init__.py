@@ -1,4 +1,4 @@
-"""``message_filters``: messages of several topics, brought together by their stamps. As of 4.11.15."""
+"""``message_filters``: synchronises messages of several topics by their stamps. As in 4.11.15."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ __all__ = [
 
 
 class Subscriber(SimpleFilter):
-    """A subscription of a node, with ``create_subscription``'s arguments but the callback.
+    """A subscription of a node, with the arguments of ``create_subscription`` except the callback.
 
-    The executor runs it as any other, in the node's default group unless ``callback_group`` says otherwise.
+    The executor runs it as any other, by default in the node's default group.
     """
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
@@ -37,11 +37,11 @@ class Subscriber(SimpleFilter):
         self.sub = self.node.create_subscription(msg_type, self.topic, self.callback, *others, **kwargs)
 
     def callback(self, msg: Any) -> None:
-        """Hand on a message."""
+        """Pass on a message."""
         self.signalMessage(msg)
 
     def getTopic(self) -> str:
-        """The topic's name, as it was given."""
+        """The topic's name as the program gave it."""
         return str(self.topic)
 
     def __getattr__(self, key: str) -> Any:
@@ -51,9 +51,9 @@ class Subscriber(SimpleFilter):
 
 
 class Cache(SimpleFilter):
-    """Remembers the last ``cache_size`` messages, and hands them on.
+    """Caches the last ``cache_size`` messages, and passes each message on.
 
-    Messages without a header are remembered by the time they came, if ``allow_headerless``.
+    With ``allow_headerless``, messages without a header are cached by their time of arrival.
     """
 
     def __init__(self, f: Any, cache_size: int = 1, allow_headerless: bool = False) -> None:
@@ -65,11 +65,11 @@ class Cache(SimpleFilter):
         self.connectInput(f)
 
     def connectInput(self, f: Any) -> None:
-        """Listen to a filter."""
+        """Connect to a filter."""
         self.incoming_connection = f.registerCallback(self.add)
 
     def add(self, msg: Any) -> None:
-        """Remember a message, and hand it on."""
+        """Cache a message, and pass it on."""
         stamp = _stamp(msg, self.allow_headerless, "message_filters_cache")
         if stamp is None:
             return
@@ -79,30 +79,30 @@ class Cache(SimpleFilter):
         self.signalMessage(msg)
 
     def getInterval(self, from_stamp: Any, to_stamp: Any) -> list[Any]:
-        """The messages from one time to another, both included."""
+        """The messages between two times, both included."""
         assert from_stamp <= to_stamp
         return [msg for msg, time in self._timed() if from_stamp <= time <= to_stamp]
 
     def getElemAfterTime(self, stamp: Any) -> Any:
-        """The first message that is not older than a time; None if there is none."""
+        """The first message that is not older than a time, or None."""
         return next((msg for msg, time in self._timed() if time >= stamp), None)
 
     def getElemBeforeTime(self, stamp: Any) -> Any:
-        """The last message that is not newer than a time; None if there is none."""
+        """The last message that is not newer than a time, or None."""
         return next((msg for msg, time in reversed(self._timed()) if time <= stamp), None)
 
     def getLastestTime(self) -> Any:
-        """The stamp of the message that came last, None without one. The name has always been spelt so."""
+        """The stamp of the latest message, or None. The package misspells the name."""
         return self.cache_times[-1] if self.cache_times else None
 
     getLatestTime = getLastestTime  # noqa: N815
 
     def getOldestTime(self) -> Any:
-        """The stamp of the message that came first, None without one."""
+        """The stamp of the oldest message in the cache, or None."""
         return self.cache_times[0] if self.cache_times else None
 
     def getLast(self) -> Any:
-        """The first message that is not older than the one that came last; None if there is none."""
+        """The first message that is not older than the latest one, or None."""
         latest = self.getLastestTime()
         return None if latest is None else self.getElemAfterTime(latest)
 
@@ -111,7 +111,7 @@ class Cache(SimpleFilter):
 
 
 class Chain(SimpleFilter):
-    """Filters one after another, as one: what goes in has to pass each, the last one's output comes out."""
+    """A sequence of filters as one filter: a message passes all of them in turn."""
 
     def __init__(self, message_filter: Any = None) -> None:
         super().__init__()
@@ -121,22 +121,22 @@ class Chain(SimpleFilter):
             self.connectInput(message_filter)
 
     def connectInput(self, message_filter: Any) -> None:
-        """Listen to a filter.
+        """Connect to a filter.
 
         Raises:
-            RuntimeError: it listens to one.
+            RuntimeError: the chain is connected already.
         """
         if self.incoming_connection is not None:
             raise RuntimeError("Already connected")
         self.incoming_connection = message_filter.registerCallback(self.add)
 
     def add(self, message: Any) -> None:
-        """Have a message pass the filters."""
+        """Pass a message through the filters."""
         enter = self._filters[0][0].add if self._filters else self.signalMessage
         enter(message)
 
     def addFilter(self, message_filter: Any) -> None:
-        """Put a filter behind the others."""
+        """Append a filter."""
         if self._filters:
             last, connection = self._filters[-1]
             last.unregisterCallback(connection)
@@ -144,10 +144,10 @@ class Chain(SimpleFilter):
         self._filters.append((message_filter, message_filter.registerCallback(self.signalMessage)))
 
     def getFilter(self, index: int) -> Any:
-        """The filter at a place.
+        """The filter at an index.
 
         Raises:
-            KeyError: there is none.
+            KeyError: there is no such filter.
         """
         if not 0 <= index < len(self._filters):
             raise KeyError(index)
@@ -155,10 +155,10 @@ class Chain(SimpleFilter):
 
 
 class TimeSynchronizer(SimpleFilter):
-    """Hands on a message of each of several filters together, once all of one and the same stamp have come.
+    """Passes on one message of each filter together, once all messages of the same stamp have arrived.
 
-    Each filter's last ``queue_size`` stamps are remembered, until a newer set is complete. The callbacks run
-    in the callback of the message that completed the set, and one set at a time.
+    Each filter's last ``queue_size`` messages are kept until a newer set is complete. The callbacks run
+    in the callback of the message that completes the set, one set at a time.
     """
 
     def __init__(self, fs: Iterable[Any], queue_size: int) -> None:
@@ -168,7 +168,7 @@ class TimeSynchronizer(SimpleFilter):
         self.connectInput(fs)
 
     def connectInput(self, fs: Iterable[Any]) -> None:
-        """Listen to filters, and to nothing that was listened to before."""
+        """Connect to these filters only."""
         filters = list(fs)
         self.queues: list[dict[int, Any]] = [{} for _ in filters]
         self.input_connections = [
@@ -177,7 +177,7 @@ class TimeSynchronizer(SimpleFilter):
         ]
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """Remember a message, and hand on the set that it completes; what is older then is forgotten."""
+        """Keep a message. If it completes a set, pass the set on and drop older messages."""
         stamp = Time.from_msg(msg.header.stamp).nanoseconds
         with self.lock:
             self._remember(msg, stamp, my_queue)
@@ -193,7 +193,7 @@ class TimeSynchronizer(SimpleFilter):
             del queue[min(queue)]
 
     def _hand_on(self, stamps: Sequence[int]) -> None:
-        """Hand on the messages of these stamps, one of each filter, and forget them."""
+        """Pass on the messages of these stamps, one of each filter, and drop them."""
         chosen = list(zip(self.queues, stamps, strict=True))
         self.signalMessage(*(queue[stamp] for queue, stamp in chosen))
         for queue, stamp in chosen:
@@ -201,9 +201,9 @@ class TimeSynchronizer(SimpleFilter):
 
 
 class ApproximateTimeSynchronizer(TimeSynchronizer):
-    """As `TimeSynchronizer`, for stamps that lie less than ``slop`` seconds apart.
+    """As `TimeSynchronizer`, for stamps that differ by less than ``slop`` seconds.
 
-    Messages without a header count as of the time they came, if ``allow_headerless``.
+    With ``allow_headerless``, the stamp of a message without a header is its time of arrival.
     """
 
     def __init__(
@@ -214,7 +214,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         self.allow_headerless = allow_headerless
 
     def add(self, msg: Any, my_queue: dict[int, Any], my_queue_index: int | None = None) -> None:
-        """Remember a message, and hand it on with the nearest of each other filter, if near enough."""
+        """Keep a message, and pass it on with the nearest message of each other filter within ``slop``."""
         time = _stamp(msg, self.allow_headerless, "message_filters_approx")
         if time is None:
             return
@@ -222,7 +222,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
         with self.lock:
             self._remember(msg, stamp, my_queue)
             if stamp not in my_queue:
-                return  # older than all that are remembered
+                return  # the message is older than all that are kept
             others = [
                 (stamp,) if index == my_queue_index else self._near(queue, stamp)
                 for index, queue in enumerate(self.queues)
@@ -238,7 +238,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
 
 
 def _stamp(msg: Any, allow_headerless: bool, logger: str) -> Any:
-    """When a message is of, an ``rclpy.time.Time``; None, and a warning, if that is not known."""
+    """The time of a message as an ``rclpy.time.Time``; None, and a warning, if it has no stamp."""
     if hasattr(msg, "header") and hasattr(msg.header, "stamp"):
         stamp = msg.header.stamp
         return stamp if hasattr(stamp, "nanoseconds") else Time.from_msg(stamp)

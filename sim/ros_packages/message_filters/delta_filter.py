@@ -1,4 +1,4 @@
-"""``message_filters.delta_filter``: lets a message pass if it differs from the last one that passed."""
+"""``message_filters.delta_filter``: passes on a message if it differs from the last one that passed."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import Any
 from sim.ros_packages.message_filters.simple_filter import SimpleFilter
 
 Getter = Callable[[Any], Any]
-"""Gives the value of a field of a message."""
+"""Returns the value of a field of a message."""
 
 
-class ComparisonHandler(ABC):  # noqa: B024 -- so it is there
-    """Says which messages pass."""
+class ComparisonHandler(ABC):  # noqa: B024 -- as in message_filters
+    """Decides which messages pass."""
 
     def message_fits(self, message: Any) -> bool:
         """Whether a message passes."""
@@ -27,7 +27,7 @@ class ComparisonHandler(ABC):  # noqa: B024 -- so it is there
 class CachedComparisonHandler(ComparisonHandler):
     """Compares fields with those of the last message that passed; the first one passes.
 
-    A subclass has ``_field_getters`` and ``do_fields_fit``; one field that fits is enough.
+    A subclass defines ``_field_getters`` and ``do_fields_fit``; one field that fits is enough.
     """
 
     _field_getters: Iterable[Getter]
@@ -36,7 +36,7 @@ class CachedComparisonHandler(ComparisonHandler):
         self._message_cache: Any = None
 
     def message_fits(self, message: Any) -> bool:
-        """Whether a message passes, which is remembered then."""
+        """Whether a message passes; if so, it is the next one to compare with."""
         last = self._message_cache
         fits = last is None or any(
             self.do_fields_fit(get_field(last), get_field(message)) for get_field in self._field_getters
@@ -46,7 +46,7 @@ class CachedComparisonHandler(ComparisonHandler):
         return fits
 
     def do_fields_fit(self, field_a: Any, field_b: Any) -> bool:
-        """What a subclass has to say."""
+        """Whether two values fit: to be defined by a subclass."""
         raise NotImplementedError(
             f"Field comparison not implemented for class: {type(self).__name__}. "
             "Consider implementing do_fields_fit"
@@ -54,10 +54,10 @@ class CachedComparisonHandler(ComparisonHandler):
 
 
 class DeltaCompare(CachedComparisonHandler):
-    """Fields fit that have changed; each getter has to give a bool, int, float or str.
+    """Fields fit if they have changed; each getter has to return a bool, int, float or str.
 
     Raises:
-        TypeError: as it compares, a value is something else.
+        TypeError: while comparing, if a value has another type.
     """
 
     def __init__(self, field_getters: Iterable[Getter]) -> None:
@@ -65,14 +65,14 @@ class DeltaCompare(CachedComparisonHandler):
         self._field_getters = list(field_getters)
 
     def do_fields_fit(self, field_a: Any, field_b: Any) -> bool:
-        """Whether the two differ."""
+        """Whether the two values differ."""
         if not all(isinstance(each, bool | int | float | str) for each in (field_a, field_b)):
             raise TypeError(f"Unable to compare fields of types {type(field_a)} and {type(field_b)}")
         return bool(field_a != field_b)
 
 
 class ComparisonFilter(SimpleFilter):
-    """Hands on the messages that a handler lets pass."""
+    """Passes on the messages that a handler accepts."""
 
     def __init__(self, comparison_handler: ComparisonHandler, message_filter: Any = None) -> None:
         super().__init__()
@@ -81,7 +81,7 @@ class ComparisonFilter(SimpleFilter):
         self.connectInput(message_filter)
 
     def add(self, message: Any) -> None:
-        """Hand on a message if it passes."""
+        """Pass on a message if the handler accepts it."""
         if self.message_fits(message):
             self.signalMessage(message)
 
@@ -90,10 +90,10 @@ class ComparisonFilter(SimpleFilter):
         return self._comparison_handler.message_fits(message)
 
     def connectInput(self, message_filter: Any) -> None:
-        """Listen to a filter, if it is one.
+        """Connect to a filter; None connects to nothing.
 
         Raises:
-            RuntimeError: it listens to one.
+            RuntimeError: this filter is connected already.
         """
         if self.incoming_connection is not None:
             raise RuntimeError("This instance of ComparisonFilter already has an incoming connection")
@@ -102,14 +102,14 @@ class ComparisonFilter(SimpleFilter):
 
 
 class DeltaFilter(ComparisonFilter):
-    """Hands on a message if a field has changed since the last one that was handed on."""
+    """Passes on a message if a field has changed since the last one that passed."""
 
     def __init__(self, field_getters: Iterable[Getter], message_filter: Any = None) -> None:
         super().__init__(DeltaCompare(field_getters), message_filter)
 
 
 class PathDeltaFilter(DeltaFilter):
-    """As `DeltaFilter`, for fields named by their paths, such as ``pose.position.x``."""
+    """As `DeltaFilter`, for fields given by their paths, such as ``pose.position.x``."""
 
     def __init__(self, field_path_list: Iterable[str], message_filter: Any = None) -> None:
         super().__init__([self._getter(path) for path in field_path_list], message_filter)

@@ -7,22 +7,22 @@ from typing import Any
 
 
 class SimpleFilter:
-    """Hands what comes out of it to the callbacks that were registered."""
+    """Calls the registered callbacks with each output."""
 
     def __init__(self) -> None:
         self.callbacks: dict[int, tuple[Callable[..., Any], tuple[Any, ...]]] = {}
 
     def registerCallback(self, cb: Callable[..., Any], *args: Any) -> int:
-        """Have ``cb`` called with each output and ``args``; the number of the connection."""
+        """Call ``cb`` with each output and ``args``; return the number of the connection."""
         connection = len(self.callbacks)
         self.callbacks[connection] = (cb, args)
         return connection
 
     def unregisterCallback(self, conn: int) -> None:
-        """Call the callback of a connection no more."""
+        """Remove the callback of a connection."""
         self.callbacks.pop(conn, None)
 
     def signalMessage(self, *msg: Any) -> None:
-        """Hand on messages."""
+        """Call the callbacks with messages."""
         for callback, arguments in tuple(self.callbacks.values()):
             callback(*msg, *arguments)

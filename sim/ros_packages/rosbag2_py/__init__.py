@@ -1,4 +1,4 @@
-"""``rosbag2_py``: bags of messages, read and written by way of rosbags."""
+"""``rosbag2_py``: bags of messages, read and written by rosbags."""
 
 from sim.ros_packages.rosbag2_py._info import Info
 from sim.ros_packages.rosbag2_py._reader import SequentialCompressionReader, SequentialReader
@@ -18,12 +18,12 @@ from sim.ros_packages.rosbag2_py._writer import SequentialWriter
 
 
 def get_registered_readers() -> set[str]:
-    """The storages that bags are read from."""
+    """The storages that can be read."""
     return {"mcap", "sqlite3"}
 
 
 def get_registered_writers() -> set[str]:
-    """The storages that bags are written to."""
+    """The storages that can be written."""
     return {"mcap", "sqlite3"}
 
 

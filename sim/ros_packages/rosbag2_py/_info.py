@@ -1,14 +1,14 @@
-"""``rosbag2_py._info``: what a bag says of itself."""
+"""``rosbag2_py._info``: the metadata of bags."""
 
 from sim.ros_packages.rosbag2_py._reader import SequentialReader
 from sim.ros_packages.rosbag2_py._storage import BagMetadata, StorageOptions
 
 
 class Info:
-    """Asks bags about themselves."""
+    """Reads the metadata of bags."""
 
     def read_metadata(self, uri: str, storage_id: str = "") -> BagMetadata:
-        """What a bag says of itself; RuntimeError if it cannot be read."""
+        """The metadata of a bag; RuntimeError if it cannot be read."""
         reader = SequentialReader()
         reader.open(StorageOptions(uri, storage_id))
         found = reader.get_metadata()

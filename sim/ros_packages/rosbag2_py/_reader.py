@@ -21,7 +21,7 @@ from sim.ros_packages.rosbag2_py._storage import (
 )
 
 if TYPE_CHECKING:
-    # At run time it takes as long as the rest of a small program.
+    # At run time this import takes as long as the rest of a small program.
     from rosbags.rosbag2 import Reader
 
 _PLUGINS = {"mcap": ".mcap", "sqlite3": ".db3"}
@@ -43,7 +43,7 @@ class SequentialReader:
         """Open a bag.
 
         Raises:
-            RuntimeError: there is none, or it cannot be read; the text says why.
+            RuntimeError: there is no such bag, or it cannot be read; the message says why.
         """
         from rosbags.rosbag2 import Reader, ReaderError
 
@@ -64,7 +64,7 @@ class SequentialReader:
         self._rewind()
 
     def open_uri(self, uri: str) -> None:
-        """Open a bag by where it lies. Raises as `open`."""
+        """Open a bag by its path. Raises as `open`."""
         self.open(StorageOptions(uri))
 
     def close(self) -> None:
@@ -78,10 +78,10 @@ class SequentialReader:
         return self._next is not None
 
     def read_next(self) -> tuple[str, bytes, int]:
-        """The next message: topic, serialized content, and nanoseconds since 1970.
+        """The next message: topic, serialized message, and nanoseconds since 1970.
 
         Raises:
-            RuntimeError: there is none.
+            RuntimeError: there is no further message.
         """
         if self._next is None:
             raise RuntimeError("Bag is at end. No next message.")
@@ -89,12 +89,12 @@ class SequentialReader:
         return read
 
     def seek(self, timestamp: int) -> None:
-        """Go on with the first message of a time or later."""
+        """Continue with the first message at or after a time."""
         self._start = timestamp
         self._rewind()
 
     def set_filter(self, storage_filter: StorageFilter) -> None:
-        """Leave out all topics but some, from where the reader stands."""
+        """Skip all topics but those of the filter, from the current position on."""
         self._topics = frozenset(storage_filter.topics)
         self._go_on()
 
@@ -108,7 +108,7 @@ class SequentialReader:
         return [each.topic_metadata for each in self.get_metadata().topics_with_message_count]
 
     def get_all_message_definitions(self) -> list[MessageDefinition]:
-        """How the types of the bag's topics are written down."""
+        """The definitions of the types of the bag's topics."""
         return [
             MessageDefinition(
                 each.msgtype, f"ros2{each.msgdef.format.name.lower()}", each.msgdef.data, each.digest
@@ -117,11 +117,11 @@ class SequentialReader:
         ]
 
     def set_read_order(self, read_order: ReadOrder) -> bool:
-        """Whether messages are read in that order: only in that of the times at which they came."""
+        """Whether messages are read in that order; only the order of reception is supported."""
         return read_order == ReadOrder()
 
     def get_metadata(self) -> BagMetadata:
-        """What the bag says of itself."""
+        """The metadata of the bag."""
         bag = self._opened()
         topics = [
             TopicInformation(
@@ -161,4 +161,4 @@ class SequentialReader:
 
 
 class SequentialCompressionReader(SequentialReader):
-    """Reads compressed bags, as `SequentialReader` does, too."""
+    """Reads compressed bags, which `SequentialReader` can read, too."""

@@ -1,4 +1,4 @@
-"""``rosbag2_py._storage``: what a bag is asked for, and what it says of itself."""
+"""``rosbag2_py._storage``: options and metadata of bags."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 
 @dataclass
 class StorageOptions:
-    """Where a bag lies: a folder with ``metadata.yaml``, or a file; ``mcap`` or ``sqlite3``."""
+    """A bag: its path (of a file, or a folder with ``metadata.yaml``), and ``mcap`` or ``sqlite3``."""
 
     uri: str
     storage_id: str = ""
@@ -27,7 +27,7 @@ class StorageOptions:
 
 @dataclass
 class ConverterOptions:
-    """How messages are serialized: ``cdr``, whichever is asked for."""
+    """The serialization of messages; it is always ``cdr``."""
 
     input_serialization_format: str = ""
     output_serialization_format: str = ""
@@ -35,13 +35,13 @@ class ConverterOptions:
 
 @dataclass
 class StorageFilter:
-    """Which topics are read: those of ``topics``, all without any."""
+    """The topics to read; none: all topics."""
 
     topics: Sequence[str] = ()
 
 
 class ReadOrderSortBy(Enum):
-    """What messages are sorted by as they are read."""
+    """The key by which messages are sorted."""
 
     ReceivedTimestamp = 0
     PublishedTimestamp = 1
@@ -58,7 +58,7 @@ class ReadOrder:
 
 @dataclass
 class MessageDefinition:
-    """How a type is written down, and in which notation: ``ros2msg`` or ``ros2idl``."""
+    """The definition of a type, in the notation ``ros2msg`` or ``ros2idl``."""
 
     topic_type: str
     encoding: str
@@ -78,13 +78,13 @@ class TopicMetadata:
     type_description_hash: str = ""
 
     def equals(self, other: TopicMetadata) -> bool:
-        """Whether both say the same."""
+        """Whether both are equal."""
         return self == other
 
 
 @dataclass
 class TopicInformation:
-    """A topic of a bag, and how many messages it has."""
+    """A topic of a bag, and its number of messages."""
 
     topic_metadata: TopicMetadata
     message_count: int
@@ -92,7 +92,7 @@ class TopicInformation:
 
 @dataclass
 class BagMetadata:
-    """What a bag says of itself. ``duration`` and ``starting_time`` are rclpy's ``Duration`` and ``Time``."""
+    """The metadata of a bag. ``duration`` and ``starting_time`` are rclpy's ``Duration`` and ``Time``."""
 
     storage_identifier: str
     duration: Any
@@ -105,5 +105,5 @@ class BagMetadata:
 
 
 def get_default_storage_id() -> str:
-    """The storage that bags are written to if none is named."""
+    """The storage of new bags if none is given."""
     return "mcap"

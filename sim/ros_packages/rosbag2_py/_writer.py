@@ -12,13 +12,13 @@ from sim.ros.middleware.type_description import type_hash
 from sim.ros_packages.rosbag2_py._storage import ConverterOptions, StorageOptions, TopicMetadata
 
 if TYPE_CHECKING:
-    # At run time it takes as long as the rest of a small program.
+    # At run time this import takes as long as the rest of a small program.
     from rosbags.interfaces import Connection
     from rosbags.rosbag2 import Writer
 
 
 class SequentialWriter:
-    """Writes messages to a new bag. It is complete once it is closed, at the program's end at the latest."""
+    """Writes messages to a new bag. Closing completes the bag, at the program's end at the latest."""
 
     def __init__(self) -> None:
         self._bag: Writer | None = None
@@ -27,10 +27,10 @@ class SequentialWriter:
     def open(
         self, storage_options: StorageOptions, converter_options: ConverterOptions | None = None
     ) -> None:
-        """Make the bag's folder.
+        """Create the bag's folder.
 
         Raises:
-            RuntimeError: it exists, cannot be made, or there is no such storage.
+            RuntimeError: the folder exists or cannot be created, or there is no such storage.
         """
         from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
 
@@ -52,11 +52,11 @@ class SequentialWriter:
         atexit.register(_close, weakref.ref(self))
 
     def create_topic(self, topic_with_type: TopicMetadata) -> None:
-        """Make a topic known; twice does no harm.
+        """Add a topic, unless the bag has it.
 
         Raises:
             RuntimeError: the bag is not open.
-            UnknownInterfaceError: nobody knows its type.
+            UnknownInterfaceError: the topic's type is unknown.
         """
         if topic_with_type.name in self._connections:
             return
@@ -66,7 +66,7 @@ class SequentialWriter:
         )
 
     def write(self, topic_name: str, message: bytes, time_stamp: int) -> None:
-        """Write a serialized message, at nanoseconds since 1970.
+        """Write a serialized message with its time in nanoseconds since 1970.
 
         Raises:
             RuntimeError: the bag is not open, or has no such topic.
@@ -78,7 +78,7 @@ class SequentialWriter:
         bag.write(connection, time_stamp, message)
 
     def close(self) -> None:
-        """Complete the bag; twice does no harm."""
+        """Complete the bag, unless it is closed."""
         bag, self._bag = self._bag, None
         if bag is not None:
             bag.close()

@@ -1,4 +1,4 @@
-"""``tf2_geometry_msgs.tf2_geometry_msgs``: how points, vectors and poses are transformed."""
+"""``tf2_geometry_msgs.tf2_geometry_msgs``: transforms points, vectors and poses."""
 
 from __future__ import annotations
 
@@ -51,14 +51,14 @@ def _numbers(point: Any) -> Any:
 
 
 def do_transform_point(point: Any, transform: Any) -> Any:
-    """A ``PointStamped``, in the transform's frame and at its time."""
+    """Transform a ``PointStamped``; the result has the transform's frame and time."""
     made = PointStamped(header=transform.header)
     made.point.x, made.point.y, made.point.z = map(float, _motion(transform)(_numbers(point.point)))
     return made
 
 
 def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
-    """A ``PolygonStamped``, in the transform's frame and at its time."""
+    """Transform a ``PolygonStamped``; the result has the transform's frame and time."""
     made, motion = PolygonStamped(header=transform.header), _motion(transform)
     moved = (map(float, motion(_numbers(point))) for point in polygon.polygon.points)
     made.polygon.points = [Point32(x=x, y=y, z=z) for x, y, z in moved]
@@ -66,7 +66,7 @@ def do_transform_polygon_stamped(polygon: Any, transform: Any) -> Any:
 
 
 def do_transform_vector3(vector3: Any, transform: Any) -> Any:
-    """A ``Vector3Stamped``, turned and not moved."""
+    """Rotate a ``Vector3Stamped``, without translation; the result has the transform's frame and time."""
     made = Vector3Stamped(header=transform.header)
     made.vector.x, made.vector.y, made.vector.z = map(
         float, _motion(transform).turned(_numbers(vector3.vector))
@@ -75,7 +75,7 @@ def do_transform_vector3(vector3: Any, transform: Any) -> Any:
 
 
 def do_transform_pose(pose: Any, transform: Any) -> Any:
-    """A ``Pose`` in the transform's frame."""
+    """Transform a ``Pose`` to the transform's frame."""
     made = Pose()
     moved = _motion(transform).after(Motion.of(pose.position, pose.orientation))
     moved.write(made.position, made.orientation)
@@ -83,19 +83,19 @@ def do_transform_pose(pose: Any, transform: Any) -> Any:
 
 
 def do_transform_pose_stamped(pose: Any, transform: Any) -> Any:
-    """A ``PoseStamped``, in the transform's frame and at its time."""
+    """Transform a ``PoseStamped``; the result has the transform's frame and time."""
     return PoseStamped(header=transform.header, pose=do_transform_pose(pose.pose, transform))
 
 
 def transform_covariance(cov_in: Any, transform: Any) -> Any:
-    """A covariance of 6 by 6 numbers, position before rotation, turned into the transform's frame."""
+    """Rotate a covariance of 6 by 6 numbers, position before rotation, to the transform's frame."""
     turn = quat2mat(_motion(transform).rotation)
     both = np.kron(np.eye(2), turn)
     return (both @ np.reshape(cov_in, (6, 6)) @ both.T).reshape(36)
 
 
 def do_transform_pose_with_covariance_stamped(pose: Any, transform: Any) -> Any:
-    """A ``PoseWithCovarianceStamped``, in the transform's frame and at its time."""
+    """Transform a ``PoseWithCovarianceStamped``; the result has the transform's frame and time."""
     made = PoseWithCovarianceStamped(header=transform.header)
     made.pose.pose = do_transform_pose(pose.pose.pose, transform)
     made.pose.covariance = transform_covariance(pose.pose.covariance, transform)

@@ -1,4 +1,4 @@
-"""``tf2_py``: transforms between frames over time, and what can go wrong with them."""
+"""``tf2_py``: transforms between frames over time, and their exceptions."""
 
 from sim.ros_packages.tf2_py.buffer_core import BufferCore
 from sim.ros_packages.tf2_py.exceptions import (

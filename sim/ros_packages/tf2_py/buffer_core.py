@@ -1,4 +1,4 @@
-"""``tf2_py.BufferCore``: the tree of frames, and the way from one to another. It never waits."""
+"""``tf2_py.BufferCore``: the tree of frames, and the transforms between them. It never waits."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from sim.ros_packages.tf2_py.motion import IDENTITY, Motion
 _SECOND = 1_000_000_000
 _CACHE_TIME = 10 * _SECOND
 _DEEPEST = 1000
-"""Frames from the bottom to the top; more of them are a loop."""
+"""The most frames on a path to the root; a longer path is a loop."""
 _UNIT_TOLERANCE = 10e-3
 
 
 @dataclass(frozen=True, slots=True)
 class _Climb:
-    """The samples on the way up from a frame, the frame where the way ends, and what is missing there."""
+    """The samples on the path up from a frame, the frame at its end, and the data missing there."""
 
     samples: tuple[Sample, ...]
     top: str
@@ -41,12 +41,12 @@ class _Climb:
 
     @property
     def motion(self) -> Motion:
-        """From the frame that the climb began at to its top."""
+        """The motion from the first frame of the path to its top."""
         return reduce(lambda below, sample: sample.motion.after(below), self.samples, IDENTITY)
 
 
 class BufferCore:
-    """Transforms between frames over the last seconds. Safe to use from several threads."""
+    """Transforms between frames over the last seconds. Thread-safe."""
 
     def __init__(self, cache_time: Any = None) -> None:
         self._cache_time = _CACHE_TIME if cache_time is None else nanoseconds(cache_time, "duration")
@@ -56,17 +56,17 @@ class BufferCore:
         self._writing = RLock()
 
     def clear(self) -> None:
-        """Forget all transforms but the static ones; the frames' names stay."""
+        """Drop all transforms but the static ones; the frames' names stay."""
         with self._writing:
             for history in self._histories.values():
                 history.clear()
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Add a transform that holds at its stamp. What cannot be right is ignored, with a line on stderr."""
+        """Add a transform that is valid at its stamp. An invalid one is ignored, with a line on stderr."""
         self._set(transform, authority, is_static=False)
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Add a transform that holds for all time; as `set_transform` otherwise."""
+        """Add a transform that is valid at all times; otherwise as `set_transform`."""
         self._set(transform, authority, is_static=True)
 
     def _set(self, transform: Any, authority: str, *, is_static: bool) -> None:
@@ -75,7 +75,7 @@ class BufferCore:
         motion = Motion.of(transform.transform.translation, transform.transform.rotation)
         faults = list(_faults(parent, child, motion, authority))
         for fault in faults:
-            print(f"Error:   {fault}", file=sys.stderr)  # noqa: T201 -- where tf2 says it
+            print(f"Error:   {fault}", file=sys.stderr)  # noqa: T201 -- as tf2 does
         if faults:
             return
         sample = Sample(nanoseconds(transform.header.stamp), parent, motion)
@@ -98,13 +98,13 @@ class BufferCore:
             )
 
     def lookup_transform_core(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """The ``TransformStamped`` that takes data of ``source_frame`` to ``target_frame``.
+        """The ``TransformStamped`` that converts data of ``source_frame`` to ``target_frame``.
 
-        Time 0 stands for the newest.
+        Time 0 means the latest common time.
 
         Raises:
-            LookupException: a frame is not known.
-            ConnectivityException: the frames are not in one tree.
+            LookupException: a frame is unknown.
+            ConnectivityException: the frames are in different trees.
             ExtrapolationException: there is no data for the time.
             InvalidArgumentException: a frame's name is empty or begins with a slash.
         """
@@ -115,7 +115,7 @@ class BufferCore:
     def lookup_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Any:
-        """As `lookup_transform_core`, from one time to another by way of a frame that stood still."""
+        """As `lookup_transform_core`, from one time to another by way of a frame that is fixed meanwhile."""
         for role, frame in (("target", target_frame), ("source", source_frame), ("fixed", fixed_frame)):
             self._check(role, frame)
         first, _ = self._look_up(fixed_frame, source_frame, nanoseconds(source_time))
@@ -123,30 +123,30 @@ class BufferCore:
         return _message(target_frame, source_frame, second.after(first), stamp)
 
     def can_transform_core(self, target_frame: str, source_frame: str, time: Any) -> tuple[int, str]:
-        """Whether `lookup_transform_core` would succeed, and why not."""
+        """Whether `lookup_transform_core` would succeed, and the reason if not."""
         return self._can(nanoseconds(time), target_frame, source_frame)
 
     def can_transform_full_core(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> tuple[int, str]:
-        """Whether `lookup_transform_full_core` would succeed, and why not."""
+        """Whether `lookup_transform_full_core` would succeed, and the reason if not."""
         first = self._can(nanoseconds(target_time), target_frame, fixed_frame)
         return self._can(nanoseconds(source_time), fixed_frame, source_frame) if first[0] else first
 
     def get_latest_common_time(self, target_frame: str, source_frame: str) -> Any:
-        """The newest time for which the way between two frames is known, as an ``rclpy.time.Time``."""
+        """The newest ``rclpy.time.Time`` for which the transform between two frames is known."""
         for frame in (target_frame, source_frame):
             _require(frame, "get_latest_common_time", self._names)
         return Time(nanoseconds=self._latest_common_time(target_frame, source_frame))
 
     def all_frames_as_string(self) -> str:
-        """One sentence a frame that has a parent."""
+        """One sentence for each frame with a parent."""
         return "".join(
             f"Frame {child} exists with parent {_parent(history)}.\n" for child, history in self._in_order()
         )
 
     def all_frames_as_yaml(self) -> str:
-        """The frames that have a parent, with their rates and times, as a YAML document."""
+        """The frames with a parent, their rates and times, as a YAML document."""
         if not self._names:
             return "[]"
         return "".join(
@@ -188,7 +188,7 @@ class BufferCore:
         _require(frame, f"lookupTransform argument {role}_frame", self._names)
 
     def _look_up(self, target: str, source: str, time: int) -> tuple[Motion, int]:
-        """The motion from one frame to another, and the time that it holds for."""
+        """The motion from one frame to another, and its time."""
         if target == source:
             history = self._histories.get(target)
             newest = history.samples[-1].stamp if history and history.samples else NEWEST
@@ -225,7 +225,7 @@ class BufferCore:
         return min((sample.stamp for sample in used if sample.stamp != NEWEST), default=NEWEST)
 
     def _climb(self, frame: str, ends: Container[str], time: int) -> _Climb:
-        """Go up from a frame to the first of ``ends``, to one without parent, or to where data is missing."""
+        """Go up from a frame to the first of ``ends``, to a frame without parent, or to missing data."""
         samples: list[Sample] = []
         while frame not in ends and (history := self._histories.get(frame)) is not None:
             try:
@@ -242,10 +242,10 @@ class BufferCore:
 
 
 def nanoseconds(time: Any, what: str = "time") -> int:
-    """A time or duration, as a message or as rclpy has it, in nanoseconds.
+    """The nanoseconds of a time or duration, which is a message or an object of rclpy.
 
     Raises:
-        TypeError: it is neither.
+        TypeError: it is neither of them.
     """
     if hasattr(time, "sec") and hasattr(time, "nanosec"):
         return int(time.sec * _SECOND + time.nanosec)
@@ -281,7 +281,7 @@ def _unconnected(target: str, source: str) -> ConnectivityException:
 
 
 def _faults(parent: str, child: str, motion: Motion, authority: str) -> Iterator[str]:
-    """What is wrong with a transform, in tf2's words."""
+    """The faults of a transform, in tf2's words."""
     if child == parent:
         yield (
             f'TF_SELF_TRANSFORM: Ignoring transform from authority "{authority}" with frame_id and  '

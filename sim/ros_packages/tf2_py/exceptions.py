@@ -1,4 +1,4 @@
-"""What can go wrong with a transform."""
+"""The exceptions of tf2."""
 
 __all__ = [
     "ConnectivityException",
@@ -11,27 +11,27 @@ __all__ = [
 
 
 class TransformException(Exception):
-    """The base of all of tf2's exceptions."""
+    """Base of tf2's exceptions."""
 
 
 class ConnectivityException(TransformException):
-    """Both frames are known, and no way leads from one to the other."""
+    """Both frames are known, but not connected."""
 
 
 class LookupException(TransformException):
-    """A frame is not known, or the frames form a loop."""
+    """A frame is unknown, or the frames form a loop."""
 
 
 class ExtrapolationException(TransformException):
-    """The buffer has no data for the time asked for."""
+    """The buffer has no data for the requested time."""
 
 
 class InvalidArgumentException(TransformException):
-    """A frame has no name, or one that begins with a slash."""
+    """A frame's name is empty or begins with a slash."""
 
 
 class TimeoutException(TransformException):
-    """A transform did not come in time."""
+    """A transform did not arrive in time."""
 
 
 for _each in __all__:

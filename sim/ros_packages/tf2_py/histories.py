@@ -1,4 +1,4 @@
-"""What a buffer knows of one frame: where it was in its parent, and when."""
+"""The history of one frame in a buffer: its poses in the parent frame over time."""
 
 from __future__ import annotations
 
@@ -10,38 +10,38 @@ from sim.ros_packages.tf2_py.exceptions import ExtrapolationException
 from sim.ros_packages.tf2_py.motion import Motion
 
 NEWEST = 0
-"""The time that stands for the newest data."""
+"""The time that means the newest data."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Sample:
-    """One transform of a frame: from it into its parent, at ``stamp`` nanoseconds."""
+    """One transform from a frame to its parent, at ``stamp`` nanoseconds."""
 
     stamp: int
     parent: str
     motion: Motion
 
     def same_as(self, other: Sample) -> bool:
-        """Whether both say the same."""
+        """Whether both have the same stamp, parent and motion."""
         return (self.stamp, self.parent) == (other.stamp, other.parent) and self.motion.same_as(other.motion)
 
 
 class FixedHistory:
-    """The last transform of a frame that was broadcast as static, which holds for all time."""
+    """The last static transform of a frame, which is valid at all times."""
 
     def __init__(self) -> None:
         self.samples: Sequence[Sample] = ()
 
     def add(self, sample: Sample) -> bool:
-        """Replace what was known."""
+        """Replace the transform; True."""
         self.samples = (Sample(NEWEST, sample.parent, sample.motion),)
         return True
 
     def clear(self) -> None:
-        """Keep it: what is static outlives a jump of the clock."""
+        """Keep the transform: static ones remain after a jump of the clock."""
 
     def at(self, time: int) -> Sample:
-        """The transform, whatever the time."""
+        """The transform, which is the same at all times."""
         return self.samples[0]
 
 
@@ -56,7 +56,7 @@ class MovingHistory:
         self.samples: Sequence[Sample] = ()
 
     def add(self, sample: Sample) -> bool:
-        """Put a sample in its place by time, and drop what has become too old: False if the sample is."""
+        """Insert a sample by its time, and drop samples that are too old; False if this sample is too old."""
         known = self.samples
         newest = max(sample.stamp, known[-1].stamp) if known else sample.stamp
         if sample.stamp < newest - self._length:
@@ -69,11 +69,11 @@ class MovingHistory:
         return True
 
     def clear(self) -> None:
-        """Forget every sample."""
+        """Drop all samples."""
         self.samples = ()
 
     def at(self, time: int) -> Sample:
-        """The transform at a time, between two samples where it has to be.
+        """The transform at a time, interpolated between two samples if necessary.
 
         Raises:
             ExtrapolationException: the time is before the oldest sample or after the newest one.

@@ -14,14 +14,14 @@ Vector = npt.NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Motion:
-    """Takes points of one frame to another: turned by ``rotation`` (w, x, y, z), then moved, in metres."""
+    """Converts points of one frame to another: a rotation (w, x, y, z), then a translation in metres."""
 
     rotation: Vector
     translation: Vector
 
     @classmethod
     def of(cls, translation: Any, rotation: Any) -> Motion:
-        """The motion of a message's translation or position, and of its rotation or orientation."""
+        """The motion of a message's translation (or position) and rotation (or orientation)."""
         return cls(
             np.array((rotation.w, rotation.x, rotation.y, rotation.z)),
             np.array((translation.x, translation.y, translation.z)),
@@ -33,25 +33,25 @@ class Motion:
         rotation.w, rotation.x, rotation.y, rotation.z = map(float, self.rotation)
 
     def __call__(self, point: Vector) -> Vector:
-        """The point, in the frame that this motion takes to."""
+        """Rotate and translate a point."""
         return self.turned(point) + self.translation
 
     def turned(self, vector: Vector) -> Vector:
-        """The vector, turned and not moved."""
+        """Rotate a vector without translation."""
         turned: Vector = rotate_vector(vector, self.rotation)
         return turned
 
     def after(self, first: Motion) -> Motion:
-        """The motion that is ``first``, and then this one."""
+        """The composition: ``first``, then this motion."""
         return Motion(qmult(self.rotation, first.rotation), self(first.translation))
 
     def inverse(self) -> Motion:
-        """The way back."""
+        """The inverse motion."""
         back = qconjugate(self.rotation)
         return Motion(back, -rotate_vector(self.translation, back))
 
     def towards(self, other: Motion, share: float) -> Motion:
-        """This motion, a share from 0 to 1 of the shortest way to another."""
+        """The motion at a share, from 0 to 1, of the shortest way to another motion."""
         between = qmult(qconjugate(self.rotation), other.rotation)
         shortest = between if between[0] >= 0 else -between
         return Motion(

@@ -1,4 +1,4 @@
-"""``tf2_ros``: listening to transforms, sending them, and asking for them."""
+"""``tf2_ros``: receives, sends and looks up transforms."""
 
 from sim.ros_packages.tf2_py import *
 from sim.ros_packages.tf2_ros.buffer import Buffer

@@ -20,18 +20,19 @@ __all__ = ["Buffer"]
 
 _AT_ONCE = Duration()
 _LOOK_AGAIN = 0.02
-"""Seconds between two looks of somebody who waits."""
+"""Seconds between two polls of a waiting thread."""
 _JUMPED = Duration(seconds=3.0)
-"""A clock that goes back further than this was set, and ends the wait."""
+"""If the clock goes back by more than this, it was set, and the wait ends."""
 
 
 class Buffer(BufferCore, BufferInterface):
-    """Transforms of the last seconds, 10 of them unless ``cache_time`` says otherwise.
+    """Transforms of the last 10 seconds, or of the last ``cache_time``.
 
-    With a ``node``, it is told of the node's clock being set back, and the node serves ``tf2_frames``.
+    With a ``node``, the buffer is cleared when the node's clock is set back, and the node serves
+    ``tf2_frames``.
 
-    What waits looks again every 0.02 s on the thread that asked. It runs no callback: inside of a callback,
-    transforms come only if another thread runs the listener's.
+    A wait polls every 0.02 s on the calling thread and runs no callbacks: inside a callback,
+    transforms arrive only if another thread runs the listener's callbacks.
     """
 
     def __init__(self, cache_time: Any = None, node: Any = None) -> None:
@@ -45,7 +46,7 @@ class Buffer(BufferCore, BufferInterface):
         self.jump_handle = self.clock.create_jump_callback(threshold, post_callback=self.time_jump_callback)
 
     def time_jump_callback(self, time_jump: Any) -> None:
-        """Forget everything: the clock was set back."""
+        """Clear the buffer: the clock was set back."""
         get_logger("tf2_buffer").warning("Detected jump back in time. Clearing tf buffer.")
         self.clear()
 
@@ -54,12 +55,12 @@ class Buffer(BufferCore, BufferInterface):
         return response
 
     def set_transform(self, transform: Any, authority: str) -> None:
-        """Add a transform, and wake whoever awaits it."""
+        """Add a transform, and wake the waiting tasks."""
         super().set_transform(transform, authority)
         self._look_again()
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
-        """Add a transform that holds for all time, and wake whoever awaits it."""
+        """Add a static transform, and wake the waiting tasks."""
         super().set_transform_static(transform, authority)
         self._look_again()
 
@@ -70,19 +71,19 @@ class Buffer(BufferCore, BufferInterface):
     def lookup_transform(
         self, target_frame: str, source_frame: str, time: Any, timeout: Any = _AT_ONCE
     ) -> Any:
-        """The ``TransformStamped`` that takes data of ``source_frame`` to ``target_frame``.
+        """The ``TransformStamped`` that converts data of ``source_frame`` to ``target_frame``.
 
-        Time 0 stands for the newest. Waits for it, at most ``timeout``, on this thread.
+        Time 0 means the latest common time. Waits for the transform on this thread, at most ``timeout``.
 
         Raises:
             LookupException, ConnectivityException, ExtrapolationException, InvalidArgumentException: as
-                `BufferCore.lookup_transform_core`, when the time is over.
+                `BufferCore.lookup_transform_core`, after the timeout.
         """
         self.can_transform(target_frame, source_frame, time, timeout)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
     async def lookup_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """As `lookup_transform`, awaiting it for as long as it takes."""
+        """As `lookup_transform`, awaiting the transform without a timeout."""
         await self.wait_for_transform_async(target_frame, source_frame, time)
         return self.lookup_transform_core(target_frame, source_frame, time)
 
@@ -95,7 +96,7 @@ class Buffer(BufferCore, BufferInterface):
         fixed_frame: str,
         timeout: Any = _AT_ONCE,
     ) -> Any:
-        """As `lookup_transform`, from one time to another by way of a frame that stood still meanwhile."""
+        """As `lookup_transform`, from one time to another by way of a frame that is fixed meanwhile."""
         asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
         self.can_transform_full(*asked, timeout)
         return self.lookup_transform_full_core(*asked)
@@ -103,7 +104,7 @@ class Buffer(BufferCore, BufferInterface):
     async def lookup_transform_full_async(
         self, target_frame: str, target_time: Any, source_frame: str, source_time: Any, fixed_frame: str
     ) -> Any:
-        """As `lookup_transform_full`, awaiting it for as long as it takes."""
+        """As `lookup_transform_full`, awaiting the transform without a timeout."""
         asked = (target_frame, target_time, source_frame, source_time, fixed_frame)
         await self.wait_for_transform_full_async(*asked)
         return self.lookup_transform_full_core(*asked)
@@ -116,9 +117,9 @@ class Buffer(BufferCore, BufferInterface):
         timeout: Any = _AT_ONCE,
         return_debug_tuple: bool = False,
     ) -> Any:
-        """Whether there is a transform, waiting for it on this thread, at most ``timeout``.
+        """Whether there is a transform; waits for it on this thread, at most ``timeout``.
 
-        With ``return_debug_tuple``, that and why not.
+        With ``return_debug_tuple``, return the answer and the reason.
         """
         can = partial(self.can_transform_core, target_frame, source_frame, time)
         return _wait_until(can, timeout, return_debug_tuple)
@@ -138,7 +139,7 @@ class Buffer(BufferCore, BufferInterface):
         return _wait_until(partial(self.can_transform_full_core, *asked), timeout, return_debug_tuple)
 
     def wait_for_transform_async(self, target_frame: str, source_frame: str, time: Any) -> Any:
-        """A future of the transform, which is done as soon as the transform can be had."""
+        """A future of the transform, which is done as soon as the transform is available."""
         asked = (target_frame, source_frame, time)
         return self._await(
             partial(self.can_transform_core, *asked), partial(self.lookup_transform_core, *asked)
@@ -162,7 +163,7 @@ class Buffer(BufferCore, BufferInterface):
             try:
                 if can()[0]:
                     future.set_result(look_up())
-            except Exception as error:  # noqa: BLE001 -- whoever awaits it is to have it
+            except Exception as error:  # noqa: BLE001 -- the awaiting task gets it
                 future.set_exception(error)
 
         look()

@@ -1,4 +1,4 @@
-"""``tf2_ros.buffer_interface``: transforming stamped data of any type that somebody has registered."""
+"""``tf2_ros.buffer_interface``: transforms stamped data of all registered types."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _AT_ONCE = Duration()
 
 
 class TypeException(Exception):
-    """Nobody has registered how to transform or convert a type."""
+    """No transformation or conversion is registered for a type."""
 
     def __init__(self, errstr: str) -> None:
         super().__init__(errstr)
@@ -31,7 +31,7 @@ class TypeException(Exception):
 
 
 class NotImplementedException(Exception):
-    """A buffer lacks a method that every buffer has."""
+    """A buffer does not define a method that every buffer needs."""
 
     def __init__(self) -> None:
         self.errstr = "CanTransform or LookupTransform not implemented"
@@ -39,7 +39,7 @@ class NotImplementedException(Exception):
 
 
 class BufferInterface:
-    """What every buffer of transforms can do. A buffer defines the four lookups."""
+    """Base of buffers of transforms. A buffer defines the four lookups."""
 
     def __init__(self) -> None:
         self.registration = TransformRegistration()
@@ -47,10 +47,10 @@ class BufferInterface:
     def transform(
         self, object_stamped: Any, target_frame: str, timeout: Any = _AT_ONCE, new_type: Any = None
     ) -> Any:
-        """Transform data with a header from its frame, at its time, into another frame.
+        """Transform data with a header from its frame to another frame, at its time.
 
         Raises:
-            TypeException: no package that knows the type, such as tf2_geometry_msgs, was imported.
+            TypeException: no imported package, such as tf2_geometry_msgs, has registered the type.
             TransformException: as `lookup_transform`.
         """
         do_transform = self.registration.get(type(object_stamped))
@@ -67,7 +67,7 @@ class BufferInterface:
         timeout: Any = _AT_ONCE,
         new_type: Any = None,
     ) -> Any:
-        """As `transform`, into a frame at another time."""
+        """As `transform`, to a frame at another time."""
         do_transform = self.registration.get(type(object_stamped))
         header = object_stamped.header
         found = self.lookup_transform_full(
@@ -76,32 +76,32 @@ class BufferInterface:
         return _as(new_type, do_transform(object_stamped, found))
 
     def lookup_transform(self, *_asked: Any, **_more: Any) -> Any:
-        """What a buffer has and this has not."""
+        """Raise NotImplementedException: a buffer defines the lookups."""
         raise NotImplementedException
 
     lookup_transform_full = can_transform = can_transform_full = lookup_transform
 
 
 def Stamped(obj: Any, stamp: Any, frame_id: str) -> Any:
-    """Give an object a header."""
+    """Set the header of an object, and return the object."""
     obj.header = Header(frame_id=frame_id, stamp=stamp)
     return obj
 
 
 class TransformRegistration:
-    """How data of a type is transformed, for all buffers of the process."""
+    """The transformations of types, for all buffers of the process."""
 
     _known: ClassVar[dict[Any, Callable[[Any, Any], Any]]] = {}
 
     def add(self, key: Any, callback: Callable[[Any, Any], Any]) -> None:
-        """Have data of a type transformed by ``callback(data, transform)``."""
+        """Register ``callback(data, transform)`` for a type."""
         self._known[key] = callback
 
     def get(self, key: Any) -> Callable[[Any, Any], Any]:
-        """What transforms data of a type.
+        """The function that transforms data of a type.
 
         Raises:
-            TypeException: nothing does.
+            TypeException: the type is not registered.
         """
         return _get(self._known, key)
 
@@ -111,34 +111,34 @@ class TransformRegistration:
 
 
 class ConvertRegistration:
-    """How data of a type becomes data of another, for all of the process."""
+    """The conversions between types, for the whole process."""
 
     _to_msg: ClassVar[dict[Any, Callable[[Any], Any]]] = {}
     _from_msg: ClassVar[dict[Any, Callable[[Any], Any]]] = {}
     _convert: ClassVar[dict[Any, Callable[[Any], Any]]] = {}
 
     def add_to_msg(self, key: Any, callback: Callable[[Any], Any]) -> None:
-        """Have data of a type made a message by ``callback``."""
+        """Register ``callback``, which converts data of a type to a message."""
         self._to_msg[key] = callback
 
     def add_from_msg(self, key: Any, callback: Callable[[Any], Any]) -> None:
-        """Have data of a type made of a message by ``callback``."""
+        """Register ``callback``, which converts a message to data of a type."""
         self._from_msg[key] = callback
 
     def add_convert(self, key: Any, callback: Callable[[Any], Any]) -> None:
-        """Have data converted by ``callback`` between the two types of ``key``, with no message between."""
+        """Register ``callback``, which converts directly between the two types of ``key``."""
         self._convert[key] = callback
 
     def get_to_msg(self, key: Any) -> Callable[[Any], Any]:
-        """What makes data of a type a message; TypeException if nothing does."""
+        """The conversion from a type to a message; TypeException if none is registered."""
         return _get(self._to_msg, key)
 
     def get_from_msg(self, key: Any) -> Callable[[Any], Any]:
-        """What makes a message data of a type; TypeException if nothing does."""
+        """The conversion from a message to a type; TypeException if none is registered."""
         return _get(self._from_msg, key)
 
     def get_convert(self, key: Any) -> Callable[[Any], Any]:
-        """What converts between two types; TypeException if nothing does."""
+        """The conversion between two types; TypeException if none is registered."""
         return _get(self._convert, key)
 
 
@@ -153,10 +153,10 @@ def _as(new_type: Any, data: Any) -> Any:
 
 
 def convert(a: Any, b_type: Any) -> Any:
-    """Data as another type: directly if somebody registered that, by way of a message otherwise.
+    """Convert data to another type: directly if that is registered, otherwise by way of a message.
 
     Raises:
-        TypeException: nobody registered a way.
+        TypeException: no conversion is registered.
     """
     registered = ConvertRegistration()
     try:

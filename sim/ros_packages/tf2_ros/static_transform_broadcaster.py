@@ -1,4 +1,4 @@
-"""``tf2_ros.static_transform_broadcaster``: sends transforms that hold for all time."""
+"""``tf2_ros.static_transform_broadcaster``: sends static transforms."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["StaticTransformBroadcaster"]
 
 
 class StaticTransformBroadcaster:
-    """Publishes transforms on ``/tf_static``, where those who come later hear them, too."""
+    """Publishes transforms on ``/tf_static``, where late subscriptions receive them, too."""
 
     def __init__(self, node: Any, qos: Any = None) -> None:
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -19,9 +19,9 @@ class StaticTransformBroadcaster:
         self.net_message = TFMessage()
 
     def sendTransform(self, transform: Any) -> None:
-        """Send one ``TransformStamped`` or a list of them, with all that were sent before.
+        """Send one ``TransformStamped`` or a list of them, together with all earlier ones.
 
-        One for a frame that was sent before replaces it.
+        A new transform of a frame replaces the earlier one.
         """
         several = transform if hasattr(transform, "__iter__") else [transform]
         sent = {each.child_frame_id: each for each in (*self.net_message.transforms, *several)}

@@ -1,4 +1,4 @@
-"""``tf2_ros.transform_broadcaster``: sends transforms that hold at their stamp."""
+"""``tf2_ros.transform_broadcaster``: sends transforms that are valid at their stamp."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ __all__ = ["TransformBroadcaster"]
 
 
 class TransformBroadcaster:
-    """Publishes transforms on ``/tf``, a hundred of them kept for whoever is slow."""
+    """Publishes transforms on ``/tf``, with a depth of 100."""
 
     def __init__(self, node: Any, qos: Any = None) -> None:
         self.pub_tf = node.create_publisher(TFMessage, "/tf", QoSProfile(depth=100) if qos is None else qos)

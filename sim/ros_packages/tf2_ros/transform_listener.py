@@ -21,10 +21,10 @@ _AUTHORITY = "default_authority"
 
 
 class TransformListener:
-    """Two subscriptions of a node, in a reentrant group of their own, that write into a buffer.
+    """Two subscriptions of a node, in a reentrant group of their own, which write to a buffer.
 
-    The node's executor runs them, as any other callback; with ``spin_thread`` a thread and executor of the
-    listener's own do, and the node is moved there with all that it has. Without a node it makes one.
+    The node's executor runs their callbacks; with ``spin_thread``, a thread and executor of the
+    listener's own do, which then serve the whole node. Without a node, the listener creates one.
     """
 
     def __init__(
@@ -70,12 +70,12 @@ class TransformListener:
         self.node.destroy_subscription(self.tf_static_sub)
 
     def callback(self, data: Any) -> None:
-        """Keep transforms that hold at their stamp."""
+        """Store transforms that are valid at their stamp."""
         for transform in data.transforms:
             self.buffer.set_transform(transform, _AUTHORITY)
 
     def static_callback(self, data: Any) -> None:
-        """Keep transforms that hold for all time."""
+        """Store static transforms."""
         for transform in data.transforms:
             self.buffer.set_transform_static(transform, _AUTHORITY)
 
@@ -87,7 +87,7 @@ class TransformListener:
 
 
 def _own_node(listener: TransformListener) -> Any:
-    """A node that listens and nothing else."""
+    """A node that only listens."""
     return Node(
         f"transform_listener_impl_{id(listener):010x}",
         enable_rosout=False,

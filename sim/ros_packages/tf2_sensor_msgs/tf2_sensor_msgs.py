@@ -1,4 +1,4 @@
-"""``tf2_sensor_msgs.tf2_sensor_msgs``: how point clouds are transformed."""
+"""``tf2_sensor_msgs.tf2_sensor_msgs``: transforms point clouds."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ __all__ = ["do_transform_cloud", "transform_points"]
 
 
 def transform_points(point_cloud: Any, transform: Any) -> Any:
-    """An array of points, three numbers a row, moved by a ``Transform``."""
+    """Apply a ``Transform`` to an array of points with three numbers per row."""
     motion = Motion.of(transform.translation, transform.rotation)
     return point_cloud @ quat2mat(motion.rotation).T + motion.translation
 
 
 def do_transform_cloud(cloud: Any, transform: Any) -> Any:
-    """A ``PointCloud2``, in the transform's frame and at its time; the fields besides x, y and z stay.
+    """Transform a ``PointCloud2``; fields other than x, y and z stay. The result has the transform's header.
 
     Raises:
-        AssertionError: the cloud has no x, y and z.
+        AssertionError: the cloud has no fields x, y and z.
     """
     points = read_points(cloud).copy()
     assert {"x", "y", "z"} <= set(points.dtype.names), "the cloud has no fields x, y and z"

@@ -1,4 +1,4 @@
-"""``tf_transformations``: matrices, quaternions and Euler angles, by way of transforms3d.
+"""``tf_transformations``: matrices, quaternions and Euler angles, computed by transforms3d.
 
 Quaternions are ``x, y, z, w`` here, as in messages; transforms3d has ``w`` first. Matrices are 4 by 4, angles
 in radians, and ``axes`` names an order of rotations: ``sxyz`` about fixed axes, ``rzyx`` about turning ones.
@@ -68,62 +68,62 @@ def _affine(rotation: Any = None, translation: Any = (0.0, 0.0, 0.0)) -> Array:
 
 
 def identity_matrix() -> Array:
-    """The matrix that changes nothing."""
+    """The identity matrix."""
     return np.eye(4)
 
 
 def translation_matrix(direction: Any) -> Array:
-    """The matrix that moves by a vector."""
+    """The translation by a vector."""
     return _affine(translation=direction)
 
 
 def translation_from_matrix(matrix: Any) -> Array:
-    """The vector that a matrix moves by."""
+    """The translation vector of a matrix."""
     return np.array(matrix, dtype=np.float64)[:3, 3]
 
 
 def rotation_matrix(angle: float, direction: Any, point: Any = None) -> Array:
-    """The matrix that turns by an angle about an axis, through a point if one is given."""
+    """The rotation by an angle about an axis, through a point if one is given."""
     made: Array = axangles.axangle2aff(direction[:3], angle, point=None if point is None else point[:3])
     return made
 
 
 def rotation_from_matrix(matrix: Any) -> tuple[float, Array, Array]:
-    """Angle, axis and a point of the axis of a rotation.
+    """Angle, axis and a point on the axis of a rotation.
 
     Raises:
-        ValueError: the matrix is no rotation.
+        ValueError: the matrix is not a rotation.
     """
     direction, angle, point = axangles.aff2axangle(np.asarray(matrix))
     return angle, direction, point
 
 
 def reflection_matrix(point: Any, normal: Any) -> Array:
-    """The matrix that mirrors at the plane through a point."""
+    """The reflection at the plane through a point."""
     made: Array = reflections.rfnorm2aff(normal[:3], point[:3])
     return made
 
 
 def reflection_from_matrix(matrix: Any) -> tuple[Array, Array]:
-    """A point and the normal of the plane that a matrix mirrors at."""
+    """A point and the normal of the plane of a reflection."""
     normal, point = reflections.aff2rfnorm(np.asarray(matrix))
     return point, normal
 
 
 def scale_matrix(factor: float, origin: Any = None, direction: Any = None) -> Array:
-    """The matrix that scales by a factor about a point, in one direction if one is given."""
+    """The scaling by a factor about a point, in one direction if one is given."""
     made: Array = zooms.zfdir2aff(factor, direction=direction, origin=origin)
     return made
 
 
 def scale_from_matrix(matrix: Any) -> tuple[float, Array, Array | None]:
-    """Factor, origin and direction of a matrix that scales."""
+    """Factor, origin and direction of a scaling."""
     factor, direction, origin = zooms.aff2zfdir(np.asarray(matrix))
     return factor, origin, direction
 
 
 def shear_matrix(angle: float, direction: Any, point: Any, normal: Any) -> Array:
-    """The matrix that shears by an angle along a direction, on the plane through a point."""
+    """The shear by an angle along a direction, on the plane through a point."""
     made: Array = shears.sadn2mat(angle, direction[:3], normal[:3])
     moved = _affine(made)
     moved[:3, 3] = np.asarray(point[:3]) - made @ np.asarray(point[:3])
@@ -131,7 +131,7 @@ def shear_matrix(angle: float, direction: Any, point: Any, normal: Any) -> Array
 
 
 def shear_from_matrix(matrix: Any) -> tuple[float, Array, Array, Array]:
-    """Angle, direction, a point and the normal of a matrix that shears."""
+    """Angle, direction, a point and the normal of a shear."""
     angle, direction, normal, point = shears.aff2sadn(np.asarray(matrix))
     return angle, direction, point, normal
 
@@ -142,12 +142,12 @@ def concatenate_matrices(*matrices: Any) -> Array:
 
 
 def inverse_matrix(matrix: Any) -> Array:
-    """The way back."""
+    """The inverse of a matrix."""
     return np.linalg.inv(matrix)
 
 
 def is_same_transform(matrix0: Any, matrix1: Any) -> bool:
-    """Whether two matrices do the same, but for rounding."""
+    """Whether two matrices are the same transform, up to rounding."""
     first, second = (np.array(each, dtype=np.float64) for each in (matrix0, matrix1))
     return bool(np.allclose(first / first[3, 3], second / second[3, 3]))
 
@@ -155,7 +155,7 @@ def is_same_transform(matrix0: Any, matrix1: Any) -> bool:
 def compose_matrix(
     scale: Any = None, shear: Any = None, angles: Any = None, translate: Any = None, perspective: Any = None
 ) -> Array:
-    """The matrix that scales, shears, turns by Euler angles and moves, in this order."""
+    """The matrix that scales, shears, rotates by Euler angles and translates, in this order."""
     made: Array = affines.compose(
         np.zeros(3) if translate is None else translate,
         np.eye(3) if angles is None else euler.euler2mat(*angles, axes="sxyz"),
@@ -199,17 +199,17 @@ def quaternion_from_euler(ai: float, aj: float, ak: float, axes: str = "sxyz") -
 
 
 def quaternion_about_axis(angle: float, axis: Any) -> Array:
-    """The quaternion that turns by an angle about an axis."""
+    """The quaternion of a rotation by an angle about an axis."""
     return _w_last(quaternions.axangle2quat(axis[:3], angle))
 
 
 def quaternion_matrix(quaternion: Any) -> Array:
-    """The rotation of a quaternion."""
+    """The rotation matrix of a quaternion."""
     return _affine(quaternions.quat2mat(_w_first(quaternion)))
 
 
 def quaternion_from_matrix(matrix: Any) -> Array:
-    """The quaternion of a rotation."""
+    """The quaternion of a rotation matrix."""
     return _w_last(quaternions.mat2quat(np.asarray(matrix)[:3, :3]))
 
 
@@ -246,7 +246,7 @@ def quaternion_slerp(
 
 
 def random_quaternion(rand: Any = None) -> Array:
-    """A rotation drawn evenly from all, of three numbers from 0 to 1 if they are given."""
+    """A uniformly random rotation, from three numbers between 0 and 1 if they are given."""
     r = np.random.rand(3) if rand is None else np.asarray(rand)
     inner, outer = math.sqrt(1.0 - r[0]), math.sqrt(r[0])
     first, second = 2 * math.pi * r[1], 2 * math.pi * r[2]
@@ -256,17 +256,17 @@ def random_quaternion(rand: Any = None) -> Array:
 
 
 def random_rotation_matrix(rand: Any = None) -> Array:
-    """As `random_quaternion`, as a matrix."""
+    """A uniformly random rotation matrix; ``rand`` as for `random_quaternion`."""
     return quaternion_matrix(random_quaternion(rand))
 
 
 def random_vector(size: int) -> Array:
-    """Numbers drawn from 0 to 1."""
+    """Random numbers between 0 and 1."""
     return np.random.random(size)
 
 
 def vector_norm(data: Any, axis: int | None = None, out: Any = None) -> Any:
-    """The length of a vector, or of those along an axis, written into ``out`` if it is given."""
+    """The length of a vector, or of the vectors along an axis; written to ``out`` if given."""
     lengths = np.linalg.norm(np.asarray(data, dtype=np.float64), axis=axis)
     if out is None:
         return lengths
@@ -275,7 +275,7 @@ def vector_norm(data: Any, axis: int | None = None, out: Any = None) -> Any:
 
 
 def unit_vector(data: Any, axis: int | None = None, out: Any = None) -> Any:
-    """A vector, or those along an axis, of length 1, written into ``out`` if it is given."""
+    """A vector, or the vectors along an axis, scaled to length 1; written to ``out`` if given."""
     data = np.array(data, dtype=np.float64)
     lengths = np.linalg.norm(data, axis=axis, keepdims=axis is not None)
     if out is None:
