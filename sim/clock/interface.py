@@ -29,7 +29,7 @@ class RunClock(Protocol):
         """A number that changes once the running thread has waited or may have been preempted."""
 
     @property
-    def able(self) -> int:
+    def runnable(self) -> int:
         """How many threads can run as soon as the running one waits; 0 if threads do not take turns."""
 
     def sleep(self, duration: int) -> None:

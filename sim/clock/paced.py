@@ -153,7 +153,7 @@ class PacedClock:
         return _monotonic_ns() // 1_000_000
 
     @property
-    def able(self) -> int:
+    def runnable(self) -> int:
         """0: threads do not take turns."""
         return 0
 

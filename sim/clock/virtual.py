@@ -71,7 +71,7 @@ class VirtualClock:
         return self.time.now
 
     @property
-    def able(self) -> int:
+    def runnable(self) -> int:
         """How many threads can run as soon as the running thread waits."""
         return len(self._ready)
 

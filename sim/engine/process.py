@@ -59,7 +59,7 @@ from sim.robot.bullet import WorldUnavailable
 from sim.ros import importing
 from sim.ros.middleware.contents import Contents
 from sim.ros.middleware.host import Host, install
-from sim.ros.middleware.process import share_machine
+from sim.ros.middleware.process import simulate_processes
 from sim.trace.events import Notice, Printed, RunStarted, Severity
 
 if TYPE_CHECKING:
@@ -171,7 +171,7 @@ class Engine:
         importing.install()
         self._starter.add_own_interfaces()
         use_workspace(self._starter.packages, clock)
-        share_machine()
+        simulate_processes()
         share_exit_functions()
         if isinstance(clock, VirtualClock):
             refuse_children()

@@ -112,7 +112,7 @@ class RunShutdown:
             self._endless.finish()
         if self._host.overrides is not None and not cause.failed:
             with self._host.lock:
-                for sentence in self._host.overrides.unmet():
+                for sentence in self._host.overrides.unmatched():
                     self._tell(Severity.WARN, sentence)
         return True
 

@@ -103,11 +103,11 @@ class LaunchedPrograms:
         on_exit: OnExit,
         *,
         shows_stdout: bool = True,
-        hear_output: Callable[[str, bool], None] | None = None,
+        output_listener: Callable[[str, bool], None] | None = None,
     ) -> Program:
         """Start a program, which the trace shows as a process.
 
-        A launch file passes ``hear_output``, and ends the programs that it started.
+        A launch file passes ``output_listener``, and ends the programs that it started.
         """
         number = self.announce(label)
 
@@ -116,7 +116,7 @@ class LaunchedPrograms:
                 self.show(text, error, process)
 
         program = Program(self._selector, start, label, number, self._take, show)
-        program.hear_output = hear_output
+        program.output_listener = output_listener
         return self._begin(program, on_exit)
 
     def _begin(self, program: Program, on_exit: OnExit) -> Program:
@@ -222,7 +222,7 @@ class LaunchedPrograms:
         environment = self.environment(spec.environment, spec.folder)
         start = Start(command, environment, spec.working_folder)
         shows_stdout = spec.output != "log"
-        return self.begin(start, spec.label, on_exit, shows_stdout=shows_stdout, hear_output=on_output)
+        return self.begin(start, spec.label, on_exit, shows_stdout=shows_stdout, output_listener=on_output)
 
     def run_line(
         self, label: str, words: Sequence[str], on_exit: OnExit, on_output: OnOutput
@@ -294,7 +294,7 @@ class LaunchedPrograms:
         for launching in self._launches:
             launching.interrupt()
         for program in self._running:
-            if program.hear_output is None:
+            if program.output_listener is None:
                 program.interrupt()
 
     def kill(self) -> list[str]:

@@ -140,7 +140,7 @@ class Program:
         self.link = ProbeLink(selector, partial(take, process=number))
         self._show = show
         self._open = 2
-        self.hear_output: Callable[[str, bool], None] | None = None
+        self.output_listener: Callable[[str, bool], None] | None = None
         """Also gets every line of output, log lines included; set by a launch file."""
         self.reads = start.terminal is not None
         """Whether it has the keyboard."""
@@ -234,9 +234,9 @@ class Program:
 
     def _printed(self, data: bytes, error: bool) -> None:
         text = data.decode(errors="replace")
-        if self.hear_output is not None:
+        if self.output_listener is not None:
             for line in _lines(text):
-                self.hear_output(line, error)
+                self.output_listener(line, error)
         if error and self.link.hello is not None:
             text = _without_log(text)
         for line in _lines(text):

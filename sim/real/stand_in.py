@@ -12,7 +12,7 @@ _MODULES = {
     "entities.topic_endpoint_info": "topic_endpoint_info",
     "exceptions": "exceptions",
     "naming.expand_topic_name": "expand_topic_name",
-    "naming.validate_full_topic_name": "validate_full_topic_name",
+    "naming.validation": "validate_full_topic_name",
     "node.node": "node",
     "node.parameter_client": "parameter_client",
     "parameters.parameter": "parameter",

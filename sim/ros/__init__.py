@@ -1,1 +1,1 @@
-"""A model of rclpy: the same names, the same order of callbacks, and every reason for waiting on a trace."""
+"""A model of rclpy: the same names, the same order of callbacks, and a trace that explains every wait."""

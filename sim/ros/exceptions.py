@@ -1,4 +1,4 @@
-"""The errors that rclpy raises, under rclpy's names and with its texts."""
+"""rclpy's exceptions, with its names and messages."""
 
 from __future__ import annotations
 
@@ -7,25 +7,25 @@ from typing import Any
 
 
 class NotInitializedException(Exception):
-    """Something needs ``rclpy.init()`` first."""
+    """``rclpy.init()`` must be called before."""
 
     def __init__(self, message: str | None = None) -> None:
         super().__init__(f"rclpy.init() has not been called.{f' msg:{message}' if message else ''}")
 
 
 class ROSInterruptException(Exception):
-    """``rclpy.shutdown()`` ended what was waited for."""
+    """``rclpy.shutdown()`` ended a wait."""
 
     def __init__(self, *args: object) -> None:
         super().__init__("rclpy.shutdown() has been called", *args)
 
 
 class InvalidHandle(Exception):
-    """An entity was used after it had been destroyed."""
+    """A destroyed entity was used."""
 
 
 class NameValidationException(Exception):
-    """A name breaks ROS 2's rules; tells the rule and points at the place."""
+    """A name breaks ROS 2's rules; the message has the rule and marks the place."""
 
     def __init__(self, name_type: str, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__(f"Invalid {name_type}: {error_msg}:\n  '{name}'\n   {' ' * invalid_index}^")
@@ -64,11 +64,11 @@ class InvalidServiceNameException(NameValidationException):
 
 
 class RCLError(RuntimeError):
-    """ROS's client library refuses something."""
+    """An error of ROS's client library."""
 
 
 class NodeNameNonExistentError(RCLError):
-    """A question about a node that is not there."""
+    """A query about a node that does not exist."""
 
 
 class RCLInvalidROSArgsError(RCLError):
@@ -76,11 +76,11 @@ class RCLInvalidROSArgsError(RCLError):
 
 
 class UnknownROSArgsError(RuntimeError):
-    """An argument after ``--ros-args`` is none that ROS knows."""
+    """An argument after ``--ros-args`` is unknown."""
 
 
 class ParameterException(Exception):
-    """Base of what can go wrong with parameters; names the parameters it is about."""
+    """Base of the errors of parameters; the message names the parameters."""
 
     def __init__(self, error_msg: str, parameters: Sequence[str] | str) -> None:
         super().__init__(f"{error_msg}: {parameters}")
@@ -101,14 +101,14 @@ class ParameterAlreadyDeclaredException(ParameterException):
 
 
 class InvalidParameterException(ParameterException):
-    """A parameter has no usable name."""
+    """A parameter's name is invalid."""
 
     def __init__(self, parameter: str) -> None:
         super().__init__("Invalid parameter name", parameter)
 
 
 class InvalidParameterTypeException(ParameterException):
-    """The value set for a parameter, or overriding it, is of another type than it was declared with."""
+    """The value or override of a parameter has another type than the declaration."""
 
     def __init__(self, desired_parameter: Any, expected_type: str) -> None:
         super().__init__(
@@ -126,14 +126,14 @@ class InvalidParameterValueException(ParameterException):
 
 
 class ParameterUninitializedException(ParameterException):
-    """A parameter was declared with a type only, and read before it had a value."""
+    """A parameter without a value was read."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__(f"The parameter '{parameter_name}' is not initialized", parameter_name)
 
 
 class ParameterImmutableException(ParameterException):
-    """A read-only parameter was to be changed or removed."""
+    """A read-only parameter cannot be changed or removed."""
 
     def __init__(self, parameter_name: str) -> None:
         super().__init__("Attempted to modify read-only parameter", parameter_name)
@@ -141,5 +141,5 @@ class ParameterImmutableException(ParameterException):
 
 for _each in tuple(vars().values()):
     if isinstance(_each, type):
-        # A traceback shows it.
+        # The name in tracebacks.
         _each.__module__ = "rclpy.exceptions"

@@ -1,50 +1,40 @@
-"""Handles: what rclpy programs hold to keep an entity alive while they use it."""
+"""Handles, by which rclpy programs keep an entity alive while they use it."""
 
 from __future__ import annotations
 
-from typing import Any, Protocol, Self
+from typing import Any, Self
 
 from sim.ros.exceptions import InvalidHandle
 
 DESTROYED = "cannot use Destroyable because destruction was requested"
-"""What is told of the use of something that was destroyed."""
-
-
-class Destroyable(Protocol):
-    """Something that can be destroyed, and tells whether it was."""
-
-    @property
-    def destroyed(self) -> bool:
-        """Whether it was destroyed."""
-
-    def destroy(self) -> None:
-        """Destroy it."""
+"""rclpy's message when a destroyed entity is used."""
 
 
 class Handle:
-    """Stands for what lies below an entity in rclpy; as a context manager it demands that it is alive.
+    """A handle of ``owner``, which has ``destroyed`` and ``destroy()``; in rclpy it is a C++ object.
 
-    An entity that is destroyed while it is used counts as alive until it is used no more.
+    As a context manager it requires that the owner is not destroyed. An owner that is destroyed while handles
+    are entered counts as alive until the last one exits.
 
     Raises:
-        InvalidHandle: on entering, if the entity was destroyed.
+        InvalidHandle: on entering, if the owner is destroyed.
     """
 
-    def __init__(self, owner: Destroyable) -> None:
+    def __init__(self, owner: Any) -> None:
         self._owner = owner
 
     @property
     def owner(self) -> Any:
-        """What it is the handle of."""
+        """The entity, node or context of this handle."""
         return self._owner
 
     @property
     def pointer(self) -> int:
-        """A number that no other living entity has."""
+        """A number that identifies the owner among all living objects."""
         return id(self._owner)
 
     def destroy_when_not_in_use(self) -> None:
-        """Destroy the entity."""
+        """Destroy the owner."""
         self._owner.destroy()
 
     def __enter__(self) -> Self:

@@ -1,7 +1,7 @@
-"""Makes ``import rclpy`` and ``from std_srvs.srv import SetBool`` mean this model, in this process.
+"""Makes ``import rclpy`` and ``from std_srvs.srv import SetBool`` import this model, in this process.
 
-The folders below hold what programs find, in modules that bear the names that ROS gives them. Each module is
-loaded once, whichever of its two names it is imported by.
+Programs import modules of the model by their ROS names. Each module is
+loaded once, under whichever of its two names it is imported.
 """
 
 import importlib
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def _folders(package: str) -> list[str]:
-    """The packages in a package, by name."""
+    """The names of the modules in a package."""
     spec = find_spec(package)
     return [
         each.name for each in pkgutil.iter_modules(None if spec is None else spec.submodule_search_locations)
@@ -34,11 +34,11 @@ HOMES = {
     "test_msgs.message_fixtures": "sim.interfaces",
     **dict.fromkeys(_folders("sim.ros_packages"), "sim.ros_packages"),
 }
-"""Packages and modules as programs name them, and the package of the model that has them."""
+"""The package of the model that contains each package or module of ROS."""
 
 
 def install() -> None:
-    """Put the model in rclpy's place and make the interface packages importable; twice does no harm."""
+    """Make ``rclpy`` and the interface packages importable. A second call has no effect."""
     for name in [each for each in sys.modules if _home_of(each) is not None]:
         del sys.modules[name]
     parser: Any = ModuleType("rosidl_parser", "The types that the slots of messages are made of.")
@@ -51,7 +51,7 @@ def install() -> None:
 
 
 def _load_face() -> None:
-    """Import all of rclpy before a program's time begins to run; what is deprecated warns, so not that."""
+    """Import all of rclpy before a program's time starts, except deprecated modules, which warn."""
     face = importlib.import_module("rclpy")
     folders = [folder for folder in face.__path__ if not folder.endswith("_deprecated")]
     for each in pkgutil.walk_packages(folders, "rclpy."):
@@ -59,14 +59,14 @@ def _load_face() -> None:
 
 
 def _home_of(name: str) -> str | None:
-    """The name in the model of a module that a program imports; None for what is not the model's."""
+    """The model's name of a module that a program imports; None for other modules."""
     roots = (root for root in HOMES if name == root or name.startswith(f"{root}."))
     root = next(roots, None)
     return None if root is None else f"{HOMES[root]}.{name}"
 
 
 class _ModelFinder:
-    """Finds what programs import of ROS's Python packages, and loads the model's modules in their place."""
+    """Finds the modules of ROS's Python packages in the model."""
 
     def find_spec(
         self, fullname: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
@@ -80,8 +80,8 @@ class _ModelFinder:
         return ModuleSpec(fullname, cast("Loader", self), is_package=is_package)
 
     def create_module(self, _spec: ModuleSpec) -> None:
-        """Leave it to Python: the module is replaced when it is filled."""
+        """None: ``exec_module`` replaces the module that Python creates."""
 
     def exec_module(self, module: ModuleType) -> None:
-        """Put the model's module in its place."""
+        """Replace the module with the model's module."""
         sys.modules[module.__name__] = importlib.import_module(str(_home_of(module.__name__)))

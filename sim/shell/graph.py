@@ -8,7 +8,7 @@ from typing import TypeAlias
 from sim.interfaces import Kind, names, packages
 from sim.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from sim.ros.naming.expand_topic_name import expand_topic_name
-from sim.ros.naming.validate_full_topic_name import validate_full_topic_name
+from sim.ros.naming.validation import validate_full_topic_name
 from sim.shell.parser import Completer, Surroundings
 from sim.shell.session import CommandFailed, ShellSession
 

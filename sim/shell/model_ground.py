@@ -41,7 +41,7 @@ class _ModelProcess:
         self._host = host
         self.context = Context(host=host, probe=PublishingProbe(host.clock, host.probe, with_calls=True))
         self.context.init([])
-        self.context.process.take_output = take
+        self.context.process.output_sink = take
 
     def make_node(self, name: str) -> Node:
         return _LineNode(name, context=self.context, start_parameter_services=False, enable_rosout=False)

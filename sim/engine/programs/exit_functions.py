@@ -7,7 +7,7 @@ from types import FrameType, SimpleNamespace
 from typing import Any
 
 from sim.probes import own_code
-from sim.ros.middleware.process import current_process, of_process
+from sim.ros.middleware.process import current_process, process_local
 
 _ExitCall = tuple[Callable[..., object], tuple[Any, ...], Mapping[str, Any]]
 
@@ -25,11 +25,11 @@ def share_exit_functions() -> None:
             return register(function, *args, **kwargs)
         if not callable(function):
             raise TypeError("the first argument must be callable")
-        of_process(_calls).append((function, args, kwargs))
+        process_local(_calls).append((function, args, kwargs))
         return function
 
     def unregister_here(function: Callable[..., Any]) -> None:
-        own = of_process(_calls)
+        own = process_local(_calls)
         own[:] = [call for call in own if call[0] != function]
         unregister(function)
 
@@ -39,7 +39,7 @@ def share_exit_functions() -> None:
 
 def run_exit_functions() -> None:
     """Run those of the calling thread's program, the last first; report their exceptions."""
-    own = of_process(_calls)
+    own = process_local(_calls)
     while own:
         function, args, kwargs = own.pop()
         try:

@@ -93,7 +93,7 @@ class ModelLaunch:
             environment=spec.environment,
             shows_stdout=spec.output != "log",
             has_keyboard=False,
-            hear_output=on_output,
+            output_listener=on_output,
         )
 
     def run_line(

@@ -92,7 +92,7 @@ class ProgramSupervisor:
         environment: Mapping[str, str] | None = None,
         shows_stdout: bool = True,
         has_keyboard: bool = True,
-        hear_output: Callable[[str, bool], None] | None = None,
+        output_listener: Callable[[str, bool], None] | None = None,
     ) -> RunningProgram:
         """Start a program as one of several; ``on_exit`` is called on its thread when it has ended."""
         process = Process(
@@ -103,7 +103,7 @@ class ProgramSupervisor:
             environment=dict(environment or {}),
             shows_stdout=shows_stdout,
             has_keyboard=has_keyboard,
-            hear_output=hear_output,
+            output_listener=output_listener,
         )
         running = RunningProgram(self, process, program, on_exit)
         with self.host.lock:

@@ -96,19 +96,19 @@ class ProcessStream(_TextStream):
 
     def write(self, text: str) -> int:
         """Take text of the calling thread's process."""
-        length = current_process().keep(self._sink).write(text)
+        length = current_process().local(self._sink).write(text)
         if text.endswith("\n"):
             self._after_line()
         return length
 
     def finish(self) -> None:
         """Pass on the last line of the calling thread's process."""
-        current_process().keep(self._sink).finish()
+        current_process().local(self._sink).finish()
 
     def show_rest(self) -> None:
         """Pass on the unfinished line of the calling thread's process."""
         process = current_process()
-        if rest := process.keep(self._sink).cut():
+        if rest := process.local(self._sink).cut():
             self._take(process, rest, False)
 
     def _sink(self) -> LineSink:

@@ -21,14 +21,14 @@ def redirect_output(clock: RunClock, record: Callable[[AnyEvent], None]) -> None
 
     def take_from(error: bool) -> Callable[[Process, str, bool], None]:
         def take(process: Process, text: str, ends: bool) -> None:
-            if process.hear_output is not None and ends:
-                process.hear_output(text, error)
-            if process.take_output is not None:
-                process.take_output(text, error)
+            if process.output_listener is not None and ends:
+                process.output_listener(text, error)
+            if process.output_sink is not None:
+                process.output_sink(text, error)
             elif error or process.shows_stdout:
                 record(Printed(clock.now(), text, error, process.number, ends))
             else:
-                process.keep(report_hidden_output)
+                process.local(report_hidden_output)
 
         return take
 

@@ -1,4 +1,4 @@
-"""Actions: goals that take their time, with feedback on the way, that can be cancelled."""
+"""Actions: servers and clients of long-running goals, which give feedback and can be cancelled."""
 
 from sim.ros.actions.client import ActionClient
 from sim.ros.actions.graph import (

@@ -1,4 +1,4 @@
-"""Which goals a cancel request means.
+"""Selects the goals of a cancel request.
 
 Source: the comments of ``action_msgs/srv/CancelGoal``, and rcl_action.
 """
@@ -13,8 +13,8 @@ from sim.ros.actions.goal_states import GoalState, is_cancelable
 from sim.ros.time.time import Time
 
 
-class ReturnCode(IntEnum):
-    """What a ``CancelGoal`` response says, numbered as there."""
+class CancelReturnCode(IntEnum):
+    """The return codes of a ``CancelGoal`` response."""
 
     NONE = 0
     REJECTED = 1
@@ -23,25 +23,25 @@ class ReturnCode(IntEnum):
 
 
 class Cancelable(Protocol):
-    """What has to be known of a goal."""
+    """A goal, as the selection uses it."""
 
     @property
     def info(self) -> Any:
-        """Its ``action_msgs/msg/GoalInfo``: the id, and when it was accepted."""
+        """The goal's ``action_msgs/msg/GoalInfo``: its id, and when it was accepted."""
 
     @property
     def state(self) -> GoalState:
-        """Its state."""
+        """The goal's state."""
 
 
 GoalT = TypeVar("GoalT", bound=Cancelable)
 
 
-def goals_meant(wanted: Any, goals: Iterable[GoalT]) -> tuple[list[GoalT], ReturnCode]:
-    """The goals that can be cancelled among those that ``wanted``, a ``GoalInfo``, means.
+def goals_to_cancel(wanted: Any, goals: Iterable[GoalT]) -> tuple[list[GoalT], CancelReturnCode]:
+    """The cancelable goals that ``wanted``, a ``GoalInfo``, selects.
 
-    An id alone means that goal, a time all that were accepted until then, both mean either, and neither
-    means every goal. The return code tells why an id alone found none.
+    An id alone selects that goal; a time all goals accepted until then; id and time select both; neither
+    selects every goal. The return code says why an id alone selected none.
     """
     key, until = uuid_of(wanted.goal_id), _nanoseconds(wanted)
     if any(key) and not until:
@@ -53,20 +53,20 @@ def goals_meant(wanted: Any, goals: Iterable[GoalT]) -> tuple[list[GoalT], Retur
         if is_cancelable(goal.state)
         and (every or _nanoseconds(goal.info) <= until or uuid_of(goal.info.goal_id) == key)
     ]
-    return found, ReturnCode.NONE
+    return found, CancelReturnCode.NONE
 
 
-def _one_goal(key: bytes, goals: Iterable[GoalT]) -> tuple[list[GoalT], ReturnCode]:
+def _one_goal(key: bytes, goals: Iterable[GoalT]) -> tuple[list[GoalT], CancelReturnCode]:
     goal = next((each for each in goals if uuid_of(each.info.goal_id) == key), None)
     if goal is None:
-        return [], ReturnCode.UNKNOWN_GOAL_ID
+        return [], CancelReturnCode.UNKNOWN_GOAL_ID
     if not is_cancelable(goal.state):
-        return [], ReturnCode.GOAL_TERMINATED
-    return [goal], ReturnCode.NONE
+        return [], CancelReturnCode.GOAL_TERMINATED
+    return [goal], CancelReturnCode.NONE
 
 
 def uuid_of(goal_id: Any) -> bytes:
-    """The 16 bytes of a ``unique_identifier_msgs/msg/UUID``, to look goals up by."""
+    """The 16 bytes of a ``unique_identifier_msgs/msg/UUID``, as a key of goals."""
     return bytes(goal_id.uuid)
 
 

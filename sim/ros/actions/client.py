@@ -1,4 +1,4 @@
-"""Action clients: goals sent, and what comes back of them."""
+"""Action clients: they send goals, and receive replies, feedback, status and results."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ FeedbackCallback = Callable[[Any], Any]
 
 
 class ClientGoalHandle:
-    """A goal as the one who sent it sees it. Its status is the last that the server told."""
+    """A goal on its client's side. Its status is the last one that the server published."""
 
     def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
         self._action_client = action_client
@@ -43,52 +43,52 @@ class ClientGoalHandle:
 
     @property
     def goal_id(self) -> Any:
-        """Its ``unique_identifier_msgs/msg/UUID``."""
+        """The goal's ``unique_identifier_msgs/msg/UUID``."""
         return self._goal_id
 
     @property
     def stamp(self) -> Any:
-        """When the server accepted it, a ``builtin_interfaces/msg/Time``."""
+        """When the server accepted the goal, a ``builtin_interfaces/msg/Time``."""
         return self._goal_response.stamp
 
     @property
     def accepted(self) -> bool:
-        """Whether the server accepted it."""
+        """Whether the server accepted the goal."""
         return bool(self._goal_response.accepted)
 
     @property
     def status(self) -> int:
-        """Its state as a number of ``action_msgs/msg/GoalStatus``."""
+        """The goal's state, a number of ``action_msgs/msg/GoalStatus``."""
         return self._status
 
     def cancel_goal(self) -> Any:
-        """Ask the server to stop it, and wait on this thread for the answer; in a callback that may be long.
+        """Request a cancellation, and wait on this thread for the response; in a callback that may deadlock.
 
         Returns the response of ``action_msgs/srv/CancelGoal``.
         """
         return self._action_client._cancel_goal(self)
 
     def cancel_goal_async(self) -> Future[Any]:
-        """Ask the server to stop it; the future gets the response of ``action_msgs/srv/CancelGoal``."""
+        """Request a cancellation; the future gets the response of ``action_msgs/srv/CancelGoal``."""
         return self._action_client._cancel_goal_async(self)
 
     def get_result(self) -> Any:
-        """Ask for its result, and wait on this thread until it has ended; in a callback that may be long.
+        """Request the result, and wait on this thread for the goal's end; in a callback that may deadlock.
 
         Returns a response with ``status`` and ``result``.
         """
         return self._action_client._get_result(self)
 
     def get_result_async(self) -> Future[Any]:
-        """Ask for its result; the future gets a response with ``status`` and ``result`` once it has ended."""
+        """Request the result; the future gets a response with ``status`` and ``result`` at the goal's end."""
         return self._action_client._get_result_async(self)
 
 
 class ActionClient(ActionWaitable):
-    """Sends goals to the server of one action. Replies and feedback are handled in its callback group.
+    """Sends goals to the server of one action. It handles replies and feedback in its callback group.
 
     Raises:
-        AttributeError: ``action_type`` is no action class.
+        AttributeError: ``action_type`` is not an action class.
         ValueError: the action's name breaks the rules.
     """
 
@@ -137,7 +137,7 @@ class ActionClient(ActionWaitable):
     def send_goal(
         self, goal: Any, feedback_callback: FeedbackCallback | None = None, goal_uuid: Any = None
     ) -> Any:
-        """Send a goal and wait on this thread until it has ended; in a callback that may be for ever.
+        """Send a goal, and wait on this thread until it has ended; in a callback that may deadlock.
 
         Returns a response with ``status`` and ``result``; otherwise as ``send_goal_async``.
         """
@@ -149,11 +149,11 @@ class ActionClient(ActionWaitable):
     ) -> Future[Any]:
         """Send a goal; the future gets a ClientGoalHandle once the server has answered.
 
-        ``feedback_callback(message)`` is called with each feedback until the result is there. ``goal_uuid``
-        is the goal's id, made up if it is None.
+        ``feedback_callback(message)`` is called with each feedback until the result arrives. ``goal_uuid``
+        is the goal's id; None: a new one.
 
         Raises:
-            TypeError: the goal is not of the action's type.
+            TypeError: the goal does not have the action's type.
         """
         if not isinstance(goal, self._action_type.Goal):
             raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
@@ -192,7 +192,7 @@ class ActionClient(ActionWaitable):
     def _no_more_feedback(self, goal_id: Any) -> None:
         self._feedback_callbacks.pop(uuid_of(goal_id), None)
 
-    # What comes back
+    # Receiving
 
     def _take_goal_response(self, reply: Reply) -> None:
         future, goal_id = self._goal_client.awaited(reply), self._goal_ids.get(reply.call)
@@ -244,7 +244,7 @@ class ActionClient(ActionWaitable):
     # The server
 
     def server_is_ready(self) -> bool:
-        """Whether somebody offers all of the action: its three services and its two topics."""
+        """Whether the action's three services and two topics are all offered."""
         with self._host.lock:
             return all(client.service_is_ready() for client in self._clients) and all(
                 self._is_published(subscription) for subscription in self._subscriptions
@@ -255,9 +255,9 @@ class ActionClient(ActionWaitable):
         return any(each.msg_type is subscription.msg_type for each in publishers)
 
     def wait_for_server(self, timeout_sec: float | None = None) -> bool:
-        """Wait until somebody offers the action; False when ``timeout_sec`` seconds were not enough.
+        """Wait until the action is offered; False after ``timeout_sec`` seconds.
 
-        It looks four times a second, and so may come back a little after the timeout.
+        It polls four times a second, and so may return a little after the timeout.
         """
         return wait_until_ready(self.server_is_ready, self._node.context, timeout_sec)
 

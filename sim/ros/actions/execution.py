@@ -1,8 +1,8 @@
-"""Goals at work, on the trace.
+"""The execute callbacks of action servers on the trace.
 
-An executor runs a goal's execute callback as a task, which belongs to no callback group. So that it is seen
-all the same, each action server has one entity more, in a reentrant group of its own: that group lets
-everything in, as being in none does.
+An executor runs a goal's execute callback as a task, which belongs to no callback group. So that the trace
+shows the callback, each action server has one more entity, in a reentrant group of its own: that group admits
+everything, as if there were none.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from types import coroutine
 from typing import TYPE_CHECKING, Any
 
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
-from sim.ros.scheduling.entity import Entity, Taken
+from sim.ros.scheduling.entity import Entity, TakenData
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
@@ -22,100 +22,80 @@ if TYPE_CHECKING:
 
 
 class GoalExecution(Entity):
-    """Stands on the trace for the execute callback of an action server.
+    """The entity that stands for an action server's execute callback on the trace.
 
-    It is nothing that a node has or an executor yields.
+    No node has it, and no executor yields it.
     """
 
     kind = EntityKind.WAITABLE
     rank = -1
 
     def __init__(self, node: Node, action_name: str, callback: Callable[..., Any] | None) -> None:
-        self._callback = callback
+        self.callback = callback
         super().__init__(node, action_name, ReentrantCallbackGroup())
         node.context.probe.entity_made(self)
 
-    def shown_callback(self) -> Callable[..., Any] | None:
-        """The execute callback."""
-        return self._callback
-
-    def take(self, now: int) -> Taken | None:
-        """Take nothing: nothing ever arrives here."""
+    def take(self, now: int) -> TakenData | None:
+        """None: nothing arrives here."""
         return None
 
-    def invoke(self, taken: Taken) -> None:
-        """Do nothing, for nothing can have been taken."""
+    def invoke(self, taken: TakenData) -> None:
+        """Do nothing: nothing can be taken."""
 
     def destroy(self) -> None:
-        """Leave the trace. With the host's lock held."""
+        """Remove it from the trace. With the host's lock held."""
         self.destroyed = True
         self.node.context.probe.entity_gone(self)
 
     @coroutine
     def run(self, executor: Executor, callback: Callable[..., Any], goal: Any) -> Generator[Any, Any, Any]:
-        """Run an execute callback, a coroutine too, inside the task that awaits this; returns its result."""
-        stay = _Stay(self, executor)
-        stay.begin()
-        try:
-            outcome = callback(goal)
-            if inspect.iscoroutine(outcome):
-                outcome = yield from stay.drive(outcome)
-        except GeneratorExit:
-            raise  # the task was given up while it was suspended: there is nothing more to tell
-        except BaseException as error:
-            stay.fail(error)
-            raise
-        stay.end()
-        return outcome
+        """Run an execute callback, also a coroutine, in the task that awaits this; return its result."""
+        return (yield from _GoalRun(self, executor).run(callback, goal))
 
 
-class _Stay:
-    """One run of an execute callback on the lanes: from its beginning to its end, with all its pauses."""
+class _GoalRun:
+    """One run of an execute callback on the trace, from its start to its end, with all its suspensions."""
 
     def __init__(self, execution: GoalExecution, executor: Executor) -> None:
         self._execution = execution
-        self._executor = executor
+        self._runner = executor._runner
         self._probe = execution.node.context.probe
         self._outer = 0
 
-    def begin(self) -> None:
+    def run(self, callback: Callable[..., Any], goal: Any) -> Generator[Any, Any, Any]:
         self._outer = self._probe.callback_started(self._execution, 0, 0, 0)
-        self._enter()
+        self._runner.show(self._execution)
+        try:
+            outcome = callback(goal)
+            if inspect.iscoroutine(outcome):
+                outcome = yield from self._drive(outcome)
+        except GeneratorExit:
+            raise  # the task was cancelled while it was suspended: the trace has its suspension already
+        except BaseException as error:
+            if not isinstance(error, KeyboardInterrupt):
+                self._probe.callback_failed(self._execution, error)
+            self._end()
+            raise
+        self._end()
+        return outcome
 
-    def drive(self, steps: Coroutine[Any, Any, Any]) -> Generator[Any, Any, Any]:
-        """Run a coroutine, telling when it is suspended and resumed; returns its result."""
+    def _drive(self, steps: Coroutine[Any, Any, Any]) -> Generator[Any, Any, Any]:
+        """Run a coroutine, and record when it is suspended and resumed; return its result."""
         while True:
             try:
                 awaited = steps.send(None)
             except StopIteration as end:
                 return end.value
-            self._suspend()
+            self._runner.hide(self._execution)
+            self._probe.callback_suspended(self._execution, self._outer)
             try:
                 yield awaited
             except GeneratorExit:
                 steps.close()
                 raise
-            self._resume()
+            self._outer = self._probe.callback_resumed(self._execution)
+            self._runner.show(self._execution)
 
-    def fail(self, error: BaseException) -> None:
-        if not isinstance(error, KeyboardInterrupt):
-            self._probe.callback_failed(self._execution, error)
-        self.end()
-
-    def end(self) -> None:
-        self._leave()
+    def _end(self) -> None:
+        self._runner.hide(self._execution)
         self._probe.callback_ended(self._execution, self._outer)
-
-    def _suspend(self) -> None:
-        self._leave()
-        self._probe.callback_suspended(self._execution, self._outer)
-
-    def _resume(self) -> None:
-        self._outer = self._probe.callback_resumed(self._execution)
-        self._enter()
-
-    def _enter(self) -> None:
-        self._executor._runner.show(self._execution)
-
-    def _leave(self) -> None:
-        self._executor._runner.hide(self._execution)

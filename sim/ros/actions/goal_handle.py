@@ -1,4 +1,4 @@
-"""A goal as its server sees it: its request, its state, and what its execution has to say."""
+"""A goal on its server's side: its request, its state, its feedback and its result."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 class ServerGoalHandle:
     """A goal that a server has accepted. Thread-safe.
 
-    Its state is unknown, and changing it does nothing, once it was destroyed: with its server, or when its
-    result has been kept long enough.
+    After it is destroyed, with its server or when its result has expired, its state is unknown, and changes
+    of the state do nothing.
     """
 
     def __init__(self, action_server: ActionServer, goal_info: Any, goal_request: Any) -> None:
@@ -36,56 +36,56 @@ class ServerGoalHandle:
 
     @property
     def request(self) -> Any:
-        """The goal, as it was sent."""
+        """The goal as the client sent it."""
         return self._goal_request
 
     @property
     def goal_id(self) -> Any:
-        """Its ``unique_identifier_msgs/msg/UUID``."""
+        """The goal's ``unique_identifier_msgs/msg/UUID``."""
         return self.info.goal_id
 
     @property
     def state(self) -> GoalState:
-        """Its state."""
+        """The goal's state."""
         return self._state
 
     @property
     def status(self) -> int:
-        """Its state as a number of ``action_msgs/msg/GoalStatus``."""
+        """The goal's state, a number of ``action_msgs/msg/GoalStatus``."""
         return int(self._state)
 
     @property
     def is_active(self) -> bool:
-        """Whether it has not come to an end."""
+        """Whether the goal is accepted and has not ended."""
         return self._state is not GoalState.UNKNOWN and self._state not in TERMINAL
 
     @property
     def is_cancel_requested(self) -> bool:
-        """Whether a request to stop it was granted, and it has not stopped yet."""
+        """Whether a cancel request was accepted, and the goal has not ended yet."""
         return self._state is GoalState.CANCELING
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
-        """Have an executor run the server's execute callback on it, or the one given.
+        """Let an executor run the given execute callback, by default the server's.
 
         Raises:
-            RCLError: it is executing already, or has ended.
+            RCLError: the goal is executing already, or has ended.
         """
-        # A goal that is asked to stop before it began is executed all the same, so that its callback can
-        # say that it is cancelled.
+        # A goal that is cancelled before its execution is executed as well, so that its callback can
+        # report the cancellation.
         if not self.is_cancel_requested:
             self.change(GoalEvent.EXECUTE)
         self._action_server.notify_execute(self, execute_callback)
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Send feedback to whoever listens.
+        """Send feedback to the clients.
 
         Raises:
-            TypeError: it is not of the action's type.
+            TypeError: the feedback does not have the action's type.
         """
         kind = self._action_server.action_type.Feedback
         if not isinstance(feedback, kind):
             raise TypeError(f"Expected {kind}, got {type(feedback)}")
-        # On virtual time a thread runs until it waits. Over a wire a client elsewhere hears that its goal is
+        # On virtual time a thread runs until it waits. On a real network a client hears that its goal is
         # accepted before the first feedback.
         self._host.clock.sleep(0)
         with self._host.lock:
@@ -93,19 +93,19 @@ class ServerGoalHandle:
                 self._action_server.send_feedback(self.goal_id, feedback)
 
     def succeed(self, response: Any = None) -> None:
-        """It is reached; with ``response`` that is its result, whatever the execute callback returns.
+        """Mark the goal as succeeded; ``response``, if given, is its result instead of the callback's.
 
         Raises:
-            RCLError: it is neither executing nor asked to stop.
+            RCLError: the goal is neither executing nor being cancelled.
         """
         self._end(GoalEvent.SUCCEED, response)
 
     def abort(self, response: Any = None) -> None:
-        """It is given up by the server; otherwise as ``succeed``."""
+        """Mark the goal as aborted; otherwise as ``succeed``."""
         self._end(GoalEvent.ABORT, response)
 
     def canceled(self, response: Any = None) -> None:
-        """It has stopped because it was asked to; otherwise as ``succeed``."""
+        """Mark the goal as cancelled; otherwise as ``succeed``."""
         self._end(GoalEvent.CANCELED, response)
 
     def _end(self, event: GoalEvent, response: Any) -> None:
@@ -114,10 +114,10 @@ class ServerGoalHandle:
             self.set_result(response)
 
     def change(self, event: GoalEvent) -> None:
-        """Let an event happen to it, and have its server tell.
+        """Apply an event to the goal's state, and publish the status.
 
         Raises:
-            RCLError: the event cannot happen in its state.
+            RCLError: the state does not allow the event.
         """
         with self._host.lock:
             if self._state is GoalState.UNKNOWN:
@@ -129,10 +129,10 @@ class ServerGoalHandle:
                 self._action_server.notify_goal_done()
 
     def set_result(self, result: Any) -> None:
-        """Have everybody who asked for the result get it, unless there is one already.
+        """Set the result, and answer the requests for it; a result that was set before stays.
 
         Raises:
-            AssertionError: it is not of the action's type, as when an execute callback returns nothing.
+            AssertionError: it does not have the action's type, as when an execute callback returns nothing.
         """
         get_result = self._action_server.action_type.Impl.GetResultService
         response = get_result.Response(status=self.status, result=result)
@@ -142,6 +142,6 @@ class ServerGoalHandle:
         self.result_response.set_result(response)
 
     def destroy(self) -> None:
-        """Forget its state."""
+        """Set the state to unknown."""
         with self._host.lock:
             self._state = GoalState.UNKNOWN

@@ -1,4 +1,4 @@
-"""The ids of goals: different from each other, and the same again in every run on virtual time."""
+"""The ids of goals: all different, and the same in every run on virtual time."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _numbers: WeakKeyDictionary[Host, Iterator[int]] = WeakKeyDictionary()
 
 
 def new_goal_id(host: Host) -> Any:
-    """A ``unique_identifier_msgs/msg/UUID`` that no other goal of this host has."""
+    """A new ``unique_identifier_msgs/msg/UUID``, unique on this host."""
     with host.lock:
         number = next(_numbers.setdefault(host, count()))
     made = uuid5(_SPACE, f"{host.clock.epoch} {number}")

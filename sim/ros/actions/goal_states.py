@@ -1,4 +1,4 @@
-"""The states of a goal, and which events lead from one to the next.
+"""The states of a goal, and the events that change them.
 
 Source: the goal state machine of ROS 2's design documents ("Actions"), and rcl_action.
 """
@@ -24,7 +24,7 @@ class GoalState(IntEnum):
 
 
 class GoalEvent(Enum):
-    """What can happen to a goal once it has been accepted."""
+    """The events of an accepted goal."""
 
     EXECUTE = 0
     CANCEL_GOAL = 1
@@ -34,7 +34,7 @@ class GoalEvent(Enum):
 
 
 TERMINAL = frozenset({GoalState.SUCCEEDED, GoalState.CANCELED, GoalState.ABORTED})
-"""The states that a goal does not leave."""
+"""The states in which a goal has ended."""
 
 _TRANSITIONS = MappingProxyType(
     {
@@ -54,7 +54,7 @@ def next_state(state: GoalState, event: GoalEvent) -> GoalState:
     """The state after an event.
 
     Raises:
-        RCLError: the event cannot happen in that state.
+        RCLError: the state does not allow the event.
     """
     following = _TRANSITIONS.get((state, event))
     if following is None:
@@ -66,5 +66,5 @@ def next_state(state: GoalState, event: GoalEvent) -> GoalState:
 
 
 def is_cancelable(state: GoalState) -> bool:
-    """Whether a goal in that state can be asked to stop, which a goal can be once."""
+    """Whether a goal in that state can be cancelled; a goal that is being cancelled cannot."""
     return (state, GoalEvent.CANCEL_GOAL) in _TRANSITIONS

@@ -1,4 +1,4 @@
-"""What can be asked about the actions on the graph: an action is known by its feedback topic."""
+"""Queries of the actions on the graph; an action is identified by its feedback topic."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ _TYPE = "_FeedbackMessage"
 def get_action_client_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """The actions that a node has clients of; raises NodeNameNonExistentError without that node."""
+    """The actions of which a node has clients; NodeNameNonExistentError without that node."""
     return _actions(node.get_subscriber_names_and_types_by_node(remote_node_name, remote_node_namespace))
 
 
 def get_action_server_names_and_types_by_node(
     node: Node, remote_node_name: str, remote_node_namespace: str
 ) -> NamesAndTypes:
-    """The actions that a node serves; raises NodeNameNonExistentError without that node."""
+    """The actions that a node serves; NodeNameNonExistentError without that node."""
     return _actions(node.get_publisher_names_and_types_by_node(remote_node_name, remote_node_namespace))
 
 

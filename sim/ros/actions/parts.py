@@ -1,7 +1,7 @@
-"""The services, clients and subscriptions that an action is made of.
+"""The services, clients and subscriptions of an action.
 
-Each is one as any other on the network, with a queue of its own; but it makes its waitable ready instead of
-itself, and on the trace what it has queued or lost is the waitable's.
+On the network a part is an ordinary endpoint with its own queue. But it makes its waitable ready instead of
+itself, and the trace shows its queue as the waitable's.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _CALLS = (
 
 
 class PartProbe(SilentProbe):
-    """Records what happens at a part: ``_CALLS`` as the program's probe does, its queue as the waitable's."""
+    """Records the events of a part: ``_CALLS`` as the program's probe does, the queue as the waitable's."""
 
     def __init__(self, owner: ActionWaitable) -> None:
         super().__init__(owner.node.context.host.clock)
@@ -46,11 +46,11 @@ class PartProbe(SilentProbe):
             setattr(self, calls.__name__, getattr(self._program, calls.__name__))
 
     def ready(self, entity: TracedEntity, depth: int, message: int) -> None:
-        """Something arrived for the part."""
+        """An item arrived for the part."""
         self._program.ready(self._owner, self._owner.queued, message)
 
     def dropped(self, entity: TracedEntity, depth: int, message: int) -> None:
-        """The part's full queue lost its oldest."""
+        """The part's full queue dropped its oldest item."""
         self._program.dropped(self._owner, self._owner.queued, message)
 
 
@@ -62,13 +62,13 @@ class Part(Entity):
     _queue: deque[Any]
 
     def become_ready(self, since: int) -> None:
-        """The waitable has something to take. With the host's lock held."""
+        """Make the waitable ready. Called with the host's lock held."""
         self.pending = True
         self._owner.arrived_at = self
         self._owner.become_ready(since)
 
-    def nothing_left(self) -> None:
-        """There is nothing more to take here. With the host's lock held."""
+    def become_idle(self) -> None:
+        """This part has nothing more to take. Called with the host's lock held."""
         self.pending = False
 
 
@@ -90,11 +90,11 @@ class ClientPart(Part, Client):
         self._probe = PartProbe(owner)
 
     def awaited(self, reply: Reply) -> Future[Any] | None:
-        """The future that waits for that reply, if any still does."""
+        """The future that waits for a reply; None if there is none any more."""
         return self._pending_requests.get(reply.call)
 
     def wait_for(self, future: Future[Any]) -> Any:
-        """Wait on this thread until one of its futures is done; returns the result."""
+        """Wait on this thread until a future of this client is done; return the result."""
         arrived = self._host.clock.auto_reset_event()
         future.add_done_callback(lambda _: arrived.set())
         with self._host.lock:

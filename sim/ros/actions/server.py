@@ -1,4 +1,4 @@
-"""Action servers: goals that are accepted or refused, executed and cancelled, and their results kept."""
+"""Action servers: they accept, execute and cancel goals, and keep their results."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from sim.interfaces import message
-from sim.ros.actions.cancelling import goals_meant, uuid_of
+from sim.ros.actions.cancelling import goals_to_cancel, uuid_of
 from sim.ros.actions.execution import GoalExecution
 from sim.ros.actions.goal_handle import ServerGoalHandle
 from sim.ros.actions.goal_states import GoalEvent, GoalState
-from sim.ros.actions.waitable import ActionWaitable, PartTaken, await_or_execute
+from sim.ros.actions.waitable import ActionWaitable, PartData, await_or_execute
 from sim.ros.exceptions import RCLError
 from sim.ros.qos.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
-from sim.ros.scheduling.entity import Taken
+from sim.ros.scheduling.entity import TakenData
 from sim.ros.scheduling.waitable import NumberOfEntities
 
 if TYPE_CHECKING:
@@ -40,21 +40,21 @@ __all__ = [
 
 
 class GoalResponse(Enum):
-    """What a goal callback answers."""
+    """The answer of a goal callback."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 class CancelResponse(Enum):
-    """What a cancel callback answers."""
+    """The answer of a cancel callback."""
 
     REJECT = 1
     ACCEPT = 2
 
 
 def default_handle_accepted_callback(goal_handle: ServerGoalHandle) -> None:
-    """Execute the goal."""
+    """Execute the goal at once."""
     goal_handle.execute()
 
 
@@ -64,20 +64,20 @@ def default_goal_callback(goal_request: Any) -> GoalResponse:  # noqa: ARG001 --
 
 
 def default_cancel_callback(cancel_request: Any) -> CancelResponse:  # noqa: ARG001 -- rclpy's name
-    """Cancel nothing."""
+    """Refuse every cancel request."""
     return CancelResponse.REJECT
 
 
 class ActionServer(ActionWaitable):
-    """Serves one action. Its requests are handled in its callback group, its goals executed outside of it.
+    """Serves one action. It handles requests in its callback group, and executes goals outside of the group.
 
-    ``goal_callback`` gets a goal, ``handle_accepted_callback`` and ``cancel_callback`` a ServerGoalHandle,
-    and so does ``execute_callback``, which returns a result. Results are kept ``result_timeout`` seconds
-    after the end of their goals; less than 0: for ever.
+    ``goal_callback`` gets a goal; ``handle_accepted_callback`` and ``cancel_callback`` get a
+    ServerGoalHandle, and so does ``execute_callback``, which returns a result. Results are kept for
+    ``result_timeout`` seconds after the end of their goals; a negative timeout keeps them for ever.
 
     Raises:
-        AttributeError: ``action_type`` is no action class.
-        TypeError: ``execute_callback`` cannot be called.
+        AttributeError: ``action_type`` is not an action class.
+        TypeError: ``execute_callback`` is not callable.
         ValueError: the action's name breaks the rules.
     """
 
@@ -128,47 +128,47 @@ class ActionServer(ActionWaitable):
             self._status = self._add_publisher(impl.GoalStatusMessage, "status", status_pub_qos_profile)
             self._execution = GoalExecution(node, self.name, self._execute_callback)
 
-    # What a program gives it
+    # Callbacks
 
     def register_goal_callback(self, goal_callback: Callable[[Any], Any] | None) -> None:
-        """Have ``goal_callback(goal)`` say whether a goal is accepted; None: every goal is."""
+        """Let ``goal_callback(goal)`` decide whether a goal is accepted; None: accept every goal."""
         self._goal_callback = goal_callback or default_goal_callback
 
     def register_handle_accepted_callback(
         self, handle_accepted_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Have ``handle_accepted_callback(goal_handle)`` begin an accepted goal; None: it is executed."""
+        """Call ``handle_accepted_callback(goal_handle)`` for an accepted goal; None: execute the goal."""
         self._handle_accepted_callback = handle_accepted_callback or default_handle_accepted_callback
 
     def register_cancel_callback(self, cancel_callback: Callable[[ServerGoalHandle], Any] | None) -> None:
-        """Have ``cancel_callback(goal_handle)`` say whether a goal is cancelled; None: no goal is."""
+        """Let ``cancel_callback(goal_handle)`` decide whether a goal is cancelled; None: cancel no goal."""
         self._cancel_callback = cancel_callback or default_cancel_callback
 
     def register_execute_callback(self, execute_callback: Callable[[ServerGoalHandle], Any]) -> None:
-        """Have ``execute_callback(goal_handle)`` do the work of a goal and return its result.
+        """Let ``execute_callback(goal_handle)`` execute a goal and return its result.
 
         Raises:
-            TypeError: it cannot be called.
+            TypeError: the callback is not callable.
         """
         if not callable(execute_callback):
             raise TypeError("Failed to register goal execution callback: not callable")
         self._execute_callback = execute_callback
 
-    # Being served
+    # Taking
 
-    def take(self, now: int) -> Taken | None:
-        """Take the oldest request of each service, and the goals whose results were kept long enough."""
+    def take(self, now: int) -> TakenData | None:
+        """Take the oldest request of each service, and the goals whose results have expired."""
         taken = super().take(now)
         expired = self._expired(now)
         if not expired:
             return taken
         late = now - min(self._expires_at(goal) for goal in expired)
-        taken = taken or Taken([], 0, late, self.queued)
-        taken.data.append(PartTaken(self._forget_goals, expired))
+        taken = taken or TakenData([], 0, late, self.queued)
+        taken.data.append(PartData(self._forget_goals, expired))
         return taken
 
     def get_num_entities(self) -> NumberOfEntities:
-        """How many entities of each kind it is made of; the timer is the one of the results' ends."""
+        """The number of entities of each kind; the timer is that of the results."""
         return super().get_num_entities() + NumberOfEntities(num_timers=1)
 
     # Goals
@@ -189,7 +189,7 @@ class ActionServer(ActionWaitable):
         await await_or_execute(self._handle_accepted_callback, goal_handle)
 
     async def _accepted(self, asked: Any) -> ServerGoalHandle | None:
-        """The handle of a goal that was asked for; None: it is refused."""
+        """The handle of a requested goal; None: the goal is refused."""
         key = uuid_of(asked.goal_id)
         if key in self._goal_handles:
             return None
@@ -211,7 +211,7 @@ class ActionServer(ActionWaitable):
     def notify_execute(
         self, goal_handle: ServerGoalHandle, execute_callback: Callable[[ServerGoalHandle], Any] | None
     ) -> None:
-        """Have the executor run a goal's execute callback, as a task; without any there is nothing to run."""
+        """Let the executor run a goal's execute callback, if there is one, as a task."""
         callback = execute_callback or self._execute_callback
         if callback is None:
             return
@@ -219,7 +219,7 @@ class ActionServer(ActionWaitable):
         executor.create_task(self._execute_goal(executor, callback, goal_handle))
 
     def _executor(self) -> Executor:
-        """The executor that serves the node, or that did last."""
+        """The executor that serves the node, or served it last."""
         executor = self._node.executor
         if executor is None:
             raise RCLError(f"no executor serves {self._node.get_name()}, so no goal of {self.name} can run")
@@ -250,7 +250,7 @@ class ActionServer(ActionWaitable):
     async def _serve_cancel(self, header: Request) -> None:
         self._logger.debug(f"Cancel request received: {header.data}")
         with self._host.lock:
-            asked, code = goals_meant(header.data.goal_info, self._goal_handles.values())
+            asked, code = goals_to_cancel(header.data.goal_info, self._goal_handles.values())
         canceling = [goal.info for goal in asked if await self._cancels(goal)]
         response = self._action_type.Impl.CancelGoalService.Response(
             return_code=int(code), goals_canceling=canceling
@@ -289,7 +289,7 @@ class ActionServer(ActionWaitable):
             self._result_service.send_response(response.result(), header)
 
     def notify_goal_done(self) -> None:
-        """A goal has ended: forget it once its result was kept long enough. With the host's lock held."""
+        """A goal has ended: drop it when its result expires. Called with the host's lock held."""
         if self._result_timeout >= 0:
             if self._node.executor is not None:
                 self._node.executor._expiry_set(self._node.get_clock())
@@ -318,15 +318,15 @@ class ActionServer(ActionWaitable):
                 goal_handle.destroy()
                 self._goal_handles.pop(uuid_of(goal_handle.goal_id), None)
 
-    # Telling
+    # Publishing
 
     def send_feedback(self, goal_id: Any, feedback: Any) -> None:
-        """Publish feedback on a goal."""
+        """Publish feedback of a goal."""
         if not self.destroyed:
             self._feedback.publish(self._action_type.Impl.FeedbackMessage(goal_id=goal_id, feedback=feedback))
 
     def publish_status(self) -> None:
-        """Publish the state of every goal that is known. With the host's lock held."""
+        """Publish the states of all goals. Called with the host's lock held."""
         if not self.destroyed:
             statuses = [
                 self._goal_status(goal_info=goal.info, status=goal.status)
@@ -335,7 +335,7 @@ class ActionServer(ActionWaitable):
             self._status.publish(self._action_type.Impl.GoalStatusMessage(status_list=statuses))
 
     def destroy(self) -> None:
-        """Take it off the network; its goals are forgotten."""
+        """Remove the server from the network, and drop its goals."""
         with self._host.lock:
             if self.destroyed:
                 return

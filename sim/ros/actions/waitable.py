@@ -1,4 +1,4 @@
-"""What action servers and clients have in common: several services and topics, served as one callback.
+"""The base of action servers and clients: several services and topics, served as one callback.
 
 An executor sees one waitable. What arrives at its parts makes it ready; a call takes the oldest of each part
 that had something when the executor looked, and handles them one after another, in the order in which the
@@ -19,7 +19,7 @@ from sim.ros.entities.publisher import Publisher
 from sim.ros.exceptions import NameValidationException
 from sim.ros.qos.qos import QoSProfile
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
-from sim.ros.scheduling.entity import Entity, Taken
+from sim.ros.scheduling.entity import Entity, TakenData
 from sim.ros.scheduling.waitable import NumberOfEntities
 from sim.trace.events import EntityKind
 
@@ -28,11 +28,11 @@ if TYPE_CHECKING:
     from sim.ros.scheduling.callback_groups import CallbackGroup
 
 Handler = Callable[[Any], Any]
-"""Gets what one part's take brought; may return a coroutine."""
+"""Handles the data of one part; may return a coroutine."""
 
 
-class PartTaken(NamedTuple):
-    """What was taken from one part, and who handles it."""
+class PartData(NamedTuple):
+    """The data that were taken from one part, and their handler."""
 
     handler: Handler
     data: Any
@@ -42,7 +42,7 @@ class ActionWaitable(Entity):
     """Base of action servers and clients.
 
     Raises:
-        AttributeError: ``action_type`` is no action class.
+        AttributeError: ``action_type`` is not an action class.
         ValueError: the action's name breaks the rules.
     """
 
@@ -67,13 +67,10 @@ class ActionWaitable(Entity):
 
     @property
     def action_type(self) -> Any:
-        """The action's class."""
+        """The action class."""
         return self._action_type
 
-    def shown_callback(self) -> None:
-        """None: it has several, of which a call may run any."""
-
-    # Making it, with the host's lock held
+    # Creating the parts, with the host's lock held
 
     def _add_service(
         self, srv_type: Any, part: str, qos_profile: QoSProfile, handler: Handler
@@ -111,14 +108,14 @@ class ActionWaitable(Entity):
         self._parts.append((part, handler))
         self._node._agenda.add(part)
 
-    # Being served
+    # Taking
 
     @property
     def queued(self) -> int:
-        """How much waits in all parts together."""
+        """The number of items in the queues of all parts."""
         return sum(part.queued for part, _ in self._parts)
 
-    def noticed(self) -> None:
+    def on_snapshot(self) -> None:
         """A snapshot names it: what comes to other parts from here on is left for the next one."""
         self._to_take = {part for part, _ in self._parts if part.pending}
 
@@ -130,7 +127,7 @@ class ActionWaitable(Entity):
         """Take from one part; None: from none, for a result was kept long enough."""
         self._to_take = (arrived,)
 
-    def take(self, now: int) -> Taken | None:
+    def take(self, now: int) -> TakenData | None:
         """Take the oldest of each part that had something when the executor looked."""
         found = [
             (taken, handler)
@@ -140,20 +137,22 @@ class ActionWaitable(Entity):
         if any(part.pending for part, _ in self._parts):
             self.ready_since = now
         else:
-            self.nothing_left()
+            self.become_idle()
         if not found:
             return None
         message = found[0][0].message
         age = max(taken.age for taken, _ in found)
-        return Taken([PartTaken(handler, taken.data) for taken, handler in found], message, age, self.queued)
+        return TakenData(
+            [PartData(handler, taken.data) for taken, handler in found], message, age, self.queued
+        )
 
-    async def invoke(self, taken: Taken) -> None:
-        """Handle what was taken from each part."""
+    async def invoke(self, taken: TakenData) -> None:
+        """Handle the data of each part."""
         for handler, data in taken.data:
             await await_or_execute(handler, data)
 
     def get_num_entities(self) -> NumberOfEntities:
-        """How many entities of each kind it is made of."""
+        """The number of entities of each kind."""
         return NumberOfEntities(
             num_subscriptions=sum(isinstance(part, SubscriptionPart) for part, _ in self._parts),
             num_clients=sum(isinstance(part, ClientPart) for part, _ in self._parts),
@@ -161,7 +160,7 @@ class ActionWaitable(Entity):
         )
 
     def destroy(self) -> None:
-        """Take it and its parts off the network, and remove it from its node."""
+        """Remove the waitable and its parts from the network and from the node."""
         with self._host.lock:
             for part, _ in self._parts:
                 part.destroy()
@@ -169,7 +168,7 @@ class ActionWaitable(Entity):
 
 
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
-    """Call a function, and await what it returns if that is a coroutine."""
+    """Call a function, and await its result if that is a coroutine."""
     outcome = callback(*args)
     return await outcome if inspect.iscoroutine(outcome) else outcome
 

@@ -1,1 +1,1 @@
-"""The clocks that programs read and sleep by."""
+"""rclpy's clocks, jumps of their time, and the schedule of timers on ROS time."""

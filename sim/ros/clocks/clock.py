@@ -1,4 +1,4 @@
-"""The clocks that a node reads: views of the run's one clock, unless a program sets ROS time itself."""
+"""rclpy's clocks: views of the run's clock, unless a program sets ROS time itself."""
 
 from __future__ import annotations
 
@@ -32,13 +32,13 @@ __all__ = [
 
 
 class Clock:
-    """A clock of one kind; steady time counts from the run's beginning, the others from 1970. Thread-safe.
+    """A clock of one type. Steady time counts from the start of the run, other time from 1970. Thread-safe.
 
-    A clock of ROS time is a ROSClock.
+    ``Clock(clock_type=ROS_TIME)`` creates a ROSClock.
     """
 
     def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> Self:
-        """Make it; TypeError for what is no type of clock."""
+        """Create the clock; TypeError for an invalid type."""
         if not isinstance(clock_type, ClockType):
             raise TypeError("Clock type must be a ClockType enum")
         chosen: type[Any] = ROSClock if clock_type is ClockType.ROS_TIME and cls is Clock else cls
@@ -54,29 +54,29 @@ class Clock:
 
     @property
     def clock_type(self) -> ClockType:
-        """The kind of this clock."""
+        """The type of this clock."""
         return self._clock_type
 
     @property
     def handle(self) -> Handle:
-        """What ClockEvent wants of it."""
+        """A handle, as programs pass it to ClockEvent."""
         return Handle(self)
 
     @property
     def destroyed(self) -> bool:
-        """Never, as its handle asks."""
+        """False: a clock is never destroyed."""
         return False
 
     def destroy(self) -> None:
-        """Leave it to whoever uses it still."""
+        """Do nothing: other code may still use the clock."""
 
     def now(self) -> Time:
-        """The time it is."""
+        """The present time."""
         self._host.clock.switch_point()
         return self._time_at(self._host.clock.now())
 
     def _time_at(self, elapsed: int) -> Time:
-        """The time of this clock at a moment of the run."""
+        """The time of this clock after ``elapsed`` nanoseconds of the run."""
         if self._clock_type != ClockType.STEADY_TIME:
             elapsed += self._host.clock.epoch
         return Time(nanoseconds=elapsed, clock_type=self._clock_type)
@@ -88,21 +88,21 @@ class Clock:
         pre_callback: Callable[[], None] | None = None,
         post_callback: Callable[[TimeJump], None] | None = None,
     ) -> JumpHandle:
-        """Have callbacks called before and after the clock jumps, which only ROS time can.
+        """Call callbacks before and after the clock jumps. Only ROS time can jump.
 
         Raises:
-            ValueError: there is no callback.
+            ValueError: no callback is given.
         """
         return JumpHandle(
             clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=post_callback
         )
 
     def sleep_until(self, until: Time, context: ContextLifetime | None = None) -> bool:
-        """Sleep until a time of this clock has come; False if the context ended first, or the source changed.
+        """Sleep until this clock shows a time; False if the context ended before, or the source changed.
 
         Raises:
-            NotInitializedException: the context has not begun.
-            ValueError: the time belongs to another kind of clock.
+            NotInitializedException: the context is not initialised.
+            ValueError: the time belongs to another type of clock.
         """
         chosen = current_process().default_context if context is None else context
         if chosen is None or not chosen.ok():
@@ -130,29 +130,29 @@ class Clock:
         return chosen.ok() and not changes
 
     def sleep_for(self, rel_time: Duration, context: ContextLifetime | None = None) -> bool:
-        """Sleep for a length of time of this clock; otherwise as ``sleep_until``."""
+        """Sleep for a duration of this clock; otherwise as ``sleep_until``."""
         return self.sleep_until(self.now() + rel_time, context)
 
     def _deadline(self, until: Time) -> int | None:
-        """When on the run's clock a time comes; None: that depends on who sets this clock."""
+        """The time of the run's clock at which this clock shows ``until``; None while ROS time is set."""
         return self._host.clock.now() + (until - self.now()).nanoseconds
 
     def __repr__(self) -> str:
         return f"Clock(clock_type={self._clock_type.name})"
 
 
-class DrivenTimer(Protocol):
-    """A timer that follows ROS time while that is active. With the host's lock held."""
+class RosTimeTimer(Protocol):
+    """A timer that follows ROS time while that is active. Called with the host's lock held."""
 
     @property
     def destroyed(self) -> bool:
-        """Whether it follows nothing any more."""
+        """Whether the timer is destroyed."""
 
     def _begin_on_ros_time(self) -> None:
-        """It was made while its clock follows ROS time."""
+        """Start a timer that is created while its clock follows ROS time."""
 
     def _time_credit(self) -> int:
-        """Nanoseconds left before the next call, for a change of the source; 0 if that is not known."""
+        """Nanoseconds left before the next call when the source changes; 0 if unknown."""
 
     def _follow_ros_time(self, credit: int) -> None:
         """The clock follows ROS time from now on."""
@@ -161,39 +161,39 @@ class DrivenTimer(Protocol):
         """The clock follows the run's clock again."""
 
     def _ros_time_set(self) -> None:
-        """The clock was set."""
+        """ROS time was set."""
 
 
 class ROSClock(Clock):
-    """The clock that nodes use by default.
+    """A clock of ROS time, which nodes use by default.
 
-    While ROS time is active, its time is the one last set, 0 at first, and its timers follow that.
+    While ROS time is active, the clock and its timers have the time that was last set (at first 0).
     """
 
     _override = Time(clock_type=ClockType.ROS_TIME)
     _active = False
-    _timers: WeakValueDictionary[int, DrivenTimer]
+    _timers: WeakValueDictionary[int, RosTimeTimer]
 
     def __new__(cls, *, clock_type: ClockType = ClockType.ROS_TIME) -> Self:  # noqa: ARG004
-        """Make it, a clock of ROS time whatever it is told, as rclpy's."""
+        """Create a clock of ROS time; as in rclpy, ``clock_type`` is ignored."""
         made = super().__new__(cls, clock_type=ClockType.ROS_TIME)
         made._timers = WeakValueDictionary()
         return made
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether the time that was set counts."""
+        """Whether the clock shows the time that was set."""
         return self._active
 
     def now(self) -> Time:
-        """The time it is, or the one that was set."""
+        """The present time, or the one that was set."""
         return self._override if self._active else super().now()
 
     def set_ros_time_override(self, time: Time) -> None:
-        """Set the time that counts while ROS time is active.
+        """Set the time that the clock shows while ROS time is active.
 
         Raises:
-            TypeError: it is no Time.
+            TypeError: ``time`` is not a Time.
         """
         if not isinstance(time, Time):
             raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
@@ -208,8 +208,8 @@ class ROSClock(Clock):
             change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
             self._jump(TimeJump(change, Duration()), enabled, self._override)
 
-    def _drive(self, timer: DrivenTimer) -> None:
-        """Have a new timer follow this clock."""
+    def _attach_timer(self, timer: RosTimeTimer) -> None:
+        """Let a new timer follow this clock."""
         with self._host.lock:
             self._timers[id(timer)] = timer
             if self._active:
@@ -243,7 +243,7 @@ class ROSClock(Clock):
 
 
 class ClockEvent:
-    """A flag that threads wait for until a clock shows a time. Thread-safe."""
+    """A flag for which threads wait until a clock shows a time. Thread-safe."""
 
     def __init__(self) -> None:
         self._host = current_host()
@@ -251,24 +251,24 @@ class ClockEvent:
         self._waiters: list[AutoResetEvent] = []
 
     def is_set(self) -> bool:
-        """Whether it is set."""
+        """Whether the flag is set."""
         return self._set
 
     def set(self) -> None:
-        """Set it: whoever waits goes on."""
+        """Set the flag, and wake the waiting threads."""
         with self._host.lock:
             self._set = True
             for each in self._waiters:
                 each.set()
 
     def clear(self) -> None:
-        """Take it back."""
+        """Clear the flag."""
         self._set = False
 
     def wait_until(self, clock: Clock | Handle, until: Time) -> None:
-        """Wait until it is set, or ``clock`` shows ``until``.
+        """Wait until the flag is set, or ``clock`` shows ``until``.
 
-        A time of active ROS time ends no wait: whoever sets that time has to set the flag.
+        Active ROS time does not end the wait: the code that sets ROS time has to set the flag.
         """
         with self._host.lock:
             if self._set:

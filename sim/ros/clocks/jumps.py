@@ -1,4 +1,4 @@
-"""Jumps of a clock: what counts as one, and who is told."""
+"""Jumps of a clock: which jumps matter, and the callbacks for them."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class ClockChange(IntEnum):
-    """Whether the source of a clock's time has changed with a jump."""
+    """Whether a clock's time source changed at a jump."""
 
     ROS_TIME_NO_CHANGE = 1
     ROS_TIME_ACTIVATED = 2
@@ -23,14 +23,14 @@ class ClockChange(IntEnum):
 
 
 SOURCE_CHANGES = frozenset((ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED))
-"""The jumps at which the beginning of time changes too."""
+"""The jumps at which the time source changes."""
 
 
 class JumpThreshold:
-    """Which jumps a program wants to hear of: at least so far forward or back, or a change of the source.
+    """Selects jumps: those of at least a length forward or backward, and changes of the time source.
 
     Raises:
-        ValueError: a length has the wrong sign, or nothing is wanted.
+        ValueError: a length has the wrong sign, or no jump is selected.
     """
 
     def __init__(
@@ -47,7 +47,7 @@ class JumpThreshold:
         self.on_clock_change = on_clock_change
 
     def met_by(self, jump: TimeJump) -> bool:
-        """Whether a jump is wanted."""
+        """Whether the threshold selects a jump."""
         if jump.clock_change in SOURCE_CHANGES:
             return self.on_clock_change
         forward, backward = self.min_forward, self.min_backward
@@ -58,7 +58,7 @@ class JumpThreshold:
 
 @dataclass(frozen=True, eq=False)
 class TimeJump:
-    """A jump: whether the source changed, and how far it was (0 if the source changed)."""
+    """A jump: whether the time source changed, and the length (0 if the source changed)."""
 
     clock_change: ClockChange
     delta: Duration
@@ -69,10 +69,10 @@ class TimeJump:
 
 
 class JumpHandle:
-    """Has callbacks called before and after the jumps of a clock, until it is unregistered.
+    """Calls callbacks before and after the jumps of a clock, until it is unregistered.
 
     Raises:
-        ValueError: there is no callback, or it cannot be called.
+        ValueError: no callback is given, or it is not callable.
     """
 
     def __init__(
@@ -96,7 +96,7 @@ class JumpHandle:
         clock._jump_handles.append(self)
 
     def unregister(self) -> None:
-        """Call back no more."""
+        """Stop calling the callbacks."""
         if self in self._clock._jump_handles:
             self._clock._jump_handles.remove(self)
 

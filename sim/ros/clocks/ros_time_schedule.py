@@ -1,4 +1,4 @@
-"""When a timer falls due next, and when while its clock follows ROS time, which somebody sets step by step.
+"""The next due time of a timer, also while its clock follows ROS time, which is set step by step.
 
 The rules are those of rcl's timers, in nanoseconds of the timer's clock.
 """
@@ -9,9 +9,10 @@ from dataclasses import dataclass, replace
 
 
 def next_due(due: int, period: int, now: int) -> int:
-    """When a timer called at ``now``, due at ``due``, is due next. All in nanoseconds.
+    """The next due time of a timer that was due at ``due`` and is called at ``now``, in nanoseconds.
 
-    A tick at the very moment of a late call is missed like those before it, also where a clock stands still.
+    A tick at the exact time of a late call is missed, like the ticks before it, also if the clock stands
+    still.
     """
     following = due + period
     if following > now:
@@ -24,7 +25,7 @@ def next_due(due: int, period: int, now: int) -> int:
 
 @dataclass(slots=True)
 class RosTimeSchedule:
-    """The next and the last call of a timer; ``credit`` was left before the next one when time was lost."""
+    """The next and last call of a timer; ``credit`` is the time before the next call when time became 0."""
 
     due: int
     last_call: int
@@ -36,17 +37,17 @@ class RosTimeSchedule:
         self.due = next_due(self.due, period, now)
 
     def time_set(self, now: int, period: int) -> None:
-        """The clock was set to ``now``; back by more than the last call, the timer begins anew."""
+        """The clock was set to ``now``; if that is before the last call, the timer restarts."""
         if now < self.due and now < self.last_call:
             self.due = now + period
             self.last_call = now
 
 
 def after_change(schedule: RosTimeSchedule, now: int, period: int, credit: int) -> RosTimeSchedule:
-    """The schedule once the source of time changed and shows ``now``.
+    """The schedule after the time source has changed and shows ``now``.
 
-    ``credit`` is what was left before the next call. Without it nothing is changed, nor while the new time
-    is 0, which stands for a time not known yet; then the credit is kept.
+    ``credit`` is the time that was left before the next call. If it is 0, the schedule stays. If ``now`` is
+    0, which means an unknown time, only the credit is stored.
     """
     if now == 0:
         return replace(schedule, credit=credit)

@@ -1,1 +1,1 @@
-"""Contexts, ROS arguments and signals: a program's stay on the network."""
+"""Contexts, ROS arguments and signals."""

@@ -1,4 +1,4 @@
-"""ROS arguments: what stands between ``--ros-args`` and ``--`` on a program's command line.
+"""ROS arguments: the arguments between ``--ros-args`` and ``--`` on a program's command line.
 
 Source of the grammar: the ROS 2 design article "ROS command line arguments", and rcl.
 """
@@ -27,7 +27,7 @@ _SWITCHES = {
     for deed in ("enable", "disable")
     for what in ("rosout", "stdout", "external-lib")
 }
-"""The switches of logging; no log file is written here, so the one for the library that would is moot."""
+"""The switches of logging. The one for ``external-lib`` has no effect: no log file is written here."""
 _UNSUPPORTED = frozenset(("--log-config-file", "--log-file-name"))
 _PARAMETER = re.compile(r"(?:([\w~/*]+):)?([\w.~/-]+):=(.*)", re.DOTALL)
 _LEVELS = {level.name: level for level in LoggingSeverity}
@@ -35,39 +35,39 @@ _EVERY_NODE = "/**"
 
 
 class ArgumentsError(ValueError):
-    """ROS arguments that cannot be read; the text says which and why."""
+    """A ROS argument cannot be read; the message says which and why."""
 
 
 @dataclass(slots=True)
 class Arguments:
-    """What a command line asks of ROS."""
+    """The ROS arguments of a command line."""
 
     remap_rules: list[RemapRule] = field(default_factory=list)
     parameters: NodeParameters = field(default_factory=dict)
     log_levels: dict[str, LoggingSeverity] = field(default_factory=dict)
-    """Levels by logger; that of the empty name is the default."""
+    """Levels by logger; the empty name is the default level."""
     log_outputs: dict[str, bool] = field(default_factory=dict)
-    """Whether log lines go to ``rosout`` and to ``stdout``, as far as that is told."""
+    """Whether log lines go to ``rosout`` and ``stdout``, where the arguments say so."""
     unknown: list[str] = field(default_factory=list)
 
     def require_all_known(self) -> None:
-        """Raise UnknownROSArgsError if there was an argument that ROS does not know."""
+        """Raise UnknownROSArgsError if there is an unknown ROS argument."""
         if self.unknown:
             raise UnknownROSArgsError(f"Found unknown ROS arguments: {self.unknown}")
 
     def configure_logging(self) -> None:
-        """Give the loggers the levels that were asked for, and send their lines where they are wanted."""
+        """Set the loggers' levels, and where their lines go."""
         send_to(console=self.log_outputs.get("stdout"), rosout=self.log_outputs.get("rosout"))
         for name, level in self.log_levels.items():
             set_logger_level(name, level)
 
 
 def parse_arguments(args: Sequence[str]) -> Arguments:
-    """Read a command line; what is not for ROS is left alone.
+    """Parse a command line; other arguments than ROS arguments are ignored.
 
     Raises:
         ArgumentsError: a ROS argument cannot be read.
-        NotImplementedError: it asks for something that is not supported here.
+        NotImplementedError: a ROS argument is not supported here.
     """
     found = Arguments()
     waiting = iter(args)
@@ -85,11 +85,11 @@ def parse_arguments(args: Sequence[str]) -> Arguments:
 
 
 def arguments_of_program(args: Sequence[str]) -> Arguments:
-    """What ``rclpy.init`` is given.
+    """Parse the arguments of ``rclpy.init``.
 
     Raises:
-        RCLError, UnknownROSArgsError: a ROS argument cannot be read, or is none.
-        UnicodeEncodeError: an argument is no UTF-8.
+        RCLError, UnknownROSArgsError: a ROS argument cannot be read, or is unknown.
+        UnicodeEncodeError: an argument is not UTF-8.
     """
     for each in args:
         each.encode()
@@ -102,10 +102,10 @@ def arguments_of_program(args: Sequence[str]) -> Arguments:
 
 
 def arguments_of_node(args: Sequence[str]) -> Arguments:
-    """What a node is given as ``cli_args``.
+    """Parse a node's ``cli_args``.
 
     Raises:
-        RCLInvalidROSArgsError, UnknownROSArgsError: a ROS argument cannot be read, or is none.
+        RCLInvalidROSArgsError, UnknownROSArgsError: a ROS argument cannot be read, or is unknown.
     """
     try:
         found = parse_arguments(args)
@@ -116,9 +116,9 @@ def arguments_of_node(args: Sequence[str]) -> Arguments:
 
 
 def parameters_for(full_name: str, sources: Iterable[Arguments]) -> dict[str, PlainValue]:
-    """The values that command lines give the parameters of a node; later sources override earlier ones.
+    """The values of a node's parameters on command lines; later sources override earlier ones.
 
-    Entries for several nodes (``/**``, ``/*/name``) count first, in their order, then the node's own.
+    Entries for several nodes (``/**``, ``/*/name``) apply in their order; the node's own override them.
     """
     by_node: NodeParameters = {}
     for source in sources:
@@ -140,7 +140,7 @@ def _matches(pattern: str, full_name: str) -> bool:
 
 
 def _read_plain(argument: str, found: Arguments) -> None:
-    """Take a remapping rule in the old form, outside ``--ros-args``."""
+    """Read a remapping rule in the old form, outside of ``--ros-args``."""
     if not is_rule(argument):
         return
     found.remap_rules.append(parse_rule(argument))
@@ -198,7 +198,7 @@ def _read_log_level(value: str, found: Arguments) -> None:
 
 
 def _read_enclave(_value: str, _found: Arguments) -> None:
-    """Take the name of a security enclave: nothing is secured here, nor on most ROS 2 machines."""
+    """Ignore the name of a security enclave: the model has no security."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,4 +1,4 @@
-"""Contexts: what ``rclpy.init`` begins and ``rclpy.shutdown`` ends."""
+"""Contexts, which ``rclpy.init`` initialises and ``rclpy.shutdown`` ends."""
 
 from __future__ import annotations
 
@@ -21,28 +21,28 @@ from sim.ros.middleware.process import Process, current_process
 
 ENDED = "the given context is not valid, either rcl_init() was not called or rcl_shutdown() was called."
 NODE_ENDED = "rcl node's context is invalid"
-"""Why rcl refuses something in a context that has ended, or to a node of it."""
+"""rcl's messages for a context that has ended, and for a node of such a context."""
 _NO_INIT = "rclpy.init() has not been called"
 
 
 class _EndCallback(NamedTuple):
-    """Something to call when a context ends; ``by_signal`` tells whether also when a signal ends it."""
+    """A callback for the end of a context; ``by_signal``: also when a signal ends the context."""
 
     get: Callable[[], Callable[[], None] | None]
     by_signal: bool
 
 
-class _Begun:
-    """The contexts of a process that have begun and not ended."""
+class _ActiveContexts:
+    """The contexts of a process that are initialised and have not ended."""
 
     def __init__(self) -> None:
         self.contexts: list[ref[Context]] = []
 
 
 class Context:
-    """One program's stay on the network. Thread-safe.
+    """rclpy's context: a program's connection to the network. Thread-safe.
 
-    It belongs to the process that makes it; one that is given a host or a probe is a process of its own.
+    It belongs to the process that creates it; with a host or a probe it gets a process of its own.
     """
 
     def __init__(self, *, host: Host | None = None, probe: Probe | None = None) -> None:
@@ -58,12 +58,12 @@ class Context:
         self._end_callbacks: list[_EndCallback] = []
 
     def init(self, args: Sequence[str] | None = None, *, domain_id: int | None = None) -> None:
-        """Begin; ``args`` None means the program's own arguments.
+        """Initialise the context; ``args`` None means the program's own arguments.
 
         Raises:
-            RuntimeError: it was called before, or the domain id is negative.
-            RCLError, UnknownROSArgsError: a ROS argument cannot be read, or is none; or ``ROS_DOMAIN_ID``,
-                which counts without a ``domain_id``, is no number.
+            RuntimeError: ``init`` was called before, or the domain id is negative.
+            RCLError, UnknownROSArgsError: a ROS argument cannot be read, or is unknown; or ``ROS_DOMAIN_ID``,
+                which is used without a ``domain_id``, is not a number.
         """
         if domain_id is not None and domain_id < 0:
             raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
@@ -77,8 +77,8 @@ class Context:
             self.arguments = arguments
             self._domain_id = domain
             self._network = self.host.network_of(domain)
-            begun = self.process.keep(_Begun)
-            begun.contexts = [*_living(begun), ref(self)]
+            active = self.process.local(_ActiveContexts)
+            active.contexts = [*_living(active), ref(self)]
         arguments.configure_logging()
 
     def _domain_of_environment(self) -> int:
@@ -87,23 +87,23 @@ class Context:
 
     @property
     def handle(self) -> Handle:
-        """What keeps it from ending while it is used."""
+        """A handle that keeps the context alive while it is used."""
         return Handle(self)
 
     @property
     def destroyed(self) -> bool:
-        """Whether it has ended, or not begun."""
+        """Whether the context has ended, or is not initialised yet."""
         return not self._valid
 
     def destroy(self) -> None:
-        """End, if that has not been done."""
+        """End the context, unless it has ended."""
         self.try_shutdown()
 
     def get_domain_id(self) -> int:
-        """The domain whose nodes this context's nodes see.
+        """The id of the context's domain.
 
         Raises:
-            RuntimeError: it has not begun.
+            RuntimeError: the context is not initialised.
         """
         if not self._initialized:
             raise RuntimeError("Context must be initialized before it can have a domain id")
@@ -111,19 +111,19 @@ class Context:
 
     @property
     def network(self) -> Network:
-        """The network of its domain; before it begins, that of the default domain."""
+        """The network of the context's domain; before ``init``, that of the default domain."""
         return self._network
 
     def ok(self) -> bool:
-        """Whether it has begun and not ended."""
+        """Whether the context is initialised and has not ended."""
         return self._valid
 
     def shutdown(self) -> None:
-        """End: every executor of this context stops spinning.
+        """End the context: all its executors stop spinning.
 
         Raises:
-            RuntimeError: it had not begun.
-            RCLError: it has ended already.
+            RuntimeError: the context is not initialised.
+            RCLError: the context has ended already.
         """
         with self.host.lock:
             if not self._initialized:
@@ -141,13 +141,13 @@ class Context:
             _call(each)
 
     def _end(self) -> list[_EndCallback]:
-        """End, and return what is to be called then. With the host's lock held."""
+        """End the context, and return the callbacks to call. Called with the host's lock held."""
         self._valid = False
         callbacks, self._end_callbacks = self._end_callbacks, []
         return callbacks
 
     def _end_by_signal(self) -> None:
-        """End as rclpy's signal handler does it: what waits is woken, and nobody else is told."""
+        """End the context as rclpy's signal handler does: only waiting code is notified."""
         with self.host.lock:
             callbacks = self._end() if self._valid else []
         for each in callbacks:
@@ -155,22 +155,22 @@ class Context:
                 _call(each)
 
     def try_shutdown(self) -> None:
-        """End, if that has not been done."""
+        """End the context, unless it has ended."""
         if self._valid:
             self.shutdown()
 
     def on_shutdown(self, callback: Callable[[], None]) -> None:
-        """Have ``callback`` run when it is shut down, though not by a signal; bound methods are held weakly.
+        """Call ``callback`` at a shutdown, but not at a signal; bound methods are held weakly.
 
         Raises:
-            TypeError: it cannot be called.
+            TypeError: ``callback`` is not callable.
         """
         if not callable(callback):
             raise TypeError("callback should be a callable, got {}", type(callback))
         self._call_at_end(callback, by_signal=False)
 
     def wake_at_end(self, callback: Callable[[], None]) -> None:
-        """Have ``callback``, a bound method held weakly, run however it ends."""
+        """Call ``callback``, a bound method that is held weakly, at every end of the context."""
         self._call_at_end(callback, by_signal=True)
 
     def _call_at_end(self, callback: Callable[[], None], *, by_signal: bool) -> None:
@@ -184,8 +184,8 @@ class Context:
     def _forget(self, reference: WeakMethod[Any]) -> None:
         self._end_callbacks = [each for each in self._end_callbacks if each.get is not reference]
 
-    def require_begun(self, refused: str) -> None:
-        """Raise RuntimeError or TypeError, as the release does, before ``init``; RCLError after the end."""
+    def require_initialized(self, refused: str) -> None:
+        """Raise RuntimeError or TypeError (by the release) before ``init``, and RCLError after the end."""
         if self._initialized:
             self.require_ok(refused)
             return
@@ -194,7 +194,7 @@ class Context:
         raise TypeError(f"'NoneType' object does not support the context manager protocol: {_NO_INIT}")
 
     def require_ok(self, refused: str, reason: str = ENDED) -> None:
-        """Raise RCLError with what rcl refuses, and why, unless it has begun and not ended."""
+        """Raise RCLError with the refused action and the reason, unless the context is ``ok``."""
         if not self._valid:
             raise RCLError(f"{refused}: {reason}")
 
@@ -208,15 +208,15 @@ class Context:
 
 
 def end_contexts_by_signal(process: Process) -> None:
-    """End every context of a process as rclpy's signal handler does it."""
-    for reference in tuple(process.keep(_Begun).contexts):
+    """End all contexts of a process as rclpy's signal handler does."""
+    for reference in tuple(process.local(_ActiveContexts).contexts):
         context = reference()
         if context is not None:
             context._end_by_signal()
 
 
-def _living(begun: _Begun) -> list[ref[Context]]:
-    return [each for each in begun.contexts if (context := each()) is not None and context.ok()]
+def _living(active: _ActiveContexts) -> list[ref[Context]]:
+    return [each for each in active.contexts if (context := each()) is not None and context.ok()]
 
 
 def _always(callback: Callable[[], None]) -> Callable[[], Callable[[], None]]:

@@ -1,8 +1,8 @@
 """Signals that end a program's contexts: SIGINT (Ctrl-C) and SIGTERM.
 
-Where the model is a plain library, real handlers are installed, as rclpy does it; they end the contexts and
-then do what was to happen before, which for Ctrl-C is a ``KeyboardInterrupt`` in the main thread. In an
-engine, which hosts several programs, whoever sends a program a signal calls ``deliver_sigint``.
+If the model is used as a plain library, real handlers are installed, as in rclpy; they end the contexts and
+then call the former handler, which for Ctrl-C raises ``KeyboardInterrupt`` in the main thread. In an
+engine, which hosts several programs, the sender of a signal calls ``deliver_sigint``.
 """
 
 import signal
@@ -25,7 +25,7 @@ __all__ = [
 
 
 class SignalHandlerOptions(IntFlag):
-    """The signals that rclpy may be asked to handle."""
+    """The signals that rclpy handles."""
 
     NO = 0
     SIGINT = 1
@@ -37,7 +37,7 @@ _SIGNALS = {SignalHandlerOptions.SIGINT: signal.SIGINT, SignalHandlerOptions.SIG
 
 
 class _Handling:
-    """The signals that a process has handled."""
+    """The signals that a process handles, and the installed handlers."""
 
     def __init__(self) -> None:
         self.options = SignalHandlerOptions.NO
@@ -54,30 +54,30 @@ class _Handler:
         self._before: Any = signal.signal(self._number, self.handle)
 
     def handle(self, number: int, frame: FrameType | None) -> None:
-        """End the contexts, if that is still wanted, and do what was to happen before."""
-        if self._option in self._process.keep(_Handling).options:
+        """End the contexts, if the process still handles the signal, and call the former handler."""
+        if self._option in self._process.local(_Handling).options:
             end_contexts_by_signal(self._process)
         if callable(self._before):
             self._before(number, frame)
 
     def remove(self) -> None:
-        """Put back what was there before, unless the program has put something else there."""
+        """Restore the former handler, unless the program has installed another one."""
         if signal.getsignal(self._number) == self.handle:
             signal.signal(self._number, self._before)
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
-    """Handle these signals too from now on.
+    """Handle these signals, too.
 
-    Outside the main thread Python lets nobody install a handler: there the choice is only kept.
+    Python installs handlers only in the main thread; on other threads only the options are stored.
 
     Raises:
-        TypeError: ``options`` is no ``SignalHandlerOptions``.
+        TypeError: ``options`` is not a ``SignalHandlerOptions``.
     """
     if not isinstance(options, SignalHandlerOptions):
         raise TypeError(f"options must be a SignalHandlerOptions, not {options!r}")
     process = current_process()
-    own = process.keep(_Handling)
+    own = process.local(_Handling)
     if process.host.takes_signals and _in_main_thread():
         for each in _SIGNALS:
             if each in options and each not in own.options:
@@ -86,8 +86,8 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
 
 
 def uninstall_signal_handlers() -> None:
-    """Handle no signal any more."""
-    own = current_process().keep(_Handling)
+    """Stop handling signals."""
+    own = current_process().local(_Handling)
     own.options = SignalHandlerOptions.NO
     if _in_main_thread():
         handlers, own.handlers = own.handlers, []
@@ -97,25 +97,24 @@ def uninstall_signal_handlers() -> None:
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
     """The signals that are handled."""
-    return current_process().keep(_Handling).options
+    return current_process().local(_Handling).options
 
 
 def deliver_sigint(process: Process) -> bool:
-    """Do what rclpy does at SIGINT: end every context of a process, if it handles that signal; whether so.
+    """Do what rclpy does at SIGINT: if a process handles the signal, end all its contexts; return whether.
 
-    Any thread may call it. What happens beside that to a Python program, ``KeyboardInterrupt`` in its main
-    thread, is the caller's part.
+    Thread-safe. The caller has to raise the ``KeyboardInterrupt`` of Python in the program's main thread.
     """
     return _deliver(SignalHandlerOptions.SIGINT, process)
 
 
 def deliver_sigterm(process: Process) -> bool:
-    """Do what rclpy does at SIGTERM: as ``deliver_sigint``; where False, it would kill the process."""
+    """Do what rclpy does at SIGTERM, as ``deliver_sigint``; if False, the signal would kill the process."""
     return _deliver(SignalHandlerOptions.SIGTERM, process)
 
 
 def _deliver(option: SignalHandlerOptions, process: Process) -> bool:
-    handled = option in process.keep(_Handling).options
+    handled = option in process.local(_Handling).options
     if handled:
         end_contexts_by_signal(process)
     return handled

@@ -1,4 +1,4 @@
-"""The default context, and small questions about a program's surroundings."""
+"""rclpy's utilities: the default context, ROS arguments, threads and timeouts."""
 
 import os
 import sys
@@ -12,7 +12,7 @@ from sim.ros.naming.remapping import is_rule
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
-    """The context that functions use when they are given none; a new one once the last has ended."""
+    """The context that functions use by default; a new one after the last one has ended."""
     process = current_process()
     context = Context() if process.default_context is None else cast("Context", process.default_context)
     process.default_context = None if shutting_down else context
@@ -20,7 +20,7 @@ def get_default_context(*, shutting_down: bool = False) -> Context:
 
 
 def ok(*, context: Context | None = None) -> bool:
-    """Whether the context has begun and not ended."""
+    """Whether the context is initialised and has not ended."""
     return (get_default_context() if context is None else context).ok()
 
 
@@ -28,20 +28,21 @@ def shutdown(*, context: Context | None = None) -> None:
     """End the context.
 
     Raises:
-        RuntimeError: it has not begun.
+        RuntimeError: the context is not initialised.
     """
     (get_default_context(shutting_down=True) if context is None else context).shutdown()
 
 
 def try_shutdown(*, context: Context | None = None) -> None:
-    """End the context, if it has begun and not ended."""
+    """End the context, if it is initialised and has not ended."""
     (get_default_context(shutting_down=True) if context is None else context).try_shutdown()
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
-    """The arguments without those for ROS; None: ``sys.argv``.
+    """The arguments (None: ``sys.argv``) without ROS arguments.
 
-    Those are what stands between ``--ros-args`` and ``--`` (or the end), and remapping rules in the old form.
+    ROS arguments are those between ``--ros-args`` and ``--`` (or the end), and remapping rules in the old
+    form.
     """
     kept = []
     inside = False
@@ -56,17 +57,17 @@ def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
 
 
 def get_rmw_implementation_identifier() -> str:
-    """The name of what carries the messages."""
+    """The name of the middleware."""
     return "cbtui"
 
 
 def get_available_threads() -> int:
-    """How many CPUs this process may use, else 2."""
+    """The number of CPUs that this process may use, or 2 if that is unknown."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 2
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
-    """Nanoseconds of a timeout, rounded up: -1 (for ever) for None or a negative one."""
+    """The nanoseconds of a timeout, rounded up; -1 (for ever) for None or a negative timeout."""
     if timeout_sec is None or timeout_sec < 0:
         return -1
     return wait_ns(float(timeout_sec))

@@ -1,1 +1,1 @@
-"""What a node has: publishers, subscriptions, timers, services, clients, guard conditions, events."""
+"""The entities of a node: publishers, subscriptions, timers, services, clients, guard conditions, events."""

@@ -1,7 +1,9 @@
-"""What clients and services have in common: their service's name, type and quality, and introspection."""
+"""The common part of clients and services: service name and type, profile, queue and introspection."""
 
 from __future__ import annotations
 
+from collections import deque
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from sim.interfaces import type_name
@@ -22,7 +24,10 @@ class ClientOrService:
     node: OwnerNode
     name: str
     depth: int
+    ready_since: int
+    become_idle: Callable[[], None]
     _introspection: ServiceIntrospection | None = None
+    _queue: deque[Any]
 
     def _set_service(self, srv_type: Any, srv_name: str | None, qos_profile: QoSProfile) -> None:
         self.srv_type = srv_type
@@ -31,11 +36,25 @@ class ClientOrService:
         self.qos_profile = qos_profile
         self.depth = qos_profile.queue_length or 0
         self._probe = self.node.context.probe
+        self._queue = deque()
 
     @property
     def service_name(self) -> str:
         """The service's full name."""
         return self.name
+
+    @property
+    def queued(self) -> int:
+        """The number of requests or replies in the queue."""
+        return len(self._queue)
+
+    def _take_oldest(self, now: int) -> Any:
+        oldest = self._queue.popleft()
+        if self._queue:
+            self.ready_since = now
+        else:
+            self.become_idle()
+        return oldest
 
     def configure_introspection(
         self,
@@ -51,7 +70,7 @@ class ClientOrService:
                 self._introspection = ServiceIntrospection(self, clock, service_event_qos_profile, chosen)
 
     def stop_introspection(self) -> None:
-        """Publish no more steps. With the host's lock held."""
+        """Stop publishing steps. Called with the host's lock held."""
         if self._introspection is not None:
             self._introspection.stop()
             self._introspection = None

@@ -1,6 +1,6 @@
-"""The handles of subscriptions, clients and services: by them a program takes and sends things itself.
+"""The handles of subscriptions, clients and services, with which a program takes and sends data itself.
 
-What is taken here, no executor takes any more.
+An executor does not get data that were taken here.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RequestId:
-    """Which request an answer belongs to; a service answers ``request`` by it."""
+    """The id of a request; a service sends the response to ``request``."""
 
     sequence_number: int
     request: Request | None = None
@@ -29,7 +29,7 @@ class RequestId:
 
 @dataclass(frozen=True, slots=True)
 class ServiceInfo:
-    """What comes with a request or a response; the timestamps are nanoseconds since 1970."""
+    """The header of a request or a response; the timestamps are nanoseconds since 1970."""
 
     source_timestamp: int
     received_timestamp: int
@@ -40,7 +40,7 @@ class SubscriptionHandle(Handle):
     """The handle of a subscription."""
 
     def take_message(self, msg_type: type, raw: bool) -> tuple[Any, MessageInfo] | None:
-        """Take the oldest message, as bytes if ``raw``, with its info; None without one."""
+        """Take the oldest message (``raw``: as bytes) with its info; None without a message."""
         subscription: Subscription = self.owner
         host = subscription.node.context.host
         with self, host.lock:
@@ -61,21 +61,21 @@ class ClientHandle(Handle):
     """The handle of a client."""
 
     def service_server_is_available(self) -> bool:
-        """Whether somebody offers the service."""
+        """Whether the service is offered."""
         client: Client = self.owner
         return client.service_is_ready()
 
     def send_request(self, request: Any) -> int:
-        """Send a request; returns its sequence number.
+        """Send a request, and return its sequence number.
 
         Raises:
-            TypeError: the request is not of the service's type.
+            TypeError: the request does not have the service's type.
         """
         client: Client = self.owner
         return client._send(request)[0]
 
     def take_response(self, response_type: type) -> tuple[ServiceInfo | None, Any]:
-        """Take the oldest response, after what tells its request; None twice without one."""
+        """Take the oldest response: its header, then the response; None for both without a response."""
         client: Client = self.owner
         host = client._host
         with self, host.lock:
@@ -92,7 +92,7 @@ class ServiceHandle(Handle):
     """The handle of a service."""
 
     def service_take_request(self, request_type: type) -> tuple[Any, ServiceInfo | None]:
-        """Take the oldest request, and the header to answer it by; None twice without one."""
+        """Take the oldest request: the request, then its header; None for both without a request."""
         service: Service = self.owner
         host = service.node.context.host
         with self, host.lock:
@@ -104,10 +104,10 @@ class ServiceHandle(Handle):
         return request.data, ServiceInfo(arrived, arrived, RequestId(request.call, request))
 
     def service_send_response(self, response: Any, header: ServiceInfo | RequestId) -> None:
-        """Answer the request of that header, or of its request id.
+        """Send a response to the request of a header or request id.
 
         Raises:
-            TypeError: the response is not of the service's type, or the header came with no request.
+            TypeError: the response does not have the service's type, or the header is not that of a request.
         """
         service: Service = self.owner
         with self:
@@ -115,10 +115,10 @@ class ServiceHandle(Handle):
 
 
 def answered(header: object) -> Request:
-    """The request that a program names by the header it came with, or by its id.
+    """The request of a header or request id.
 
     Raises:
-        TypeError: nothing of the kind came with a request.
+        TypeError: the object is not the header or id of a request.
     """
     identity = header.request_id if isinstance(header, ServiceInfo) else header
     if not isinstance(identity, RequestId) or identity.request is None:

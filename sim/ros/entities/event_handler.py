@@ -1,7 +1,7 @@
 """Events of publishers and subscriptions: matches made, lost or refused, deadlines missed, liveliness lost.
 
-No message is ever lost on the way, so the event that tells of it never comes; a full queue that drops its
-oldest is not meant by it, nor is a message whose lifespan is over.
+The simulated network never loses a message, so the "message lost" event never occurs. It does not mean a
+message that a full queue drops, or whose lifespan is over.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from sim.ros.logging.logger import get_logger
 from sim.ros.qos.policies import QoSPolicyKind
-from sim.ros.scheduling.entity import NEVER, Entity, OwnerNode, Taken
+from sim.ros.scheduling.entity import NEVER, Entity, OwnerNode, TakenData
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ EventCallback = Callable[[Any], Any]
 
 
 class QoSPublisherEventType(IntEnum):
-    """What a publisher can tell of."""
+    """The events of a publisher."""
 
     RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
     RCL_PUBLISHER_LIVELINESS_LOST = 1
@@ -35,7 +35,7 @@ class QoSPublisherEventType(IntEnum):
 
 
 class QoSSubscriptionEventType(IntEnum):
-    """What a subscription can tell of."""
+    """The events of a subscription."""
 
     RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
     RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
@@ -46,34 +46,34 @@ class QoSSubscriptionEventType(IntEnum):
 
 
 class UnsupportedEventTypeError(RuntimeError):
-    """An event that what carries the messages does not know; never raised here."""
+    """The middleware does not support an event; never raised here."""
 
     __module__ = "rclpy.event_handler"
 
 
 @dataclass(slots=True)
 class CountedInfo:
-    """How often something happened, and how often since the last event taken."""
+    """The number of occurrences, in total and since the last take."""
 
     total_count: int = 0
     total_count_change: int = 0
 
     def count(self, times: int = 1) -> None:
-        """It happened again."""
+        """Count further occurrences."""
         self.total_count += times
         self.total_count_change += times
 
 
 @dataclass(slots=True)
 class MatchedInfo(CountedInfo):
-    """How many matches there were and are; the changes count from the last event taken."""
+    """The number of matches, in total and now; the changes count from the last take."""
 
     current_count: int = 0
     current_count_change: int = 0
 
 
 class _EventPolicyKind(IntEnum):
-    """Base of the kinds of policy as events name them, equal to those of ``QoSPolicyKind``."""
+    """Base of the policy kinds in events, whose numbers equal those of ``QoSPolicyKind``."""
 
     __str__ = Enum.__str__
     __format__ = Enum.__format__
@@ -85,26 +85,26 @@ rmw_qos_policy_kind_t: Any = cast("Any", _EventPolicyKind)("rmw_qos_policy_kind_
 
 @dataclass(slots=True)
 class IncompatibleQoSInfo(CountedInfo):
-    """How many matches failed for their quality of service, the last by which policy."""
+    """The number of matches that failed for their QoS, and the policy of the last failure."""
 
     last_policy_kind: int = rmw_qos_policy_kind_t.RMW_QOS_POLICY_INVALID
 
 
 class IncompatibleTypeInfo(CountedInfo):
-    """How many matches failed for the type of their messages."""
+    """The number of matches that failed because of the message type."""
 
 
 class DeadlineMissedInfo(CountedInfo):
-    """How many deadlines passed without a message."""
+    """The number of deadlines that passed without a message."""
 
 
 class LivelinessLostInfo(CountedInfo):
-    """How often a publisher did not say in time that it lives."""
+    """How often a publisher did not assert its liveliness in time."""
 
 
 @dataclass(slots=True)
 class LivelinessChangedInfo:
-    """How many publishers of a topic are alive, and how many are not."""
+    """The numbers of publishers of a topic that are alive and not alive."""
 
     alive_count: int = 0
     not_alive_count: int = 0
@@ -113,7 +113,7 @@ class LivelinessChangedInfo:
 
 
 class MessageLostInfo(CountedInfo):
-    """How many messages were lost on the way."""
+    """The number of messages that the network lost."""
 
 
 QoSRequestedDeadlineMissedInfo = QoSOfferedDeadlineMissedInfo = DeadlineMissedInfo
@@ -125,10 +125,10 @@ QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo = IncompatibleQo
 
 
 class EventHandler(Entity):
-    """Calls back with the state of one kind of event once it has changed.
+    """Calls the program back when the state of one kind of event has changed.
 
-    Some events come because nothing happens until a moment: ``count_until`` counts them, at the
-    moment that ``wait_until`` was told.
+    Some events occur because nothing happens until a time: ``count_until`` counts them at the
+    time given to ``wait_until``.
     """
 
     kind = EntityKind.WAITABLE
@@ -142,50 +142,46 @@ class EventHandler(Entity):
         self.info = info
 
     def changed(self) -> None:
-        """The state has changed. With the host's lock held."""
+        """The state has changed. Called with the host's lock held."""
         self.become_ready(self.node.context.host.clock.now())
 
-    def shown_callback(self) -> EventCallback:
-        """The callback."""
-        return self.callback
-
     def wait_until(self, due: int | None) -> None:
-        """Look at ``due``; None: there is nothing to wait for."""
+        """Become ready at ``due`` nanoseconds; None: never."""
         self.due = NEVER if due is None else due
         if self.due < NEVER and not self.destroyed:
             self.node._agenda.timer_set(self)
 
     def count_until(self, now: int) -> None:
-        """Count what came to pass until now, and set when to look next."""
+        """Count the events up to ``now``, and set when the handler is due next."""
 
-    def take(self, now: int) -> Taken | None:
-        """Take the state as it is now; its changes count anew."""
+    def take(self, now: int) -> TakenData | None:
+        """Take the present state, and reset its changes."""
         pending = self.pending
         self.count_until(now)
         if not pending:
             return None
-        taken = Taken(self.take_info(), 0, now - self.ready_since, 0)
+        taken = TakenData(self.take_info(), 0, now - self.ready_since, 0)
         self.wait_until(self.due)
         return taken
 
     def take_info(self) -> Any:
-        """Take the state, whether it has changed or not; its changes count anew."""
+        """Take the state, changed or not, and reset its changes."""
         info = replace(self.info)
         for each in fields(self.info):
             if each.name.endswith("_change"):
                 setattr(self.info, each.name, 0)
-        self.nothing_left()
+        self.become_idle()
         return info
 
-    async def invoke(self, taken: Taken) -> None:
-        """Run the callback on the state."""
+    async def invoke(self, taken: TakenData) -> None:
+        """Call the callback with the state."""
         outcome = self.callback(taken.data)
         if inspect.iscoroutine(outcome):
             await outcome
 
 
 class DefaultEventHandler(EventHandler):
-    """Logs a warning for an event for which the program has no callback."""
+    """Logs a warning for an event without a callback of the program."""
 
     traced = False
 
@@ -199,7 +195,7 @@ class DefaultEventHandler(EventHandler):
 
 @dataclass(kw_only=True, eq=False, repr=False)
 class EventCallbacks:
-    """Base of the callbacks for events; without one for it, a match that is refused is warned of,
+    """The callbacks for events. Without a callback a warning is logged for a refused match,
     unless ``use_default_callbacks`` is false.
     """
 
@@ -212,18 +208,18 @@ class EventCallbacks:
 
 
 class PublisherEventCallbacks(EventCallbacks):
-    """What a program wants to hear of a publisher."""
+    """The callbacks for events of a publisher."""
 
 
 @dataclass(kw_only=True, eq=False, repr=False)
 class SubscriptionEventCallbacks(EventCallbacks):
-    """What a program wants to hear of a subscription; ``message_lost`` is never called, for none is lost."""
+    """The callbacks for events of a subscription; ``message_lost`` is never called."""
 
     message_lost: EventCallback | None = None
 
 
 class EndpointEvents:
-    """The matches of one publisher or subscription. All is called with the host's lock held."""
+    """The event handlers of one publisher or subscription. Use it with the host's lock held."""
 
     def __init__(
         self, node: OwnerNode, topic: str, callback_group: CallbackGroup, callbacks: EventCallbacks | None
@@ -231,15 +227,15 @@ class EndpointEvents:
         wanted = EventCallbacks() if callbacks is None else callbacks
         self.handlers: list[EventHandler] = []
         self._node = node
-        self._told: defaultdict[type, list[EventHandler]] = defaultdict(list)
+        self._listeners: defaultdict[type, list[EventHandler]] = defaultdict(list)
 
         def handle(callback: EventCallback | None, info: Any) -> None:
             if callback is not None:
-                self._add_told(EventHandler(node, topic, callback, callback_group, info))
+                self._add_listening(EventHandler(node, topic, callback, callback_group, info))
 
         def handle_or_warn(callback: EventCallback | None, info: Any) -> None:
             if callback is None and wanted.use_default_callbacks:
-                self._add_told(DefaultEventHandler(node, topic, callback_group, info))
+                self._add_listening(DefaultEventHandler(node, topic, callback_group, info))
             else:
                 handle(callback, info)
 
@@ -248,25 +244,25 @@ class EndpointEvents:
         handle(wanted.matched, MatchedInfo())
 
     def add(self, handler: EventHandler) -> None:
-        """One handler more."""
+        """Add a handler."""
         self.handlers.append(handler)
         self._node._agenda.add(handler)
 
-    def tell(self, handler: EventHandler) -> None:
-        """Tell ``handler`` too of matches made and lost, or refused, as its info says."""
-        self._told[type(handler.info)].append(handler)
+    def add_listener(self, handler: EventHandler) -> None:
+        """Report to ``handler`` the events of its info's type."""
+        self._listeners[type(handler.info)].append(handler)
 
-    def tell_no_more(self, handler: EventHandler) -> None:
-        """Tell ``handler`` of nothing any more."""
-        self._told[type(handler.info)].remove(handler)
+    def remove_listener(self, handler: EventHandler) -> None:
+        """Stop reporting events to ``handler``."""
+        self._listeners[type(handler.info)].remove(handler)
 
-    def _add_told(self, handler: EventHandler) -> None:
+    def _add_listening(self, handler: EventHandler) -> None:
         self.add(handler)
-        self.tell(handler)
+        self.add_listener(handler)
 
     def match_made(self) -> None:
-        """One match more."""
-        for each in self._told[MatchedInfo]:
+        """Count a new match."""
+        for each in self._listeners[MatchedInfo]:
             info = each.info
             info.count()
             info.current_count += 1
@@ -274,26 +270,26 @@ class EndpointEvents:
             each.changed()
 
     def match_lost(self) -> None:
-        """One match less."""
-        for each in self._told[MatchedInfo]:
+        """Count a lost match."""
+        for each in self._listeners[MatchedInfo]:
             info = each.info
             info.current_count -= 1
             info.current_count_change -= 1
             each.changed()
 
     def qos_refused(self, policy: str, warning: str) -> None:
-        """No match for ``policy``; without a callback for that, the warning is given while spinning."""
-        for each in self._told[IncompatibleQoSInfo]:
+        """A match failed because of ``policy``; without a callback the warning is logged while spinning."""
+        for each in self._listeners[IncompatibleQoSInfo]:
             each.info.last_policy_kind = rmw_qos_policy_kind_t(QoSPolicyKind[policy])
             _refused(each, warning)
 
     def type_refused(self, warning: str) -> None:
-        """No match for the type of the messages; the warning as for ``qos_refused``."""
-        for each in self._told[IncompatibleTypeInfo]:
+        """A match failed because of the message type; the warning is logged as for ``qos_refused``."""
+        for each in self._listeners[IncompatibleTypeInfo]:
             _refused(each, warning)
 
     def destroy(self) -> None:
-        """Tell of nothing any more."""
+        """Remove all handlers."""
         for each in self.handlers:
             each.destroy()
 

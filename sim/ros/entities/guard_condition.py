@@ -1,4 +1,4 @@
-"""Guard conditions: callbacks that a program sets off itself."""
+"""Guard conditions: callbacks that a program triggers itself."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Self
 
 from sim.ros.context.utilities import get_default_context
 from sim.ros.handle import Handle
-from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
+from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
 from sim.ros.scheduling.watched import BareEntity, Watcher
 from sim.trace.events import EntityKind
 
@@ -17,29 +17,29 @@ if TYPE_CHECKING:
 
 
 class BareGuardCondition(BareEntity):
-    """A flag that any thread raises, and that waiting for it takes down."""
+    """A flag without a callback. Any thread may set it; a wait clears it."""
 
     def __init__(self, context: Handle) -> None:
         owner: Context = context.owner
         self._host = owner.host
 
     def trigger_guard_condition(self) -> None:
-        """Raise it."""
+        """Set the flag."""
         with self._host.lock:
             self.become_ready(self._host.clock.now())
 
     def look(self, watcher: Watcher, now: int) -> bool:
-        """Whether it is raised; it no longer is afterwards. With the host's lock held."""
+        """Whether the flag is set; this clears it. Called with the host's lock held."""
         ready = super().look(watcher, now)
         self.pending = False
         return ready
 
 
 class GuardCondition:
-    """A flag that any thread raises, and its callback.
+    """A flag with a callback. Any thread may set it.
 
-    One that a program makes itself belongs to no node: nobody runs the callback, but a wait set may wait for
-    the handle. Those that executors serve come from ``Node.create_guard_condition``.
+    A guard condition that a program creates itself belongs to no node: its callback never runs, but a wait
+    set may wait for its handle. Executors serve those of ``Node.create_guard_condition``.
     """
 
     def __init__(
@@ -55,16 +55,16 @@ class GuardCondition:
 
     @property
     def handle(self) -> Handle:
-        """What keeps it alive while it is used."""
+        """A handle that keeps the flag alive while it is used."""
         return Handle(self._flag)
 
     def trigger(self) -> None:
-        """Raise the flag; InvalidHandle if it was destroyed."""
+        """Set the flag; InvalidHandle if it was destroyed."""
         with self._flag:
             self._flag.trigger_guard_condition()
 
     def destroy(self) -> None:
-        """Let it be triggered no more."""
+        """Destroy the flag: ``trigger`` raises InvalidHandle from now on."""
         self._flag.destroy()
 
     def __enter__(self) -> Self:
@@ -75,7 +75,7 @@ class GuardCondition:
 
 
 class NodeGuardCondition(Entity, GuardCondition):
-    """Calls back once after ``trigger``, however often it was triggered before an executor saw that."""
+    """A guard condition of a node: its callback runs once, even after several triggers before that."""
 
     kind = EntityKind.GUARD
     rank = 2
@@ -89,30 +89,26 @@ class NodeGuardCondition(Entity, GuardCondition):
         self._triggered_again = False
 
     def trigger(self) -> None:
-        """Have the callback run; InvalidHandle if it was destroyed."""
+        """Let the executor run the callback; InvalidHandle if the guard condition was destroyed."""
         self.require_alive()
         with self._host.lock:
             self._triggered_again = True
             self.become_ready(self._host.clock.now())
 
-    def noticed(self) -> None:
-        """A snapshot names it: from here on a trigger has it run once more."""
+    def on_snapshot(self) -> None:
+        """A snapshot includes the guard condition: a later trigger makes it run once more."""
         self._triggered_again = False
 
-    def shown_callback(self) -> Callable[..., Any] | None:
-        """The callback."""
-        return self.callback
-
-    def take(self, now: int) -> Taken | None:
-        """Take the trigger back."""
+    def take(self, now: int) -> TakenData | None:
+        """Take the trigger."""
         if not self.pending:
             return None
         late = now - self.ready_since
-        self.nothing_left()
+        self.become_idle()
         if self._triggered_again:
             self.become_ready(now)
-        return Taken(None, 0, late, 0)
+        return TakenData(None, 0, late, 0)
 
-    def invoke(self, taken: Taken) -> Any:
+    def invoke(self, taken: TakenData) -> Any:
         """Run the callback."""
         return None if self.callback is None else self.callback()

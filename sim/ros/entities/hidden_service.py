@@ -1,4 +1,4 @@
-"""Services that a node offers by itself: no part of a learner's program, so the trace does not show them."""
+"""Services that every node offers by itself; the trace does not show them."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def offer_hidden(
     qos_profile: QoSProfile,
     callback_group: CallbackGroup | None = None,
 ) -> Service:
-    """Have a node offer a hidden service, by default in its default group."""
+    """Offer a hidden service on a node, by default in the node's default group."""
     group = node.default_callback_group if callback_group is None else callback_group
     name = node.resolve_service_name(srv_name)
     with node.context.host.lock:

@@ -1,4 +1,4 @@
-"""What a subscription can tell of a message beside its data."""
+"""The info of a received message."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any, TypedDict
 
 
 class MessageInfo(TypedDict):
-    """When a message was sent and received (nanoseconds since 1970), and its numbers in both rows."""
+    """When a message was sent and received (nanoseconds since 1970), and its two sequence numbers."""
 
     source_timestamp: int
     received_timestamp: int
@@ -17,15 +17,15 @@ class MessageInfo(TypedDict):
 
 
 def wants_message_info(callback: Callable[..., Any]) -> bool:
-    """Whether a subscription's callback takes the message's info as well.
+    """Whether a subscription's callback takes the message and its info.
 
     Raises:
-        RuntimeError: it takes neither one argument nor two, or cannot be called.
+        RuntimeError: the callback is not callable with one or two arguments.
     """
     if callable(callback):
         try:
             signature = inspect.signature(callback)
-        except ValueError:  # some functions written in C do not tell theirs
+        except ValueError:  # some functions in C have no signature
             return False
         for count in (1, 2):
             try:

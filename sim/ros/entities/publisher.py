@@ -1,4 +1,4 @@
-"""Publishers: what they send is a copy, as over a wire."""
+"""Publishers; they send copies of messages, as a network does."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from sim.ros.scheduling.entity import OwnerNode
 
 MsgType = TypeVar("MsgType")
-"""For the type hints of programs, which import it from here as from rclpy."""
+"""A type variable that programs import for their type hints."""
 
 
 _FOR_EVER = Duration(seconds=-1)
@@ -78,7 +78,7 @@ class Publisher:
             self.node.context.network.join_publisher(self)
 
     def _watch(self, group: CallbackGroup, wanted: EventCallbacks | None) -> DeadlineHandler | None:
-        """Watch what passes with time, as far as there are callbacks; returns who watches deadlines."""
+        """Add handlers for the callbacks on liveliness and deadlines; return the handler of deadlines."""
         if wanted is None:
             return None
         node, topic = self.node, self.topic_name
@@ -93,44 +93,44 @@ class Publisher:
 
     @property
     def lifespan(self) -> int | None:
-        """Nanoseconds after which what was sent expires; None: never."""
+        """Nanoseconds after which messages expire; None: never."""
         return limit(self.qos_profile.lifespan)
 
     @property
     def handle(self) -> Handle:
-        """What keeps it alive while it is used."""
+        """A handle that keeps the publisher alive while it is used."""
         return Handle(self)
 
     @property
     def logger_name(self) -> str:
-        """The name of its node's logger."""
+        """The name of the node's logger."""
         return self.node.get_logger().name
 
     @property
     def event_handlers(self) -> list[EventHandler]:
-        """What calls back for its events."""
+        """The handlers of the publisher's events."""
         return self.events.handlers
 
     def publish(self, msg: Any) -> None:
-        """Send a message, or the bytes of one, to whoever listens.
+        """Send a message, or the bytes of a message, to all matching subscriptions.
 
-        Bytes that hold no such message are sent all the same, and reach only who takes them raw.
+        Bytes that do not encode such a message reach only raw subscriptions.
 
         Raises:
-            TypeError: it is not a message of this publisher's type.
+            TypeError: the message does not have the publisher's type.
             InvalidHandle: the publisher was destroyed.
-            RCLError: its context has ended.
+            RCLError: the context has ended.
         """
         self.send(msg)
 
     def require_usable(self) -> None:
-        """Raise InvalidHandle if it was destroyed, RCLError if its context has ended."""
+        """Raise InvalidHandle if the publisher was destroyed, RCLError if its context has ended."""
         if self.destroyed:
             raise InvalidHandle(DESTROYED)
         self.node.context.require_ok("Failed to publish", _CONTEXT_ENDED)
 
     def send(self, msg: Any) -> int:
-        """Do what ``publish`` does, and return the message's id on the trace."""
+        """Publish a message, and return its id on the trace."""
         copy = self._copy(msg)
         self.require_usable()
         with self._host.lock:
@@ -160,52 +160,52 @@ class Publisher:
         raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
 
     def wait_for_all_acked(self, timeout: Duration = _FOR_EVER) -> bool:
-        """Wait until every reliable subscription has what was sent: always so, since that takes no time."""
+        """True: delivery takes no time, so all subscriptions have the messages."""
         return True
 
     def assert_liveliness(self) -> None:
-        """Tell that it lives, which counts where that has to be done by topic."""
+        """Renew the lease of a publisher with manual liveliness by topic."""
         if self.lease is not None:
             with self._host.lock:
-                self.lease.say(self._host.clock.now())
+                self.lease.renew(self._host.clock.now())
 
     def get_subscription_count(self) -> int:
-        """How many subscriptions it reaches."""
+        """The number of matched subscriptions."""
         return len(self._reached)
 
     def reach(self, subscription: Subscription) -> None:
-        """Send to ``subscription`` from now on. With the host's lock held."""
+        """Start sending to ``subscription``. Called with the host's lock held."""
         self._reached = (*self._reached, subscription)
         self.events.match_made()
-        subscription.found(self)
+        subscription.publisher_matched(self)
 
     def reaches(self, subscription: Subscription) -> bool:
-        """Whether it sends to ``subscription``."""
+        """Whether the publisher sends to ``subscription``."""
         return subscription in self._reached
 
     def forget(self, subscription: Subscription) -> None:
-        """Send to ``subscription`` no more. With the host's lock held."""
+        """Stop sending to ``subscription``. Called with the host's lock held."""
         if self.reaches(subscription):
             self._reached = tuple(each for each in self._reached if each is not subscription)
             self.events.match_lost()
 
     def catch_up(self, subscription: Subscription) -> None:
-        """Give a late subscription what a transient-local publisher kept, if both want that."""
+        """Send the kept messages to a late subscription, if both sides are transient local."""
         if self._kept and subscription.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
             now = self._host.clock.now()
             for delivery in self._kept:
                 if not (isinstance(delivery, ExpiringDelivery) and delivery.expires <= now):
                     subscription.deliver(delivery)
 
-    def of_another_type_than(self, subscription: Subscription) -> None:
-        """Both sides tell that their types differ, when their executors next spin."""
+    def type_differs_from(self, subscription: Subscription) -> None:
+        """Report different types on both sides, when their executors next spin."""
         refused = f"Incompatible type on topic '{self.topic_name}', no messages will be"
         self.events.type_refused(f"{refused} sent to it.")
         subscription.events.type_refused(f"{refused} received from it.")
         self._record_mismatch(subscription, "TYPE")
 
     def incompatible_with(self, subscription: Subscription, policy: str) -> None:
-        """Both sides tell that they do not match, when their executors next spin."""
+        """Report an incompatible policy on both sides, when their executors next spin."""
         self.events.qos_refused(
             policy,
             f"New subscription discovered on topic '{self.topic_name}', requesting incompatible QoS. "
@@ -230,7 +230,7 @@ class Publisher:
             )
 
     def destroy(self) -> None:
-        """Take it off the network; publishing raises from now on."""
+        """Remove the publisher from the network; ``publish`` raises from now on."""
         with self._host.lock:
             if self.destroyed:
                 return
@@ -238,7 +238,7 @@ class Publisher:
             self.node.context.network.leave_publisher(self)
             self.events.destroy()
             for subscription in self._reached:
-                subscription.lost(self)
+                subscription.publisher_lost(self)
 
     def __enter__(self) -> Publisher:
         self.node.context.host.profile.require_with_blocks(self)

@@ -1,7 +1,7 @@
-"""Qualities of service that depend on time: deadlines, leases of liveliness and lifespans.
+"""QoS policies that depend on time: deadlines, liveliness leases and lifespans.
 
-What is due is due in the agenda of the node concerned, as a timer is; who looks late, counts then what came
-to pass meanwhile. All is called with the host's lock held.
+A handler has its due time in its node's agenda, as a timer has. A handler that runs late counts all events up
+to then. Use everything here with the host's lock held.
 """
 
 from __future__ import annotations
@@ -28,18 +28,18 @@ if TYPE_CHECKING:
     from sim.ros.scheduling.entity import OwnerNode
 
 FOR_EVER = Infinite.nanoseconds
-"""The period of a deadline that is not set."""
+"""The period if no deadline is set."""
 
 
 def limit(duration: Duration) -> int | None:
-    """Nanoseconds of a duration in a profile; None for one that is not set or infinite."""
+    """The nanoseconds of a duration in a profile; None if it is not set, or infinite."""
     return duration.nanoseconds if Duration() < duration < Infinite else None
 
 
 class DeadlineHandler(EventHandler):
-    """Counts deadlines that passed without a message, from the first message on.
+    """Counts the deadlines that passed without a message, from the first message on.
 
-    A message at the very moment of a deadline meets it.
+    A message at the exact time of a deadline meets it.
     """
 
     def __init__(
@@ -50,7 +50,7 @@ class DeadlineHandler(EventHandler):
         self._began: int | None = None
 
     def message(self, now: int) -> None:
-        """A message was sent, or came."""
+        """A message was sent or received."""
         if self._began is not None and self._count(now):
             self.become_ready(now)
         self._began = now
@@ -71,9 +71,9 @@ class DeadlineHandler(EventHandler):
 
 
 class Lease:
-    """How long a publisher counts as alive after it last said so.
+    """The liveliness lease of a publisher: it counts as alive for a duration after each renewal.
 
-    ``holder`` hears when it is lost, and each of ``watchers`` when it is lost or regained.
+    ``holder`` is notified when the lease ends, ``watchers`` when it ends or is regained.
     """
 
     def __init__(self, duration: int, now: int) -> None:
@@ -81,17 +81,17 @@ class Lease:
         self.holder: LivelinessLostHandler | None = None
         self.watchers: list[LivelinessChangedHandler] = []
         self._duration = duration
-        self._said = now
+        self._renewed_at = now
 
     @property
     def end(self) -> int | None:
-        """The first moment at which it is over; None if it is over already."""
-        return self._said + self._duration + 1 if self.alive else None
+        """The first time at which the lease is over; None if it is over already."""
+        return self._renewed_at + self._duration + 1 if self.alive else None
 
-    def say(self, now: int) -> None:
-        """The publisher says that it lives."""
-        self.look(now)
-        self._said = now
+    def renew(self, now: int) -> None:
+        """Renew the lease: the publisher asserts its liveliness."""
+        self.check(now)
+        self._renewed_at = now
         if not self.alive:
             self.alive = True
             for each in self.watchers:
@@ -101,8 +101,8 @@ class Lease:
         for each in self.watchers:
             each.watch()
 
-    def look(self, now: int) -> None:
-        """Find out whether it is over."""
+    def check(self, now: int) -> None:
+        """Check whether the lease is over."""
         end = self.end
         if end is not None and now >= end:
             self.alive = False
@@ -113,7 +113,7 @@ class Lease:
 
 
 class LivelinessLostHandler(EventHandler):
-    """Counts how often its publisher did not say in time that it lives."""
+    """Counts how often the publisher did not renew its lease in time."""
 
     def __init__(
         self,
@@ -130,29 +130,29 @@ class LivelinessLostHandler(EventHandler):
             self.wait_until(lease.end)
 
     def lost(self) -> None:
-        """It is lost."""
+        """Count a lost lease."""
         self.info.count()
         self.changed()
 
     def count_until(self, now: int) -> None:
-        """Find out whether the lease is over."""
+        """Check whether the lease is over."""
         if self._lease is not None:
-            self._lease.look(now)
+            self._lease.check(now)
             self.due = self._lease.end or NEVER
 
 
 class LivelinessWatcher(Protocol):
-    """Who hears which publishers a subscription has. With the host's lock held."""
+    """Is notified of the publishers of a subscription. Called with the host's lock held."""
 
-    def found(self, publisher: Publisher) -> None:
-        """A publisher is matched."""
+    def publisher_matched(self, publisher: Publisher) -> None:
+        """A publisher was matched."""
 
-    def gone(self, publisher: Publisher) -> None:
-        """A publisher that was matched is gone."""
+    def publisher_lost(self, publisher: Publisher) -> None:
+        """A matched publisher is gone."""
 
 
 class LivelinessChangedHandler(EventHandler):
-    """Counts the publishers of a topic that are alive, and those that are not."""
+    """Counts the publishers of a topic that are alive and not alive."""
 
     def __init__(
         self, node: OwnerNode, topic: str, callback: EventCallback, callback_group: CallbackGroup
@@ -160,32 +160,32 @@ class LivelinessChangedHandler(EventHandler):
         super().__init__(node, topic, callback, callback_group, LivelinessChangedInfo())
         self._leases: list[Lease] = []
 
-    def found(self, publisher: Publisher) -> None:
-        """A publisher is matched."""
+    def publisher_matched(self, publisher: Publisher) -> None:
+        """A publisher was matched."""
         lease = publisher.lease
         if lease is None:
             self.count(alive=1, not_alive=0)
             return
-        lease.look(self.node.context.host.clock.now())
+        lease.check(self.node.context.host.clock.now())
         lease.watchers.append(self)
         self._leases.append(lease)
         self.count(alive=int(lease.alive), not_alive=int(not lease.alive))
         self.watch()
 
-    def gone(self, publisher: Publisher) -> None:
-        """A publisher that was matched is gone."""
+    def publisher_lost(self, publisher: Publisher) -> None:
+        """A matched publisher is gone."""
         lease = publisher.lease
         if lease is None:
             self.count(alive=-1, not_alive=0)
             return
-        lease.look(self.node.context.host.clock.now())
+        lease.check(self.node.context.host.clock.now())
         lease.watchers.remove(self)
         self._leases.remove(lease)
         self.count(alive=-int(lease.alive), not_alive=-int(not lease.alive))
         self.watch()
 
     def count(self, *, alive: int, not_alive: int) -> None:
-        """Change the number of living and of lost publishers."""
+        """Change the numbers of publishers that are alive and not alive."""
         self.info.alive_count += alive
         self.info.alive_count_change += alive
         self.info.not_alive_count += not_alive
@@ -193,20 +193,20 @@ class LivelinessChangedHandler(EventHandler):
         self.changed()
 
     def watch(self) -> None:
-        """Look when the next lease may be over."""
+        """Become due when the next lease may be over."""
         self.wait_until(self._next_end())
 
     def count_until(self, now: int) -> None:
-        """Find out which leases are over."""
+        """Check which leases are over."""
         for lease in tuple(self._leases):
-            lease.look(now)
+            lease.check(now)
         self.due = self._next_end() or NEVER
 
     def _next_end(self) -> int | None:
         return min((lease.end for lease in self._leases if lease.end is not None), default=None)
 
     def destroy(self) -> None:
-        """Watch nothing any more."""
+        """Stop watching leases, and remove the handler."""
         super().destroy()
         for lease in self._leases:
             lease.watchers.remove(self)
@@ -214,7 +214,7 @@ class LivelinessChangedHandler(EventHandler):
 
 
 class PublisherTiming:
-    """What a publisher with a lifespan, a lease or a watched deadline does with each message."""
+    """Applies a publisher's lifespan, lease and deadline to each message."""
 
     def __init__(self, lifespan: int | None, lease: Lease | None, deadline: DeadlineHandler | None) -> None:
         self.lifespan = lifespan
@@ -222,10 +222,10 @@ class PublisherTiming:
         self._deadline = deadline
 
     def sent(self, delivery: Delivery) -> Delivery:
-        """A message is about to go; returns it as it goes."""
+        """A message is about to be sent; return it with its expiry."""
         now = delivery.published
         if self._lease is not None:
-            self._lease.say(now)
+            self._lease.renew(now)
         if self._deadline is not None:
             self._deadline.message(now)
         if self.lifespan is None:
@@ -235,7 +235,7 @@ class PublisherTiming:
 
 
 def lease_of(qos_profile: QoSProfile, now: int) -> Lease | None:
-    """The lease of a publisher that has to say itself that it lives; None for another."""
+    """The lease of a publisher with manual liveliness by topic; None for other publishers."""
     duration = limit(qos_profile.liveliness_lease_duration)
     if duration is None or qos_profile.liveliness != LivelinessPolicy.MANUAL_BY_TOPIC:
         return None
@@ -245,7 +245,7 @@ def lease_of(qos_profile: QoSProfile, now: int) -> Lease | None:
 def publisher_timing(
     qos_profile: QoSProfile, lease: Lease | None, deadline: DeadlineHandler | None
 ) -> PublisherTiming | None:
-    """The timing of a publisher, None if it needs none."""
+    """The timing of a publisher; None if it needs none."""
     lifespan = limit(qos_profile.lifespan)
     if lifespan is None and lease is None and deadline is None:
         return None
@@ -253,20 +253,20 @@ def publisher_timing(
 
 
 class SubscriptionTiming:
-    """Watches the deadline of a subscription, and takes messages out of its queue whose time is over."""
+    """Watches the deadline of a subscription, and drops expired messages from its queue."""
 
     def __init__(self, subscription: Subscription, deadline: DeadlineHandler | None) -> None:
         self._subscription = subscription
         self._deadline = deadline
-        subscription.node.context.host.explain_waits_of(self)
+        subscription.node.context.host.explain_waits_with(self.explain_waits)
 
     def arrived(self, now: int) -> None:
-        """A message came."""
+        """A message arrived."""
         if self._deadline is not None:
             self._deadline.message(now)
 
     def purge(self, now: int) -> None:
-        """Lose what has expired."""
+        """Drop expired messages."""
         subscription = self._subscription
         queue = subscription._queue
         expired = [each for each in queue if isinstance(each, ExpiringDelivery) and each.expires <= now]
@@ -274,10 +274,10 @@ class SubscriptionTiming:
             queue.remove(each)
             subscription._probe.dropped(subscription, len(queue), each.message)
         if expired and not queue:
-            subscription.nothing_left()
+            subscription.become_idle()
 
     def explain_waits(self) -> int | None:
-        """Lose what has expired; returns when the next message will."""
+        """Drop expired messages, and return when the next message expires."""
         self.purge(self._subscription._clock.now())
         ends = (each.expires for each in self._subscription._queue if isinstance(each, ExpiringDelivery))
         return min(ends, default=None)

@@ -1,4 +1,4 @@
-"""Messages as the bytes that travel between programs (CDR)."""
+"""Serialization of messages as CDR."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ MessageT = TypeVar("MessageT", bound=Message)
 
 
 def serialize_message(message: Message) -> bytes:
-    """The bytes of a message: little-endian CDR with its header.
+    """Serialize a message: little-endian CDR with its header.
 
     Raises:
-        AttributeError: it is no message.
+        AttributeError: it is not a message.
         NotImplementedError: it contains wide strings.
     """
     check_is_valid_msg_type(type(message))
@@ -22,11 +22,11 @@ def serialize_message(message: Message) -> bytes:
 
 
 def deserialize_message(serialized_message: bytes, message_type: type[MessageT]) -> MessageT:
-    """The message of a type that bytes hold.
+    """Deserialize a message of a type.
 
     Raises:
-        AttributeError, RuntimeError: it is no type of message.
-        ValueError: the bytes are no such message.
+        AttributeError, RuntimeError: it is not a message type.
+        ValueError: the bytes do not encode such a message.
         NotImplementedError: it contains wide strings.
     """
     check_is_valid_msg_type(message_type)

@@ -1,9 +1,8 @@
-"""Services: a queue of requests, and a callback that answers one at a time."""
+"""Services: a queue of requests, and a callback that answers them one at a time."""
 
 from __future__ import annotations
 
 import inspect
-from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -13,7 +12,7 @@ from sim.ros.entities.client_or_service import ClientOrService
 from sim.ros.entities.entity_handles import RequestId, ServiceHandle, ServiceInfo, answered
 from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
-from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
+from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
@@ -22,11 +21,11 @@ if TYPE_CHECKING:
 SrvType = TypeVar("SrvType")
 SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
-"""For the type hints of programs, which import these from here as from rclpy."""
+"""Type variables that programs import for their type hints."""
 
 
 class Service(ClientOrService, Entity):
-    """Answers calls of one service. A callback that raises sends no reply."""
+    """Answers calls of one service. If the callback raises, no reply is sent."""
 
     kind = EntityKind.SERVICE
     rank = 4
@@ -45,20 +44,19 @@ class Service(ClientOrService, Entity):
         super().__init__(node, service_name, callback_group)
         self._set_service(srv_type, srv_name, qos_profile)
         self.callback = callback
-        self._queue: deque[Request] = deque()
 
     @property
     def handle(self) -> ServiceHandle:
-        """What keeps it alive while it is used, and takes from it."""
+        """A handle that keeps the service alive while it is used, and takes requests."""
         return ServiceHandle(self)
 
     @property
     def is_shown(self) -> bool:
-        """Whether it is part of a program that is on the trace."""
+        """Whether the service belongs to a program that the trace shows."""
         return self._probe.visible
 
     def deliver(self, request: Request) -> None:
-        """A request arrived; a full queue loses its oldest. With the host's lock held."""
+        """Queue a request; a full queue drops its oldest one. Called with the host's lock held."""
         if self.depth and len(self._queue) >= self.depth:
             lost = self._queue.popleft()
             self._probe.dropped(self, len(self._queue), lost.call)
@@ -66,30 +64,19 @@ class Service(ClientOrService, Entity):
         self._probe.ready(self, len(self._queue), request.call)
         self.become_ready(request.sent)
 
-    def shown_callback(self) -> Callable[..., Any]:
-        """The callback."""
-        return self.callback
-
-    @property
-    def queued(self) -> int:
-        """How much waits in its queue."""
-        return len(self._queue)
-
-    def take(self, now: int) -> Taken | None:
+    def take(self, now: int) -> TakenData | None:
         """Take the oldest request."""
         if not self._queue:
             return None
-        request = self._queue.popleft()
-        if self._queue:
-            self.ready_since = now
-        else:
-            self.nothing_left()
+        request: Request = self._take_oldest(now)
         if self._introspection is not None:
-            self._introspection.tell("REQUEST_RECEIVED", request.client, request.call, request=request.data)
-        return Taken(request, request.call, now - request.sent, len(self._queue))
+            self._introspection.publish_step(
+                "REQUEST_RECEIVED", request.client, request.call, request=request.data
+            )
+        return TakenData(request, request.call, now - request.sent, len(self._queue))
 
-    def invoke(self, taken: Taken) -> Any:
-        """Run the callback and send what it returns."""
+    def invoke(self, taken: TakenData) -> Any:
+        """Run the callback, and send the response that it returns."""
         request: Request = taken.data
         outcome = self.callback(request.data, self.srv_type.Response())
         if inspect.iscoroutine(outcome):
@@ -102,11 +89,11 @@ class Service(ClientOrService, Entity):
 
     @sends_responses
     def send_response(self, response: Any, header: Request | ServiceInfo | RequestId) -> None:
-        """Answer the request of that header, or of its request id.
+        """Send a response to the request of a header or request id.
 
         Raises:
-            TypeError: the response is not of the service's type, or the header came with no request.
-            InvalidHandle: the service was destroyed, by its own callback perhaps.
+            TypeError: the response does not have the service's type, or the header is not that of a request.
+            InvalidHandle: the service was destroyed, for example by its own callback.
         """
         request = header if isinstance(header, Request) else answered(header)
         if not isinstance(response, self.srv_type.Response):
@@ -116,10 +103,10 @@ class Service(ClientOrService, Entity):
         with self.node.context.host.lock:
             self._probe.service_replied(request.call, self.name, copy)
             if self._introspection is not None:
-                self._introspection.tell("RESPONSE_SENT", request.client, request.call, response=copy)
+                self._introspection.publish_step("RESPONSE_SENT", request.client, request.call, response=copy)
             request.answer(copy)
 
     def removed(self) -> None:
-        """Its node has let it go."""
+        """Leave the network: the service was removed from its node."""
         self.node.context.network.leave_service(self)
         self.stop_introspection()

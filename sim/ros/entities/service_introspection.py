@@ -1,4 +1,4 @@
-"""Service introspection: each step of a call is published on the topic ``<service>/_service_event``."""
+"""Service introspection: publishes each step of a call on the topic ``<service>/_service_event``."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _TOPIC_SUFFIX = "/_service_event"
 
 
 class ServiceIntrospectionState(IntEnum):
-    """What is published of every call: nothing, its steps, or requests and responses too."""
+    """What is published of a call: nothing, its steps, or its steps with requests and responses."""
 
     OFF = 0
     METADATA = 1
@@ -26,9 +26,9 @@ class ServiceIntrospectionState(IntEnum):
 
 
 class ServiceIntrospection:
-    """Publishes the calls of one client or service; ``client`` is the gid of the caller.
+    """Publishes the steps of the calls of one client or service.
 
-    Call everything with the host's lock held.
+    Use it with the host's lock held.
     """
 
     def __init__(
@@ -41,11 +41,11 @@ class ServiceIntrospection:
         self._publisher = owner.node.create_publisher(self._event_type, topic, qos_profile)
 
     def stop(self) -> None:
-        """Publish no more."""
+        """Remove the publisher."""
         self._publisher.node.destroy_publisher(self._publisher)
 
-    def tell(self, step: str, client: bytes, call: int, **contents: Any) -> None:
-        """Publish a step such as ``REQUEST_SENT``, with its ``request`` or ``response`` if that is wanted."""
+    def publish_step(self, step: str, client: bytes, call: int, **contents: Any) -> None:
+        """Publish a step such as ``REQUEST_SENT``, with its ``request`` or ``response`` if wanted."""
         info_type: Any = message("service_msgs", "ServiceEventInfo")
         event: Any = self._event_type()
         event.info = info_type(

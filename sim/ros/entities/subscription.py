@@ -1,4 +1,4 @@
-"""Subscriptions: a queue of what arrived, and a callback that gets one message at a time."""
+"""Subscriptions: a queue of messages, and a callback that gets one message at a time."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from sim.ros.entities.qos_timing import (
 )
 from sim.ros.middleware.delivery import Delivery
 from sim.ros.qos.qos import QoSProfile
-from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
+from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
@@ -34,21 +34,21 @@ if TYPE_CHECKING:
     from sim.ros.scheduling.callback_groups import CallbackGroup
 
 MsgType = TypeVar("MsgType")
-"""For the type hints of programs, which import it from here as from rclpy."""
+"""A type variable that programs import for their type hints."""
 
 
 class Subscription(Entity):
-    """Keeps the newest messages of a topic until its callback takes them, the oldest first.
+    """Queues the newest messages of a topic for its callback, which gets the oldest first.
 
     ``topic`` is the topic's name as the program wrote it; ``topic_name`` is the full one. With ``raw`` the
     callback gets each message as bytes.
 
     Raises:
-        RuntimeError: the callback takes neither a message, nor a message and its info.
+        RuntimeError: the callback does not take a message, or a message and its info.
     """
 
     class CallbackType(Enum):
-        """What a callback takes."""
+        """The arguments of a callback."""
 
         MessageOnly = 0
         WithMessageInfo = 1
@@ -91,7 +91,7 @@ class Subscription(Entity):
             self._watch(event_callbacks)
 
     def _watch(self, wanted: SubscriptionEventCallbacks) -> None:
-        """Watch what else than matches there are callbacks for."""
+        """Add handlers for the callbacks on deadlines, liveliness and lost messages."""
         node, topic, group = self.node, self.name, self.callback_group
         if wanted.deadline is not None:
             period = limit(self.qos_profile.deadline)
@@ -107,12 +107,12 @@ class Subscription(Entity):
 
     @property
     def handle(self) -> SubscriptionHandle:
-        """What keeps it alive while it is used, and takes from it."""
+        """A handle that keeps the subscription alive while it is used, and takes messages."""
         return SubscriptionHandle(self)
 
     @property
     def callback(self) -> Callable[..., Any]:
-        """What is called with each message, and with its info if it takes two arguments."""
+        """The callback: it gets each message, and its info if it takes two arguments."""
         return self._callback
 
     @callback.setter
@@ -122,12 +122,12 @@ class Subscription(Entity):
 
     @property
     def _callback_type(self) -> CallbackType:
-        """What the callback takes, by the name that rclpy has for it."""
+        """The arguments of the callback, by rclpy's name."""
         return self.CallbackType.WithMessageInfo if self._with_info else self.CallbackType.MessageOnly
 
     @property
     def event_handlers(self) -> list[EventHandler]:
-        """What calls back for its events."""
+        """The handlers of the subscription's events."""
         return self.events.handlers
 
     @property
@@ -136,12 +136,12 @@ class Subscription(Entity):
         return self.name
 
     def get_publisher_count(self) -> int:
-        """How many publishers of this type are on the topic."""
+        """The number of publishers of this type on the topic."""
         network = self.node.context.network
         return sum(each.msg_type is self.msg_type for each in network.publishers(self.name))
 
     def deliver(self, delivery: Delivery) -> None:
-        """A message arrived; a full queue loses its oldest. With the host's lock held."""
+        """Queue a message; a full queue drops its oldest one. Called with the host's lock held."""
         queue = self._queue
         if self.depth and len(queue) >= self.depth:
             lost = queue.popleft()
@@ -152,37 +152,33 @@ class Subscription(Entity):
         self._probe.ready(self, len(queue), delivery.message)
         self.become_ready(self._clock.now())
 
-    def found(self, publisher: Publisher) -> None:
-        """A publisher reaches it. With the host's lock held."""
+    def publisher_matched(self, publisher: Publisher) -> None:
+        """A publisher was matched. Called with the host's lock held."""
         self.events.match_made()
         for each in self.liveliness_watchers:
-            each.found(publisher)
+            each.publisher_matched(publisher)
         if self._timing is None and publisher.lifespan is not None:
             self._timing = SubscriptionTiming(self, None)
 
-    def lost(self, publisher: Publisher) -> None:
-        """A publisher that reached it is gone. With the host's lock held."""
+    def publisher_lost(self, publisher: Publisher) -> None:
+        """A matched publisher is gone. Called with the host's lock held."""
         self.events.match_lost()
         for each in self.liveliness_watchers:
-            each.gone(publisher)
+            each.publisher_lost(publisher)
 
     def still_ready(self, now: int) -> bool:
-        """Whether it is there, and its messages have not all expired."""
+        """Whether the subscription exists, and has a message that has not expired."""
         if self._timing is not None:
             self._timing.purge(now)
             return self.pending and not self.destroyed
         return not self.destroyed
 
-    def shown_callback(self) -> Callable[..., Any]:
-        """The callback."""
-        return self._callback
-
     @property
     def queued(self) -> int:
-        """How much waits in its queue."""
+        """The number of messages in the queue."""
         return len(self._queue)
 
-    def take(self, now: int) -> Taken | None:
+    def take(self, now: int) -> TakenData | None:
         """Take the oldest message."""
         if self._timing is not None:
             self._timing.purge(now)
@@ -192,10 +188,10 @@ class Subscription(Entity):
         if self._queue:
             self.ready_since = now
         else:
-            self.nothing_left()
+            self.become_idle()
         self._received += 1
         data: Any = delivery.data
-        if isinstance(data, bytes):  # they hold no message
+        if isinstance(data, bytes):  # they do not encode a message
             if not self.raw:
                 self._probe.dropped(self, len(self._queue), delivery.message)
                 return None
@@ -205,7 +201,7 @@ class Subscription(Entity):
             data = copy_message(data)
         if self._with_info:
             data = (data, self._info_of(delivery, now))
-        return Taken(data, delivery.message, now - delivery.published, len(self._queue))
+        return TakenData(data, delivery.message, now - delivery.published, len(self._queue))
 
     def _info_of(self, delivery: Delivery, now: int) -> MessageInfo:
         return MessageInfo(
@@ -215,11 +211,11 @@ class Subscription(Entity):
             reception_sequence_number=self._received,
         )
 
-    def invoke(self, taken: Taken) -> Any:
-        """Run the callback on the message."""
+    def invoke(self, taken: TakenData) -> Any:
+        """Call the callback with the message."""
         return self._callback(*taken.data) if self._with_info else self._callback(taken.data)
 
     def removed(self) -> None:
-        """Its node has let it go."""
+        """Leave the network: the subscription was removed from its node."""
         self.node.context.network.leave_subscription(self)
         self.events.destroy()

@@ -1,7 +1,7 @@
-"""Timers, and rates that sleep by them.
+"""Timers, and rates, which sleep until a timer's next tick.
 
-The rule of the next due time is rcl's: one period after the last due time, and if that is past, forward by
-whole periods. Ticks missed meanwhile are not made up.
+The next due time follows rcl: one period after the last due time; if that is past, later by
+whole periods. Missed ticks are dropped.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from sim.ros.clocks.clock import Clock, ROSClock
 from sim.ros.clocks.ros_time_schedule import RosTimeSchedule, after_change, next_due
 from sim.ros.exceptions import RCLError, ROSInterruptException
-from sim.ros.scheduling.entity import NEVER, Entity, OwnerNode, Taken
+from sim.ros.scheduling.entity import NEVER, Entity, OwnerNode, TakenData
 from sim.ros.time.clock_type import ClockType
 from sim.ros.time.time import Time
 from sim.trace.events import EntityKind
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class TimerInfo:
-    """A call of a timer: when it was due, and when it came."""
+    """The expected and the actual time of a timer's call."""
 
     def __init__(
         self,
@@ -44,16 +44,16 @@ class TimerInfo:
 
     @property
     def actual_call_time(self) -> Time:
-        """When the call came."""
+        """When the call happened."""
         return self._actual_call_time
 
 
 class Timer(Entity):
-    """Calls back every ``timer_period_ns`` nanoseconds, the first time one period after its creation.
+    """Calls its callback every ``timer_period_ns`` nanoseconds, first one period after its creation.
 
-    A callback with a parameter annotated as TimerInfo gets one, in releases that have it.
+    In some releases, a callback with a parameter annotated as TimerInfo gets a TimerInfo.
 
-    Whatever is asked of it or done with it after it was destroyed raises InvalidHandle.
+    The methods of a destroyed timer raise InvalidHandle.
 
     Raises:
         RCLError: the period is negative.
@@ -83,13 +83,13 @@ class Timer(Entity):
         self._canceled = True
         self._ros_schedule: RosTimeSchedule | None = None
         if isinstance(clock, ROSClock):
-            clock._drive(self)
+            clock._attach_timer(self)
         if autostart:
             self.reset()
 
     @property
     def callback(self) -> Callable[..., Any] | None:
-        """What is called when it is due."""
+        """The function that is called when the timer is due."""
         return self._callback
 
     @callback.setter
@@ -99,7 +99,7 @@ class Timer(Entity):
 
     @property
     def timer_period_ns(self) -> int:
-        """The period; a new one keeps the pending due time."""
+        """The period in nanoseconds; setting it keeps the present due time."""
         return self.period
 
     @timer_period_ns.setter
@@ -109,18 +109,18 @@ class Timer(Entity):
         self.period = int(value)
 
     def cancel(self) -> None:
-        """Call back no more until ``reset``."""
+        """Stop the timer until ``reset``."""
         self.require_alive()
         with self._host.lock:
             self._canceled = True
-            self.nothing_left()
+            self.become_idle()
 
     def reset(self) -> None:
-        """Be due one period from now, cancelled or not."""
+        """Restart the timer, cancelled or not: it is due one period from now."""
         self.require_alive()
         with self._host.lock:
             self._canceled = False
-            self.nothing_left()
+            self.become_idle()
             if self._ros_schedule is not None:
                 self._ros_schedule.due = self.clock.now().nanoseconds + self.period
                 self._look_at_ros_time()
@@ -129,17 +129,17 @@ class Timer(Entity):
             self.node._agenda.timer_set(self)
 
     def is_canceled(self) -> bool:
-        """Whether it was cancelled."""
+        """Whether the timer is cancelled."""
         self.require_alive()
         return self._canceled
 
     def is_ready(self) -> bool:
-        """Whether it is due."""
+        """Whether the timer is due."""
         self.require_alive()
         return self.still_ready(self._host.clock.now())
 
     def time_until_next_call(self) -> int | None:
-        """Nanoseconds until it is due, negative when late; None while cancelled."""
+        """Nanoseconds until the timer is due, negative if it is late; None while it is cancelled."""
         self.require_alive()
         if self._canceled:
             return None
@@ -148,50 +148,46 @@ class Timer(Entity):
         return self.due - self._host.clock.now()
 
     def time_since_last_call(self) -> int:
-        """Nanoseconds since the last call, or since it was made."""
+        """Nanoseconds since the last call, or since the creation."""
         self.require_alive()
         if self._ros_schedule is not None:
             return self.clock.now().nanoseconds - self._ros_schedule.last_call
         return self._host.clock.now() - self._last_call
 
-    def shown_callback(self) -> Callable[..., Any] | None:
-        """The callback."""
-        return self._callback
-
     def ready_at(self, now: int) -> bool:
-        """Whether it is due."""
+        """Whether the timer is due."""
         return self.still_ready(now)
 
     def falls_due(self, due: int) -> bool:
-        """Whether it still becomes ready at ``due``."""
+        """Whether the timer still becomes ready at ``due``."""
         return self.due == due and not (self.pending or self.destroyed or self._canceled)
 
     def still_ready(self, now: int) -> bool:
-        """Whether it is due and neither cancelled nor destroyed."""
+        """Whether the timer is due, and neither cancelled nor destroyed."""
         return not (self._canceled or self.destroyed) and self.due <= now
 
-    def take(self, now: int) -> Taken | None:
-        """Count this call and move on to the next due time.
+    def take(self, now: int) -> TakenData | None:
+        """Count this call, and set the next due time.
 
-        A timer that was reset while it waited for its turn is called all the same, one period too early.
+        A timer that was reset while it waited for its turn is still called, one period too early.
         """
         if self._canceled or self.destroyed:
             if self.destroyed or self._is_skipped():
                 return None
             self.stuck = self.handed_out = True
-            return Taken(_CANCELLED, 0, 0, 0)
+            return TakenData(_CANCELLED, 0, 0, 0)
         late = max(now - self.due, 0)
         if self._ros_schedule is not None:
-            return Taken(self._take_of_ros_time(self._ros_schedule), 0, late, 0)
+            return TakenData(self._take_of_ros_time(self._ros_schedule), 0, late, 0)
         info = None if self._info_parameter is None else self._info(now)
         self.due = next_due(self.due, self.period, now)
         self._last_call = now
-        self.nothing_left()
+        self.become_idle()
         self.node._agenda.timer_set(self)
-        return Taken(info, 0, late, 0)
+        return TakenData(info, 0, late, 0)
 
     def _is_skipped(self) -> bool:
-        """Whether nobody hears of it that it was cancelled since it was found due."""
+        """Whether a timer that was cancelled after it was found due is skipped without an error."""
         executor = self.node._agenda.executor
         asks_groups = executor is not None and executor._runner.asks_groups
         return self._host.profile.skips_cancelled_timers or not asks_groups
@@ -199,7 +195,7 @@ class Timer(Entity):
     # While its clock follows ROS time; with the host's lock held
 
     def _time_credit(self) -> int:
-        """What is left before the next call, for a change of its clock's source; 0 if that is not known."""
+        """Nanoseconds left before the next call when the clock's source changes; 0 if unknown."""
         schedule = self._ros_schedule
         if schedule is None:
             return self.due - self._host.clock.now()
@@ -207,7 +203,7 @@ class Timer(Entity):
         return schedule.credit if now == 0 else schedule.due - now
 
     def _begin_on_ros_time(self) -> None:
-        """It was made while its clock follows ROS time."""
+        """Start a timer that is created while its clock follows ROS time."""
         now = self.clock.now().nanoseconds
         self._ros_schedule = RosTimeSchedule(now + self.period, now)
 
@@ -226,24 +222,24 @@ class Timer(Entity):
         clock = self._host.clock
         now = clock.now()
         schedule = after_change(schedule, clock.epoch + now, self.period, credit)
-        self.nothing_left()
+        self.become_idle()
         self.due = max(schedule.due - clock.epoch, now)
         self._last_call = max(schedule.last_call - clock.epoch, 0)
         if not self._canceled:
             self.node._agenda.timer_set(self)
 
     def _ros_time_set(self) -> None:
-        """The clock was set."""
+        """ROS time was set."""
         if self._ros_schedule is not None:
             self._ros_schedule.time_set(self.clock.now().nanoseconds, self.period)
             self._look_at_ros_time()
 
     def _look_at_ros_time(self) -> None:
-        """Be ready, or not, as the schedule says."""
+        """Become ready or idle by the ROS time schedule."""
         schedule = self._ros_schedule
         if schedule is None or self._canceled or schedule.due > self.clock.now().nanoseconds:
             self.due = NEVER  # until ROS time is set
-            self.nothing_left()
+            self.become_idle()
         elif not self.pending:
             self.due = self._host.clock.now()
             self.become_ready(self.due)
@@ -256,16 +252,16 @@ class Timer(Entity):
                 expected_call_time=schedule.due, actual_call_time=now, clock_type=self.clock.clock_type
             )
         schedule.called(now, self.period)
-        self.nothing_left()
+        self.become_idle()
         self._look_at_ros_time()
         return info
 
-    def invoke(self, taken: Taken) -> Any:
+    def invoke(self, taken: TakenData) -> Any:
         """Run the callback.
 
         Raises:
-            TypeError, UnboundLocalError: there is none, which is found only now.
-            RCLError: it was cancelled since it was found due.
+            TypeError, UnboundLocalError: there is no callback.
+            RCLError: the timer was cancelled after it was found due.
         """
         if taken.data is _CANCELLED:
             raise RCLError("failed to call timer: timer is canceled")
@@ -291,19 +287,19 @@ def _info_parameter(callback: Callable[..., Any] | None) -> str | None:
         return None
     try:
         parameters = inspect.signature(callback).parameters.values()
-    except (TypeError, ValueError):  # it cannot be called, or is written in C and does not tell them
+    except (TypeError, ValueError):  # not callable, or a function in C without a signature
         return None
     return next((each.name for each in parameters if each.annotation is TimerInfo), None)
 
 
 _CANCELLED = object()
-"""Stands for what is taken from a timer that was cancelled meanwhile."""
+"""The data taken from a timer that was cancelled meanwhile."""
 
 
 class Rate:
-    """Sleeps in step with a timer, whose callback it becomes; needs somebody else to spin the timer's node.
+    """Sleeps until the next tick of its timer. Another thread has to spin the timer's node.
 
-    A tick that nobody slept for ends the next sleep at once. Thread-safe.
+    A tick during which no thread sleeps ends the next sleep at once. Thread-safe.
     """
 
     def __init__(self, timer: Timer, *, context: Context) -> None:
@@ -317,7 +313,7 @@ class Rate:
         context.wake_at_end(self._let_all_go)
 
     def tick(self) -> None:
-        """The timer's callback: let the sleepers go on."""
+        """The timer's callback: wake the sleeping threads."""
         with self._host.lock:
             self._ticked = not self._sleepers
             self._let_all_go()
@@ -344,7 +340,7 @@ class Rate:
             raise ROSInterruptException
 
     def destroy(self) -> None:
-        """Let the sleepers go, and sleep no more."""
+        """Wake the sleeping threads; ``sleep`` raises from now on."""
         self._destroyed = True
         self._let_all_go()
 

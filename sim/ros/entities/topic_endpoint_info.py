@@ -1,4 +1,4 @@
-"""What the graph tells of one publisher or subscription."""
+"""The graph's information on one publisher or subscription."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from sim.ros.qos.qos import QoSHistoryPolicy, QoSPresetProfiles, QoSProfile
 
 
 class TopicEndpointTypeEnum(IntEnum):
-    """Which end of a topic it is."""
+    """The kind of an endpoint."""
 
     INVALID = 0
     PUBLISHER = 1
@@ -19,13 +19,13 @@ class TopicEndpointTypeEnum(IntEnum):
 
 
 class TopicEndpointInfo:
-    """One publisher or subscription. Every value is checked when it is set.
+    """Information on a publisher or subscription. Every value is checked when it is set.
 
-    ``topic_type_hash`` and ``qos_profile`` can be given as the keyword arguments of their classes.
+    ``topic_type_hash`` and ``qos_profile`` may be dictionaries of keyword arguments.
 
     Raises:
-        AssertionError: there is no such field, or a value is of the wrong type.
-        ValueError: there is no such type of endpoint.
+        AssertionError: there is no such field, or a value has the wrong type.
+        ValueError: there is no such kind of endpoint.
     """
 
     __slots__ = (

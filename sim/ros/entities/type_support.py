@@ -1,4 +1,4 @@
-"""Checking that a class is one of ROS 2's message or service types."""
+"""Checks that a class is a ROS 2 message or service type."""
 
 from __future__ import annotations
 
@@ -16,17 +16,17 @@ SrvEventT = TypeVar("SrvEventT", bound=Message)
 
 
 class NoTypeSupportImportedException(Exception):
-    """A type's support could not be loaded; the types made here need none."""
+    """The type support of a foreign type cannot be loaded; the model's types need none."""
 
     __module__ = "rclpy.type_support"
 
 
 def check_for_type_support(msg_or_srv_type: Any) -> None:
-    """Nothing for a class made from a definition.
+    """Check that an object is an interface class.
 
     Raises:
-        AttributeError: it is something else.
-        NoTypeSupportImportedException: it is a foreign interface class that cannot load its support.
+        AttributeError: it is not an interface class.
+        NoTypeSupportImportedException: a foreign interface class cannot load its type support.
     """
     if _is_message(msg_or_srv_type) or isinstance(msg_or_srv_type, ServiceType):
         return
@@ -44,10 +44,10 @@ def check_for_type_support(msg_or_srv_type: Any) -> None:
 
 
 def check_is_valid_msg_type(msg_type: Any) -> None:
-    """Nothing for a message class.
+    """Check that an object is a message class.
 
     Raises:
-        AttributeError: it was not made from a definition.
+        AttributeError: it is not an interface class.
         RuntimeError: it is a service class.
     """
     check_for_type_support(msg_type)
@@ -58,10 +58,10 @@ def check_is_valid_msg_type(msg_type: Any) -> None:
 
 
 def check_is_valid_srv_type(srv_type: Any) -> None:
-    """Nothing for a service class.
+    """Check that an object is a service class.
 
     Raises:
-        AttributeError: it was not made from a definition.
+        AttributeError: it is not an interface class.
         RuntimeError: it is a message class.
     """
     check_for_type_support(srv_type)

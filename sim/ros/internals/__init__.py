@@ -1,1 +1,1 @@
-"""What only programs need that reach into rclpy's compiled part."""
+"""The names of rclpy's compiled part; only programs that use these internals need this room."""

@@ -1,7 +1,7 @@
-"""Entities without a callback: what a program's own waitable waits for, and takes from, itself.
+"""Entities without a callback: a program's own waitable waits for them and takes from them.
 
-They are what rclpy's compiled part calls by the same names. No executor serves them; what they have makes
-the executors that wait for them look again.
+They have the names of rclpy's compiled part. No executor serves them; when one becomes ready, it wakes
+the executors that wait for it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class BareSubscription(BareEntity, Subscription):
-    """A subscription whose messages the program takes itself."""
+    """A subscription from which the program takes messages itself."""
 
     def __init__(self, node: Handle, msg_type: type, topic: str, qos_profile: RmwQoSProfile) -> None:
         owner: Node = node.owner
@@ -41,11 +41,11 @@ class BareSubscription(BareEntity, Subscription):
             owner.context.network.join_subscription(self)
 
     def take_message(self, msg_type: type, raw: bool) -> tuple[Any, MessageInfo] | None:
-        """Take the oldest message, as bytes if ``raw``, with its info; None without one."""
+        """Take the oldest message (``raw``: as bytes) with its info; None without a message."""
         return self.handle.take_message(msg_type, raw)
 
     def destroy(self) -> None:
-        """Take it off the network."""
+        """Remove it from the network."""
         with self.node.context.host.lock:
             if not self.destroyed:
                 self.destroyed = True
@@ -53,7 +53,7 @@ class BareSubscription(BareEntity, Subscription):
 
 
 class BareClient(BareEntity, Client):
-    """A client whose responses the program takes itself."""
+    """A client from which the program takes responses itself."""
 
     def __init__(self, node: Handle, srv_type: Any, srv_name: str, qos_profile: RmwQoSProfile) -> None:
         owner: Node = node.owner
@@ -63,24 +63,24 @@ class BareClient(BareEntity, Client):
             super().__init__(owner, srv_type, name, profile, ReentrantCallbackGroup(), srv_name=srv_name)
 
     def service_server_is_available(self) -> bool:
-        """Whether somebody offers the service."""
+        """Whether the service is offered."""
         return self.handle.service_server_is_available()
 
     def send_request(self, request: Any) -> int:
-        """Send a request; returns its sequence number."""
+        """Send a request, and return its sequence number."""
         return self.handle.send_request(request)
 
     def take_response(self, response_type: type) -> tuple[ServiceInfo | None, Any]:
-        """Take the oldest response, after which request it came; None twice without one."""
+        """Take the oldest response: its header, then the response; None for both without a response."""
         return self.handle.take_response(response_type)
 
     def destroy(self) -> None:
-        """Take no more responses."""
+        """Mark the client as destroyed."""
         self.destroyed = True
 
 
 class BareService(BareEntity, Service):
-    """A service whose requests the program takes and answers itself."""
+    """A service from which the program takes requests itself, and answers them."""
 
     def __init__(self, node: Handle, srv_type: Any, srv_name: str, qos_profile: RmwQoSProfile) -> None:
         owner: Node = node.owner
@@ -91,15 +91,15 @@ class BareService(BareEntity, Service):
             owner.context.network.join_service(self)
 
     def service_take_request(self, request_type: type) -> tuple[Any, ServiceInfo | None]:
-        """Take the oldest request, and the header to answer it by; None twice without one."""
+        """Take the oldest request: the request, then its header; None for both without a request."""
         return self.handle.service_take_request(request_type)
 
     def service_send_response(self, response: Any, header: ServiceInfo | RequestId) -> None:
-        """Answer the request of that header."""
+        """Send a response to the request of a header."""
         self.handle.service_send_response(response, header)
 
     def destroy(self) -> None:
-        """Take it off the network."""
+        """Remove it from the network."""
         with self.node.context.host.lock:
             if not self.destroyed:
                 self.destroyed = True
@@ -107,7 +107,7 @@ class BareService(BareEntity, Service):
 
 
 class BareTimer(BareEntity):
-    """A timer that the program calls itself; all times in nanoseconds."""
+    """A timer that the program calls itself; all times are nanoseconds."""
 
     def __init__(self, clock: Handle, context: Handle, period_nsec: int, autostart: bool = True) -> None:
         owner: Context = context.owner
@@ -118,34 +118,34 @@ class BareTimer(BareEntity):
         self._canceled = not autostart
 
     def look(self, watcher: Watcher, now: int) -> bool:
-        """Whether it is due. With the host's lock held."""
+        """Whether the timer is due. Called with the host's lock held."""
         super().look(watcher, now)
         return not self._canceled and self._due <= now
 
     def next_due(self) -> int | None:
-        """When it is due; None while cancelled."""
+        """When the timer is due; None while it is cancelled."""
         return None if self._canceled else self._due
 
     def is_timer_ready(self) -> bool:
-        """Whether it is due."""
+        """Whether the timer is due."""
         return not self._canceled and self._due <= self._host.clock.now()
 
     def call_timer(self) -> None:
-        """Count a call, and move on to the next due time."""
+        """Count a call, and set the next due time."""
         with self._host.lock:
             self._last_call = self._host.clock.now()
             self._due = next_due(self._due, self._period, self._last_call)
 
     def cancel_timer(self) -> None:
-        """Be due no more until ``reset_timer``."""
+        """Stop the timer until ``reset_timer``."""
         self._canceled = True
 
     def is_timer_canceled(self) -> bool:
-        """Whether it was cancelled."""
+        """Whether the timer is cancelled."""
         return self._canceled
 
     def reset_timer(self) -> None:
-        """Be due one period from now."""
+        """Restart the timer: it is due one period from now."""
         with self._host.lock:
             self._canceled = False
             self._due = self._host.clock.now() + self._period
@@ -157,15 +157,15 @@ class BareTimer(BareEntity):
         return self._period
 
     def change_timer_period(self, period_nsec: int) -> None:
-        """Have another period from the next call on."""
+        """Set the period from the next call on."""
         self._period = period_nsec
 
     def time_until_next_call(self) -> int | None:
-        """How long until it is due; None while cancelled."""
+        """The time until the timer is due; None while it is cancelled."""
         return None if self._canceled else self._due - self._host.clock.now()
 
     def time_since_last_call(self) -> int:
-        """How long since it was called, or made."""
+        """The time since the last call, or since the creation."""
         return self._host.clock.now() - self._last_call
 
 

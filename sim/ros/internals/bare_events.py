@@ -1,4 +1,4 @@
-"""Events of publishers and subscriptions without a callback: a program takes their state itself."""
+"""Events of publishers and subscriptions without a callback: the program takes their state itself."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ _SUBSCRIPTION_INFOS: dict[QoSSubscriptionEventType, type] = {
 
 
 class BareEvent(BareEntity, EventHandler):
-    """One kind of event of a publisher or subscription: what comes from now on, and the matches there are.
+    """One kind of event of a publisher or subscription: later events, and the present matches.
 
-    Deadlines and leases are for handlers with a callback; where none is set, none is ever missed.
+    Deadlines and leases are supported only with callbacks; without a limit, none is ever missed.
 
     Raises:
-        NotImplementedError: the endpoint has a deadline, or a lease, that this event is about.
+        NotImplementedError: the event reports a deadline or lease, and the endpoint has one.
     """
 
     def __init__(self, endpoint: Publisher | Subscription, info: Any) -> None:
@@ -56,7 +56,7 @@ class BareEvent(BareEntity, EventHandler):
         with node.context.host.lock:
             super().__init__(node, endpoint.topic_name, never_called, ReentrantCallbackGroup(), info)
             self._endpoint = endpoint
-            endpoint.events.tell(self)
+            endpoint.events.add_listener(self)
             if isinstance(info, MatchedInfo):
                 self._count_matches(_number_of_matches(endpoint))
             self._alive = None
@@ -64,9 +64,9 @@ class BareEvent(BareEntity, EventHandler):
                 self._alive = _AliveCount(self, endpoint)
 
     def take_event(self) -> Any:
-        """Take the state, whether it has changed or not; its changes count anew.
+        """Take the state, changed or not, and reset its changes.
 
-        NotImplementedError: a publisher has a lease that it may let end.
+        NotImplementedError: a publisher has a lease.
         """
         if self._alive is not None and self._alive.met_lease:
             raise NotImplementedError("EventHandle: the liveliness of a publisher with a lease")
@@ -79,17 +79,17 @@ class BareEvent(BareEntity, EventHandler):
             self.changed()
 
     def destroy(self) -> None:
-        """Count nothing any more."""
+        """Stop counting."""
         with self.node.context.host.lock:
             if not self.destroyed:
                 self.destroyed = True
-                self._endpoint.events.tell_no_more(self)
+                self._endpoint.events.remove_listener(self)
                 if self._alive is not None:
                     self._alive.stop()
 
 
 class _AliveCount:
-    """Counts the publishers of a subscription, all of which are alive as long as none has a lease."""
+    """Counts the publishers of a subscription, which are all alive as long as none has a lease."""
 
     def __init__(self, event: BareEvent, subscription: Subscription) -> None:
         self.met_lease = False
@@ -97,19 +97,19 @@ class _AliveCount:
         self._watchers = subscription.liveliness_watchers
         self._watchers.append(self)
         for each in _publishers_of(subscription):
-            self.found(each)
+            self.publisher_matched(each)
 
-    def found(self, publisher: Publisher) -> None:
-        """A publisher is matched."""
+    def publisher_matched(self, publisher: Publisher) -> None:
+        """A publisher was matched."""
         self.met_lease = self.met_lease or publisher.lease is not None
         self._count(1)
 
-    def gone(self, _publisher: Publisher) -> None:
-        """A publisher that was matched is gone."""
+    def publisher_lost(self, publisher: Publisher) -> None:
+        """A matched publisher is gone."""
         self._count(-1)
 
     def stop(self) -> None:
-        """Count nothing any more."""
+        """Stop counting."""
         self._watchers.remove(self)
 
     def _count(self, alive: int) -> None:
@@ -122,10 +122,10 @@ class _AliveCount:
 def event_handle(
     endpoint: Handle | Subscription, event_type: QoSPublisherEventType | QoSSubscriptionEventType
 ) -> BareEvent:
-    """Make the event of that type of a publisher or subscription, given by its handle.
+    """Create the event of a type for a publisher or subscription, given by its handle.
 
     Raises:
-        TypeError: the handle is of neither, or the other one has events of this type.
+        TypeError: the handle is not that of an endpoint with events of this type.
         NotImplementedError: as ``BareEvent`` does.
     """
     owner = endpoint.owner if isinstance(endpoint, Handle) else endpoint

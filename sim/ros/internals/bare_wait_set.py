@@ -17,13 +17,13 @@ if TYPE_CHECKING:
 
 
 class BareWaitSet(ProgramWaitSet):
-    """Waits for as many entities of each kind as are announced; one thread at a time uses it.
+    """Waits for the announced numbers of entities; only one thread at a time may use it.
 
-    Entities of a node can only be waited for while no executor serves that node.
+    It can wait for entities of a node only while no executor serves that node.
     """
 
     def __init__(self, *room: int | Handle) -> None:
-        """``room``: how many subscriptions, guard conditions, timers, clients, services and events there are,
+        """``room``: the numbers of subscriptions, guard conditions, timers, clients, services and events,
         then the context's handle.
         """
         *numbers, context = room
@@ -33,18 +33,18 @@ class BareWaitSet(ProgramWaitSet):
         self._more = owner.host.clock.auto_reset_event()
 
     def clear_entities(self) -> None:
-        """Wait for nothing any more; as much can be added as at first."""
+        """Remove all entities; the announced numbers stay."""
         for waited in self._waited.values():
             waited.clear()
         for ready in self._ready.values():
             ready.clear()
 
     def wait(self, timeout_nsec: int = -1) -> None:
-        """Wait until something is ready, at most a number of nanoseconds; a negative time waits for ever.
+        """Wait until an entity is ready, for at most ``timeout_nsec``; a negative timeout waits for ever.
 
         Raises:
-            RCLError: there is nothing to wait for.
-            NotImplementedError: an executor serves something of it.
+            RCLError: the wait set is empty.
+            NotImplementedError: an executor serves one of the entities.
         """
         if not any(self._waited.values()):
             raise RCLError("failed to wait on wait set: wait set is empty")
@@ -59,7 +59,7 @@ class BareWaitSet(ProgramWaitSet):
             self._more.wait(min((each for each in (due, deadline) if each is not None), default=None))
 
     def wake(self) -> None:
-        """Have the waiting thread look again."""
+        """Make the waiting thread check again."""
         self._more.set()
 
     def _entity_is_ready(self, entity: Entity, watcher: Watcher, now: int) -> bool:
@@ -70,7 +70,7 @@ class BareWaitSet(ProgramWaitSet):
         agenda.collect_due(now)
         ready = entity.pending and entity.still_ready(now)
         if isinstance(entity, NodeGuardCondition):
-            entity.nothing_left()
+            entity.become_idle()
         return ready
 
     def _entity_due(self, entity: Entity) -> int | None:

@@ -1,4 +1,4 @@
-"""What programs import from rclpy's compiled part."""
+"""The names that programs import from rclpy's compiled part."""
 
 from sim.ros.clocks.clock import ClockEvent
 from sim.ros.entities.entity_handles import RequestId as rmw_request_id_t  # noqa: N813 -- rclpy's own name

@@ -1,4 +1,4 @@
-"""Nodes with a life cycle: configured, activated and so on, by others or by themselves."""
+"""Lifecycle nodes: other nodes, or they themselves, configure and activate them."""
 
 from sim.ros.lifecycle.managed_entity import ManagedEntity, SimpleManagedEntity
 from sim.ros.lifecycle.node import LifecycleNode, LifecycleNodeMixin

@@ -1,4 +1,4 @@
-"""The services and the topic by which others follow and steer a node's life cycle."""
+"""The services and the topic with which other nodes observe and control a node's life cycle."""
 
 from __future__ import annotations
 
@@ -25,9 +25,9 @@ _QOS = QoSProfile(depth=10)
 
 
 class LifecycleInterface:
-    """Offers ``~/change_state``, four services that tell of states, and the topic ``~/transition_event``.
+    """Offers ``~/change_state``, four services that return states, and the topic ``~/transition_event``.
 
-    ``~/change_state`` runs the program's own callbacks, so the trace shows it, unlike the other four.
+    The trace shows ``~/change_state``, because it runs the program's callbacks, but not the other four.
     """
 
     def __init__(
@@ -56,10 +56,10 @@ class LifecycleInterface:
         ):
             offer_hidden(node, service(_PACKAGE, kind), f"~/{name}", callback, _QOS, callback_group)
 
-    def tell(self, transition: Transition) -> None:
-        """Tell a listener of the states of a transition; without one nothing is sent.
+    def publish_transition(self, transition: Transition) -> None:
+        """Publish the states of a transition; without a subscription nothing is sent.
 
-        rcl leaves the event's other fields as they are.
+        As in rcl, the event's other fields stay empty.
         """
         if self._events.get_subscription_count() == 0:
             return
@@ -70,7 +70,7 @@ class LifecycleInterface:
         self._events.publish(event)
 
     def change_state(self, request: Any, response: Any) -> Any:
-        """Take the transition of that label, else of that number, if the node's state has it."""
+        """Make the requested transition, by its label or else by its id, if the node's state allows it."""
         wanted = request.transition
         number = wanted.id
         if wanted.label:

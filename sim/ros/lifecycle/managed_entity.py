@@ -1,4 +1,4 @@
-"""What takes part in the life cycle of a node."""
+"""Managed entities, which take part in the life cycle of a node."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from sim.ros.lifecycle.state_machine import LifecycleState, TransitionCallbackRe
 
 
 class ManagedEntity:
-    """Its methods are called when its node goes from ``state`` to another; they say how that went."""
+    """Has callbacks for the transitions of its node, which start in ``state``. They return the outcome."""
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
         """The node is being configured."""
@@ -33,12 +33,12 @@ class ManagedEntity:
         return TransitionCallbackReturn.SUCCESS
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Something went wrong on the way; SUCCESS makes the node unconfigured, all else ends it."""
+        """A transition failed; SUCCESS makes the node unconfigured, any other outcome finalizes it."""
         return TransitionCallbackReturn.SUCCESS
 
 
 class SimpleManagedEntity(ManagedEntity):
-    """Does its work only while the node is active."""
+    """A managed entity that works only while its node is active."""
 
     def __init__(self) -> None:
         self._enabled = False
@@ -49,12 +49,12 @@ class SimpleManagedEntity(ManagedEntity):
         return self._enabled
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Begin to work."""
+        """Start working."""
         self._enabled = True
         return TransitionCallbackReturn.SUCCESS
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Work no more."""
+        """Stop working."""
         self._enabled = False
         return TransitionCallbackReturn.SUCCESS
 
@@ -70,7 +70,7 @@ class SimpleManagedEntity(ManagedEntity):
     def when_enabled(
         wrapped: Callable[..., Any] | None = None, *, when_not_enabled: Callable[[], Any] | None = None
     ) -> Any:
-        """Decorate a method to work only while the node is active; else ``when_not_enabled`` is called."""
+        """Decorate a method to run only while the node is active; otherwise ``when_not_enabled`` runs."""
 
         def decorate(method: Callable[..., Any]) -> Callable[..., Any]:
             @wraps(method)

@@ -1,4 +1,4 @@
-"""Nodes with a life cycle."""
+"""Lifecycle nodes."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ from sim.ros.scheduling.callback_groups import CallbackGroup
 
 
 class LifecycleNodeMixin(ManagedEntity):
-    """Gives a node a life cycle; beside ``Node``, after whose ``__init__`` its own is called.
+    """Adds a life cycle to a node; its ``__init__`` must be called after ``Node.__init__``.
 
-    The ``trigger_…`` methods and the service ``~/change_state`` lead from state to state. On the way the
-    ``on_…`` methods are called, which a program overrides; those here ask the managed entities.
+    The ``trigger_…`` methods and the service ``~/change_state`` make transitions, which call the
+    ``on_…`` methods. A program overrides these; the methods here call those of the managed entities.
 
     Raises:
-        TypeError: ``enable_communication_interface`` is neither True nor False.
+        TypeError: ``enable_communication_interface`` is not a bool.
     """
 
     def __init__(
@@ -51,26 +51,26 @@ class LifecycleNodeMixin(ManagedEntity):
                 cast("Node", self), self._state_machine, self.__change_state, callback_group
             )
 
-    # Going from state to state
+    # Transitions
 
     def trigger_configure(self) -> TransitionCallbackReturn:
-        """Go from unconfigured to inactive; RCLError from elsewhere."""
+        """Change from unconfigured to inactive; RCLError in another state."""
         return self.__change_state(machine.CONFIGURE)
 
     def trigger_cleanup(self) -> TransitionCallbackReturn:
-        """Go from inactive to unconfigured; RCLError from elsewhere."""
+        """Change from inactive to unconfigured; RCLError in another state."""
         return self.__change_state(machine.CLEANUP)
 
     def trigger_activate(self) -> TransitionCallbackReturn:
-        """Go from inactive to active; RCLError from elsewhere."""
+        """Change from inactive to active; RCLError in another state."""
         return self.__change_state(machine.ACTIVATE)
 
     def trigger_deactivate(self) -> TransitionCallbackReturn:
-        """Go from active to inactive; RCLError from elsewhere."""
+        """Change from active to inactive; RCLError in another state."""
         return self.__change_state(machine.DEACTIVATE)
 
     def trigger_shutdown(self) -> TransitionCallbackReturn:
-        """Go to finalized; RCLError from there."""
+        """Change to finalized; RCLError if the node is finalized."""
         state, _ = self._state_machine.current_state
         if state not in machine.SHUTDOWN_FROM:
             raise RCLError("Shutdown transition not possible")
@@ -105,16 +105,16 @@ class LifecycleNodeMixin(ManagedEntity):
 
     def __tell(self, transition: Transition) -> None:
         if self.__interface is not None:
-            self.__interface.tell(transition)
+            self.__interface.publish_transition(transition)
 
-    # What takes part
+    # Managed entities
 
     def add_managed_entity(self, entity: ManagedEntity) -> None:
-        """Have an entity take part in the life cycle."""
+        """Add an entity to the life cycle."""
         self._managed_entities[id(entity)] = entity
 
     def create_lifecycle_publisher(self, *args: Any, **kwargs: Any) -> LifecyclePublisher:
-        """Make a publisher that sends only while the node is active; otherwise as ``create_publisher``."""
+        """Create a publisher that sends only while the node is active; otherwise as ``create_publisher``."""
         if "publisher_class" in kwargs:
             raise TypeError("create_publisher() got an unexpected keyword argument 'publisher_class'")
         publisher = cast("Node", self).create_publisher(*args, **kwargs, publisher_class=LifecyclePublisher)
@@ -123,32 +123,32 @@ class LifecycleNodeMixin(ManagedEntity):
         return publisher
 
     def destroy_lifecycle_publisher(self, publisher: LifecyclePublisher) -> bool:
-        """Remove a publisher; whether it was this node's."""
+        """Remove a publisher; False if it is not this node's."""
         self._managed_entities.pop(id(publisher), None)
         return cast("Node", self).destroy_publisher(publisher)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Have the managed entities configured."""
+        """Configure the managed entities."""
         return self.__ask_entities("on_configure", state)
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Have the managed entities cleaned up."""
+        """Clean up the managed entities."""
         return self.__ask_entities("on_cleanup", state)
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Have the managed entities shut down."""
+        """Shut down the managed entities."""
         return self.__ask_entities("on_shutdown", state)
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Have the managed entities activated."""
+        """Activate the managed entities."""
         return self.__ask_entities("on_activate", state)
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Have the managed entities deactivated."""
+        """Deactivate the managed entities."""
         return self.__ask_entities("on_deactivate", state)
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Have the managed entities deal with an error."""
+        """Let the managed entities handle an error."""
         return self.__ask_entities("on_error", state)
 
     def __ask_entities(self, callback_name: str, state: LifecycleState) -> TransitionCallbackReturn:
@@ -162,9 +162,9 @@ class LifecycleNodeMixin(ManagedEntity):
 
 
 class LifecycleNode(LifecycleNodeMixin, Node):
-    """A node with a life cycle; without ``enable_communication_interface`` others cannot steer it.
+    """A lifecycle node. Without ``enable_communication_interface`` other nodes cannot control it.
 
-    All else is as for ``Node``.
+    The other arguments are those of ``Node``.
     """
 
     def __init__(self, node_name: str, *, enable_communication_interface: bool = True, **kwargs: Any) -> None:

@@ -1,4 +1,4 @@
-"""Publishers that are silent unless their node is active."""
+"""Publishers that send only while their node is active."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from sim.ros.lifecycle.managed_entity import SimpleManagedEntity
 
 
 class LifecyclePublisher(SimpleManagedEntity, Publisher):
-    """A publisher that sends nothing while its node is not active."""
+    """A publisher that sends only while its node is active."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         SimpleManagedEntity.__init__(self)

@@ -1,4 +1,4 @@
-"""The states of a node with a life cycle, and what leads from one to another. Knows no node.
+"""The states and transitions of a lifecycle node, independent of the node itself.
 
 Source: the ROS 2 design article "Managed nodes"; numbers and labels are those of lifecycle_msgs and rcl.
 """
@@ -12,14 +12,14 @@ from sim.ros.exceptions import RCLError
 
 
 class LifecycleState(NamedTuple):
-    """A state, as callbacks are told the one that their node comes from."""
+    """A state, as callbacks get the state that their node leaves."""
 
     label: str
     state_id: int
 
 
 class TransitionCallbackReturn(Enum):
-    """How a transition's callback ended."""
+    """The outcome of a transition's callback."""
 
     SUCCESS = 97
     FAILURE = 98
@@ -31,7 +31,7 @@ class TransitionCallbackReturn(Enum):
 
 
 class Transition(NamedTuple):
-    """A way from one state to another, both by number."""
+    """A transition between two states, which are given by their ids."""
 
     transition_id: int
     label: str
@@ -57,7 +57,7 @@ STATES = {
 }
 CONFIGURE, CLEANUP, ACTIVATE, DEACTIVATE = 1, 2, 3, 4
 SHUTDOWN_FROM = {UNCONFIGURED: 5, INACTIVE: 6, ACTIVE: 7}
-"""The transition that shuts down, by the state it starts from."""
+"""The id of the shutdown transition by its start state."""
 
 
 def _outcomes(first: int, state: int, success: int, failure: int, error: int) -> tuple[Transition, ...]:
@@ -91,42 +91,42 @@ class LifecycleStateMachine:
 
     @property
     def initialized(self) -> bool:
-        """True: it can be used from the first."""
+        """True: the state machine is always initialised."""
         return True
 
     @property
     def current_state(self) -> tuple[int, str]:
-        """Number and label of the state."""
+        """Id and label of the state."""
         return self._state, STATES[self._state]
 
     @property
     def available_states(self) -> list[tuple[int, str]]:
-        """Number and label of every state."""
+        """Ids and labels of all states."""
         return list(STATES.items())
 
     @property
     def available_transitions(self) -> list[Transition]:
-        """The ways out of the state."""
+        """The transitions from the present state."""
         return [each for each in TRANSITIONS if each.start == self._state]
 
     @property
     def transition_graph(self) -> list[Transition]:
-        """Every way."""
+        """All transitions."""
         return list(TRANSITIONS)
 
     def get_transition_by_label(self, label: str) -> int:
-        """The number of the way out of the state that has this label; RCLError without one."""
-        return self._way_out(label).transition_id
+        """The id of the present state's transition with a label; RCLError without such a transition."""
+        return self._transition(label).transition_id
 
     def trigger_transition_by_id(self, transition_id: int) -> Transition:
-        """Take a way out of the state, by its number; RCLError if there is no such transition."""
-        return self._take(self._way_out(transition_id))
+        """Make the transition with an id; RCLError if the state has no such transition."""
+        return self._take(self._transition(transition_id))
 
     def trigger_transition_by_label(self, label: str) -> Transition:
-        """Take a way out of the state, by its label; RCLError if there is no such transition."""
-        return self._take(self._way_out(label))
+        """Make the transition with a label; RCLError if the state has no such transition."""
+        return self._take(self._transition(label))
 
-    def _way_out(self, wanted: int | str) -> Transition:
+    def _transition(self, wanted: int | str) -> Transition:
         for each in self.available_transitions:
             if wanted in (each.transition_id, each.label):
                 return each

@@ -1,1 +1,1 @@
-"""Loggers, their filters, and how a line looks on a terminal."""
+"""Loggers, their filters, and the format of log lines on a terminal."""

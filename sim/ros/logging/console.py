@@ -1,4 +1,4 @@
-"""Log lines on a terminal, as rcutils writes them and as its environment variables want them."""
+"""Log lines on a terminal, in rcutils' format and with its environment variables."""
 
 from __future__ import annotations
 
@@ -44,9 +44,9 @@ _TOKENS: dict[str, Callable[[LogRecord], str]] = {
     "severity": lambda record: record.severity.name,
     "name": lambda record: record.logger,
     "message": lambda record: record.text,
-    "function_name": lambda record: record.place.function,
-    "file_name": lambda record: record.place.file,
-    "line_number": lambda record: str(record.place.line),
+    "function_name": lambda record: record.call_site.function,
+    "file_name": lambda record: record.call_site.file,
+    "line_number": lambda record: str(record.call_site.line),
     "time": _time,
     "time_as_nanoseconds": lambda record: f"{record.stamp:019d}",
     "date_time_with_ms": _date,
@@ -54,10 +54,10 @@ _TOKENS: dict[str, Callable[[LogRecord], str]] = {
 
 
 class LogConsole:
-    """Writes log lines to stderr, or to stdout if the environment wants that.
+    """Writes log lines to stderr, or to stdout if the environment says so.
 
-    Colours come on a terminal, or as the environment says. What it says wrongly is told once, on stderr,
-    and does not count.
+    Lines are coloured on a terminal, or as the environment says. An invalid variable is reported once, on
+    stderr, and ignored.
     """
 
     def __init__(self, environment: Mapping[str, str]) -> None:
@@ -75,12 +75,12 @@ class LogConsole:
         print(line, file=stream, flush=True)
 
     def hand_to(self, take: Callable[[str, bool], None], record: LogRecord) -> None:
-        """Give ``take`` each line of a record without colours, and whether it belongs on stderr."""
+        """Call ``take`` with each line of a record, without colours, and whether it is for stderr."""
         for line in self.line(record).split("\n"):
             take(line, not self._to_stdout)
 
     def line(self, record: LogRecord) -> str:
-        """The line without colours; a token that is not known stands for itself."""
+        """The line without colours; unknown tokens stay as they are."""
 
         def value(found: re.Match[str]) -> str:
             token = _TOKENS.get(found[1])
@@ -93,7 +93,7 @@ class LogConsole:
 
 
 def _switch(environment: Mapping[str, str], name: str) -> bool | None:
-    """What a variable that is 0 or 1 says; None if it is not set."""
+    """The value of a variable that is 0 or 1; None if it is not set."""
     value = environment.get(name, "")
     if value not in {"", "0", "1"}:
         print(f"{name} is {value!r}: the valid values are 1 and 0", file=sys.stderr)  # noqa: T201

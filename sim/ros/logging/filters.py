@@ -1,7 +1,7 @@
-"""What holds back lines of a log: once, skip_first and throttle, for each place in a program that logs.
+"""Log filters: once, skip_first and throttle, for each call site of a program.
 
-The rules are rclpy's: filters are asked in the order throttle, skip_first, once; the first that refuses ends
-the asking, and those before it count the line as logged. What a place asked for first, it must ask for ever.
+The rules are rclpy's: filters are applied in the order throttle, skip_first, once, up to the first that
+refuses a line; those before it count the line as logged. A call site must always have the same filters.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from sim.ros.clocks.clock import Clock
 
 
 class CallSite(NamedTuple):
-    """A place in a program."""
+    """A place in a program that calls a logger."""
 
     function: str
     file: str
@@ -24,8 +24,8 @@ class CallSite(NamedTuple):
     instruction: int
 
 
-def calling_place() -> CallSite:
-    """The place that called a logger."""
+def calling_site() -> CallSite:
+    """The call site of the running logger."""
     frame: FrameType | None = sys._getframe(1)
     while frame is not None and frame.f_globals.get("__package__") == __package__:
         frame = frame.f_back
@@ -34,37 +34,37 @@ def calling_place() -> CallSite:
 
 
 class LoggingFilter:
-    """Base of the filters. ``params`` are its options with their defaults; None: it needs the option.
+    """Base of the filters. ``params`` has the options with their defaults; None: the option is required.
 
-    What a place has of a filter is kept in ``context``, the filter's options among it.
+    ``context`` has the state of the filters of one call site, including their options.
     """
 
     params: ClassVar[Mapping[str, Any]] = {}
 
     @classmethod
     def initialize_context(cls, context: dict[str, Any], **options: Any) -> None:
-        """Begin at a place that logs with these options."""
+        """Initialise the context of a call site with these options."""
         for name, default in cls.params.items():
             context[name] = options.get(name, default)
 
     @staticmethod
     def should_log(_context: dict[str, Any]) -> bool:
-        """Whether the next line is logged; counts it."""
+        """Whether the next line is logged; this counts the line."""
         return True
 
 
 class Throttle(LoggingFilter):
-    """Lets a line pass ``throttle_duration_sec`` seconds after the one before it, on some clock."""
+    """Passes a line if ``throttle_duration_sec`` seconds have passed since the last one, on a clock."""
 
     params: ClassVar[Mapping[str, Any]] = {"throttle_duration_sec": None, "throttle_time_source_type": Clock}
 
     @classmethod
     def initialize_context(cls, context: dict[str, Any], **options: Any) -> None:
-        """Begin; without a clock among the options, with the system's.
+        """Initialise the context, by default with the system's clock.
 
         Raises:
             TypeError: the duration is missing.
-            ValueError: the time source is no clock.
+            ValueError: the time source is not a clock.
         """
         _require_options(cls, "throttle", options)
         super().initialize_context(context, **options)
@@ -86,13 +86,13 @@ class Throttle(LoggingFilter):
 
 
 class SkipFirst(LoggingFilter):
-    """Lets all lines pass but the first."""
+    """Passes all lines except the first."""
 
     params: ClassVar[Mapping[str, Any]] = {"skip_first": None}
 
     @classmethod
     def initialize_context(cls, context: dict[str, Any], **options: Any) -> None:
-        """Begin with nothing skipped."""
+        """Initialise the context: no line is skipped yet."""
         super().initialize_context(context, **options)
         context["first_has_been_skipped"] = False
 
@@ -105,13 +105,13 @@ class SkipFirst(LoggingFilter):
 
 
 class Once(LoggingFilter):
-    """Lets one line pass."""
+    """Passes only the first line."""
 
     params: ClassVar[Mapping[str, Any]] = {"once": None}
 
     @classmethod
     def initialize_context(cls, context: dict[str, Any], **options: Any) -> None:
-        """Begin with nothing logged."""
+        """Initialise the context: no line is logged yet."""
         super().initialize_context(context, **options)
         context["has_been_logged_once"] = False
 
@@ -126,11 +126,11 @@ class Once(LoggingFilter):
 supported_filters: OrderedDict[str, type[LoggingFilter]] = OrderedDict(
     throttle=Throttle, skip_first=SkipFirst, once=Once
 )
-"""The filters in the order in which they are asked."""
+"""The filters in the order in which they are applied."""
 
 
 def get_filters_from_kwargs(**options: Any) -> list[str]:
-    """The names of the filters that options of a log call ask for.
+    """The names of the filters that the options of a log call select.
 
     Raises:
         TypeError: an unknown option, or one that a filter needs is missing.
@@ -156,8 +156,8 @@ def _require_options(kind: type[LoggingFilter], name: str, options: Mapping[str,
             )
 
 
-class LogPlace:
-    """What one place logs, through which filters; raises as these do when they begin."""
+class CallSiteFilters:
+    """The filters of one call site, and its logger and severity. Raises as ``initialize_context``."""
 
     def __init__(self, name: str, severity: int, options: Mapping[str, Any]) -> None:
         self._name = name
@@ -169,7 +169,7 @@ class LogPlace:
             supported_filters[each].initialize_context(self._context, **options)
 
     def require_same(self, name: str, severity: int, options: Mapping[str, Any]) -> None:
-        """Raise ValueError if the place now asks for something else than at first."""
+        """Raise ValueError if the call site now has another severity, name or filter than at first."""
         if severity != self._severity:
             raise ValueError("Logger severity cannot be changed between calls.")
         if name != self._name:

@@ -1,4 +1,4 @@
-"""Loggers: lines as ROS prints them, from DEBUG to FATAL."""
+"""ROS loggers, with severities from DEBUG to FATAL."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from sim.ros.logging.console import LogConsole
-from sim.ros.logging.filters import CallSite, LogPlace, calling_place
+from sim.ros.logging.filters import CallSite, CallSiteFilters, calling_site
 from sim.ros.logging.record import LogRecord
 from sim.ros.logging.severity import LoggingSeverity
-from sim.ros.middleware.process import current_process, of_process
+from sim.ros.middleware.process import current_process, process_local
 from sim.trace.events import Severity
 
 __all__ = [
@@ -29,14 +29,14 @@ __all__ = [
 
 
 class Rosout(Protocol):
-    """What takes the lines of a node's logger to ``/rosout``."""
+    """Publishes the lines of a node's logger on ``/rosout``."""
 
     def log(self, record: LogRecord) -> None:
         """Publish a line."""
 
 
 class Loggers:
-    """What a process keeps of its loggers: their levels, and where their lines go."""
+    """The state of a process's loggers: their levels, and where their lines go."""
 
     def __init__(self) -> None:
         self.levels: dict[str, LoggingSeverity] = {}
@@ -46,25 +46,25 @@ class Loggers:
 
 
 class _Console(LogConsole):
-    """The terminal as the environment of a process wants it."""
+    """The log console for the environment of a process."""
 
     def __init__(self) -> None:
         super().__init__({**os.environ, **current_process().environment})
 
 
 class RcutilsLogger:
-    """A named logger. Lines below its level are dropped; without a level of its own, its parent's counts.
+    """A named logger. Lines below its level are dropped; without its own level it has its parent's.
 
-    The lines of a node's logger, and of loggers made by ``get_child`` from that, go to ``/rosout`` too.
+    The lines of a node's logger and of its children from ``get_child`` are also published on ``/rosout``.
     """
 
     def __init__(self, name: str = "", *, rosout_name: str | None = None) -> None:
         self.name = name
         self._rosout_name = name if rosout_name is None else rosout_name
-        self._places: dict[CallSite, LogPlace] = {}
+        self._places: dict[CallSite, CallSiteFilters] = {}
 
     def get_child(self, name: str) -> RcutilsLogger:
-        """The logger ``self.name``.``name``.
+        """A logger called ``self.name``.``name``.
 
         Raises:
             ValueError: the name is empty.
@@ -80,32 +80,32 @@ class RcutilsLogger:
         set_logger_level(self.name, level)
 
     def get_effective_level(self) -> LoggingSeverity:
-        """Its own level, or the nearest parent's, or INFO."""
+        """The logger's own level, or the nearest parent's, or INFO."""
         return get_logger_effective_level(self.name)
 
     def is_enabled_for(self, severity: LoggingSeverity | int) -> bool:
-        """Whether lines of that severity are kept."""
+        """Whether lines of a severity are written."""
         return LoggingSeverity(severity) >= self.get_effective_level()
 
     def log(self, message: object, severity: LoggingSeverity | int, **options: Any) -> bool:
-        """Write a line; whether it was written.
+        """Write a line; return whether it was written.
 
         ``once``, ``skip_first`` and ``throttle_duration_sec`` (seconds, on the clock
-        ``throttle_time_source_type``) hold back lines of the same place in the program; ``name`` stands in
-        for the logger's own.
+        ``throttle_time_source_type``) filter the lines of the same call site; ``name`` replaces
+        the logger's name.
 
         Raises:
-            TypeError: an unknown option, or a message to be written that is no text.
-            ValueError: the place asked for another severity, name or filter before.
+            TypeError: an option is unknown, or the message is not a text.
+            ValueError: the call site had another severity, name or filter before.
         """
         if not self.is_enabled_for(severity):
             return False
         level = LoggingSeverity(severity)
         name = options.pop("name", self.name)
-        where = calling_place()
+        where = calling_site()
         place = self._places.get(where)
         if place is None:
-            place = self._places[where] = LogPlace(name, level, options)
+            place = self._places[where] = CallSiteFilters(name, level, options)
         else:
             place.require_same(name, level, options)
         if not place.lets_pass():
@@ -115,17 +115,17 @@ class RcutilsLogger:
 
     def _write(self, record: LogRecord) -> None:
         process = current_process()
-        loggers = process.keep(Loggers)
+        loggers = process.local(Loggers)
         if loggers.console_enabled:
-            if process.hear_output is not None:
-                process.keep(_Console).hand_to(process.hear_output, record)
+            if process.output_listener is not None:
+                process.local(_Console).hand_to(process.output_listener, record)
             probe = process.probe or process.host.probe
-            if process.take_output is not None:
-                process.keep(_Console).hand_to(process.take_output, record)
+            if process.output_sink is not None:
+                process.local(_Console).hand_to(process.output_sink, record)
             elif probe.visible:
                 probe.logged(Severity[record.severity.name], record.logger, record.text)
             else:
-                process.keep(_Console).write(record)
+                process.local(_Console).write(record)
         rosout = loggers.rosout.get(self._rosout_name)
         if rosout is not None:
             rosout.log(record)
@@ -156,7 +156,7 @@ class RcutilsLogger:
 
 
 def _text_of(message: object) -> str:
-    """What is written of a message, as rclpy hands it on to C."""
+    """The text of a message, as rclpy passes it to C."""
     if isinstance(message, str):
         return message
     if message is None:
@@ -181,18 +181,18 @@ def get_logger(name: str) -> RcutilsLogger:
 
 
 def set_logger_level(name: str, level: LoggingSeverity | int, detailed_error: bool = False) -> None:  # noqa: ARG001
-    """Drop the lines of a logger below ``level``; an empty name means all that have no level."""
-    of_process(Loggers).levels[name] = LoggingSeverity(level)
+    """Drop the lines of a logger below ``level``; the empty name sets the default level."""
+    process_local(Loggers).levels[name] = LoggingSeverity(level)
 
 
 def get_logger_level(name: str) -> LoggingSeverity:
-    """A logger's own level, UNSET if it has none; of the empty name, the level of all that have none."""
+    """A logger's own level, or UNSET; for the empty name, the default level."""
     default = LoggingSeverity.UNSET if name else LoggingSeverity.INFO
-    return of_process(Loggers).levels.get(name, default)
+    return process_local(Loggers).levels.get(name, default)
 
 
 def get_logger_effective_level(name: str) -> LoggingSeverity:
-    """The level that counts for a logger: its own, or the nearest parent's, or INFO."""
+    """A logger's own level, or the nearest parent's, or INFO."""
     while name:
         if (level := get_logger_level(name)) != LoggingSeverity.UNSET:
             return level
@@ -201,10 +201,10 @@ def get_logger_effective_level(name: str) -> LoggingSeverity:
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
-    """The severity of that name, in letters of any size.
+    """The severity of a name, in upper or lower case.
 
     Raises:
-        RuntimeError: there is none.
+        RuntimeError: there is no such severity.
     """
     try:
         return LoggingSeverity[log_severity.upper()]
@@ -213,29 +213,29 @@ def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
 
 
 def get_logging_directory() -> Path:
-    """Where ROS 2 keeps its logs: ``$ROS_LOG_DIR``, ``$ROS_HOME/log`` or ``~/.ros/log``."""
+    """ROS 2's folder of log files: ``$ROS_LOG_DIR``, ``$ROS_HOME/log`` or ``~/.ros/log``."""
     if chosen := os.environ.get("ROS_LOG_DIR"):
         return Path(chosen).expanduser()
     return Path(os.environ.get("ROS_HOME") or "~/.ros").expanduser() / "log"
 
 
 def initialize() -> None:
-    """Begin logging, which needs no beginning here."""
+    """Do nothing: logging needs no initialisation here."""
 
 
 def shutdown() -> None:
-    """Forget the levels of all loggers."""
-    of_process(Loggers).levels.clear()
+    """Clear the levels of all loggers."""
+    process_local(Loggers).levels.clear()
 
 
 def clear_config() -> None:
-    """Forget the levels of all loggers."""
+    """Clear the levels of all loggers."""
     shutdown()
 
 
 def send_to(*, console: bool | None, rosout: bool | None) -> None:
-    """Have lines go, or not go, to the console and to ``/rosout``; None: as before."""
-    loggers = of_process(Loggers)
+    """Switch the output to the console and to ``/rosout`` on or off; None: leave it as it is."""
+    loggers = process_local(Loggers)
     if console is not None:
         loggers.console_enabled = console
     if rosout is not None:

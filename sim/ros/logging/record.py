@@ -9,10 +9,10 @@ from sim.ros.logging.severity import LoggingSeverity
 
 
 class LogRecord(NamedTuple):
-    """What was logged, by which logger, and where; ``stamp`` is nanoseconds since 1970."""
+    """A log line, its logger and its call site; ``stamp`` is nanoseconds since 1970."""
 
     severity: LoggingSeverity
     logger: str
     text: str
     stamp: int
-    place: CallSite
+    call_site: CallSite

@@ -1,10 +1,10 @@
-"""How grave the lines of a log are."""
+"""The severities of log lines."""
 
 from enum import IntEnum
 
 
 class LoggingSeverity(IntEnum):
-    """How grave a line is."""
+    """The severity of a log line."""
 
     UNSET = 0
     DEBUG = 10

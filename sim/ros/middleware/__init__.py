@@ -1,1 +1,1 @@
-"""The machine: host, processes, network and deliveries; it knows endpoints by small protocols."""
+"""The simulated machine: host, processes, network and deliveries. It knows endpoints only by protocols."""

@@ -1,4 +1,4 @@
-"""Changes to a program without editing it: callback groups, and periods of timers."""
+"""Changes to a program without editing it: callback groups and timer periods."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from enum import StrEnum
 from typing import TypeAlias
 
 CallbackKey: TypeAlias = tuple[str, str]
-"""A node's full name ("" for any node) and a callback's name, or else its topic's or service's."""
+"""A node's full name ("" for any node), and the name of a callback, or of its topic or service."""
 
 
 class GroupChoice(StrEnum):
@@ -17,18 +17,18 @@ class GroupChoice(StrEnum):
     OWN = "own"
     """A mutually exclusive group of its own."""
     SHARED = "shared"
-    """A mutually exclusive group of all callbacks of the node with this choice."""
+    """One mutually exclusive group for all callbacks of the node with this choice."""
     REENTRANT = "reentrant"
-    """A reentrant group of all callbacks of the node with this choice."""
+    """One reentrant group for all callbacks of the node with this choice."""
     DEFAULT = "default"
     """The node's default group."""
 
 
 @dataclass
 class CallbackOverrides:
-    """The changes; ``periods`` are nanoseconds. Everything else stays as in the program.
+    """Overrides of groups and of timer periods, in nanoseconds.
 
-    A change for a node takes precedence over one for any node. Use it with the host's lock held.
+    An override for a node takes precedence over one for any node. Use it with the host's lock held.
     """
 
     groups: Mapping[CallbackKey, GroupChoice] = field(default_factory=dict)
@@ -46,18 +46,18 @@ class CallbackOverrides:
         self._timers[node, callback] = None
         return self.periods.get((node, callback), self.periods.get(("", callback), asked))
 
-    def unmet(self) -> Iterator[str]:
-        """Sentences on the changes that no callback has matched so far."""
-        yield from _unmet(self.groups, self._callbacks, "callback")
-        yield from _unmet(self.periods, self._timers, "timer callback")
+    def unmatched(self) -> Iterator[str]:
+        """Sentences on the overrides that no callback has matched so far."""
+        yield from _unmatched(self.groups, self._callbacks, "callback")
+        yield from _unmatched(self.periods, self._timers, "timer callback")
 
 
-def _unmet(
-    changes: Mapping[CallbackKey, object], there: Mapping[CallbackKey, None], kind: str
+def _unmatched(
+    overrides: Mapping[CallbackKey, object], present: Mapping[CallbackKey, None], kind: str
 ) -> Iterator[str]:
-    names = dict.fromkeys(callback for _, callback in there if callback)
-    for node, callback in changes:
-        if (node, callback) in there or (not node and callback in names):
+    names = dict.fromkeys(callback for _, callback in present if callback)
+    for node, callback in overrides:
+        if (node, callback) in present or (not node and callback in names):
             continue
         place = f" in {node}" if node and callback in names else ""
         are = "is" if len(names) == 1 else "are"

@@ -25,7 +25,7 @@ _MOST_WAITING = 32_000_000
 
 
 class _ContentTopic:
-    """A topic's number, and the size of its last message."""
+    """A topic's number, and the encoded size of its last message in bytes."""
 
     __slots__ = ("number", "size")
 
@@ -35,7 +35,7 @@ class _ContentTopic:
 
 
 class _Content:
-    """A message of a topic that does not change any more."""
+    """A message that no longer changes, and its topic."""
 
     __slots__ = ("message", "topic")
 
@@ -45,7 +45,7 @@ class _Content:
 
 
 class _MessageWaiting(TraceEvent, frozen=True, tag="message"):
-    """A ``MessageSent`` whose data is not encoded yet; both are packed alike."""
+    """A ``MessageSent`` whose data is not encoded yet; both have the same encoding."""
 
     message: MessageId
     topic: TopicId
@@ -53,11 +53,11 @@ class _MessageWaiting(TraceEvent, frozen=True, tag="message"):
 
 
 class Contents:
-    """Turns messages into events with their contents, while ``wanted``.
+    """Makes events with the contents of messages, while ``wanted``.
 
-    On the real clock encoding would delay the publishing thread, so it happens in ``pack``, on the thread
-    that sends the events; contents that exceed the queue meanwhile are dropped and counted. On virtual time
-    ``make_room`` is given, which has queued events sent: nothing is dropped, and messages are encoded at
+    On the real clock, encoding would delay the publishing thread, so ``pack`` encodes messages on the thread
+    that sends the events. Contents that exceed the queue are dropped and counted. On virtual time
+    ``make_room`` is given, which sends the queued events: nothing is dropped, and messages are encoded at
     once, which takes no virtual time and saves a copy.
 
     ``events`` is called with the host's lock held, ``pack`` on one thread at a time.
@@ -68,20 +68,20 @@ class Contents:
         self._make_room = make_room
         self._encoder = msgspec.msgpack.Encoder(enc_hook=_encode)
         self._topics: dict[tuple[str, type[Message]], _ContentTopic] = {}
-        # Two counters, each with a thread of its own that sets it.
+        # Two counters of bytes; each is written by only one thread.
         self._queued = 0
         self._encoded = 0
         self._lost = 0
 
     @property
     def keeps_messages(self) -> bool:
-        """Whether messages are encoded later, so that no callback may get the same object to change."""
+        """Whether messages are encoded later, so that no callback may change the same object."""
         return self.wanted and self._make_room is None
 
     def events(
         self, now: int, message: MessageId, topic: str, data: Message, qos: QoSProfile
     ) -> list[AnyEvent]:
-        """The events besides the publication; ``qos`` is the publisher's offer."""
+        """The events for a publication, besides ``published``; ``qos`` is the publisher's profile."""
         if self._queued - self._encoded > _MOST_WAITING and self._make_room is not None:
             self._make_room()
         if self._queued - self._encoded > _MOST_WAITING:
@@ -105,7 +105,7 @@ class Contents:
         return MessageSent(now, message, topic.number, packed)
 
     def pack(self, events: list[AnyEvent]) -> bytes:
-        """Encode events, as ``sim.trace.events.encode``, including those of ``events``."""
+        """Encode events as ``sim.trace.events.encode`` does, and the messages in the events of ``events``."""
         queued = self._queued
         try:
             packed = self._encoder.encode(events)
@@ -130,5 +130,5 @@ def _encode(content: Any) -> bytes | None:
 def _cdr(message: Message) -> bytes | None:
     try:
         return to_cdr(message)
-    except Exception:  # noqa: BLE001 -- what a program put into a list of a message's can be anything
+    except Exception:  # noqa: BLE001 -- a program can put any object into a message's list
         return None

@@ -9,9 +9,10 @@ import msgspec
 
 
 class Delivery(msgspec.Struct, frozen=True):
-    """A message in transit, the ``number``-th of its publisher.
+    """A message in transit, with the ``number`` that its publisher gave it.
 
-    ``shared``: other subscriptions get the same object.
+    ``message`` is its id on the trace, ``published`` its time in nanoseconds. ``shared``: other
+    subscriptions get the same object.
     """
 
     data: Any
@@ -22,15 +23,15 @@ class Delivery(msgspec.Struct, frozen=True):
 
 
 class ExpiringDelivery(Delivery, frozen=True):
-    """A message with a lifespan, which ends at ``expires``."""
+    """A message with a lifespan, which ends at ``expires`` nanoseconds."""
 
     expires: int = 0
 
 
 class Request(msgspec.Struct, frozen=True):
-    """A service request in transit; ``answer`` takes the response.
+    """A service request in transit; ``answer`` delivers the response.
 
-    ``client`` is the gid of the client: zeros for the person at the console.
+    ``client`` is the gid of the client: zeros for a call from the console.
     """
 
     data: Any

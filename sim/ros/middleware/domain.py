@@ -1,4 +1,4 @@
-"""Domains: nodes of different domains share a machine and do not see each other."""
+"""Domains: nodes of different domains on one machine do not see each other."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
 
 
 def domain_of(environment: Mapping[str, str]) -> int:
-    """The domain of an environment; 0 by default.
+    """The domain id of an environment; 0 by default.
 
     Raises:
-        RCLError: ``ROS_DOMAIN_ID`` is no number, or a negative one.
+        RCLError: ``ROS_DOMAIN_ID`` is not a number, or is negative.
     """
     text = environment.get(DOMAIN_VARIABLE, "").strip()
     if not text:
@@ -25,7 +25,7 @@ def domain_of(environment: Mapping[str, str]) -> int:
 
 
 def domain_of_machine() -> int:
-    """The domain outside programs; 0 if the environment has no valid one."""
+    """The domain id outside of programs; 0 if the environment has no valid one."""
     try:
         return domain_of(os.environ)
     except RCLError:

@@ -13,23 +13,23 @@ from sim.ros.qos.qos import QoSProfile
 
 
 class ContextLifetime(Protocol):
-    """A context, as far as waiting code uses it."""
+    """A context, as used by code that waits."""
 
     def ok(self) -> bool:
         """Whether it is initialised and not shut down."""
 
     def wake_at_end(self, callback: Callable[[], None]) -> None:
-        """Call ``callback`` when it ends."""
+        """Call ``callback`` when the context ends."""
 
 
 class MatchListener(Protocol):
     """The listener for matches of a publisher or subscription."""
 
     def type_refused(self, warning: str) -> None:
-        """A match failed because of the message type."""
+        """A match failed because of the message type; ``warning`` is to be logged."""
 
     def qos_refused(self, policy: str, warning: str) -> None:
-        """A match failed because of a policy."""
+        """A match failed because of a policy; ``warning`` is to be logged."""
 
 
 class TopicEndpoint(Protocol):
@@ -45,7 +45,7 @@ class TopicEndpoint(Protocol):
 
     @property
     def events(self) -> MatchListener:
-        """The listener for its matches."""
+        """The listener for matches of this endpoint."""
 
 
 class SubscriptionEndpoint(TopicEndpoint, Protocol):
@@ -54,10 +54,10 @@ class SubscriptionEndpoint(TopicEndpoint, Protocol):
     def deliver(self, delivery: Delivery) -> None:
         """Queue a message."""
 
-    def found(self, publisher: Any) -> None:
+    def publisher_matched(self, publisher: Any) -> None:
         """A publisher was matched."""
 
-    def lost(self, publisher: Any) -> None:
+    def publisher_lost(self, publisher: Any) -> None:
         """A matched publisher is gone."""
 
 
@@ -65,22 +65,22 @@ class PublisherEndpoint(TopicEndpoint, Protocol):
     """A publisher."""
 
     def reach(self, subscription: Any) -> None:
-        """Send to ``subscription`` from now on."""
+        """Start sending to ``subscription``."""
 
     def reaches(self, subscription: Any) -> bool:
         """Whether it sends to ``subscription``."""
 
     def forget(self, subscription: Any) -> None:
-        """Send to ``subscription`` no more."""
+        """Stop sending to ``subscription``."""
 
     def catch_up(self, subscription: Any) -> None:
-        """Send a late subscription the kept messages."""
+        """Send the kept messages to a late subscription."""
 
-    def of_another_type_than(self, subscription: Any) -> None:
-        """Tell that it does not match a subscription because of the message type."""
+    def type_differs_from(self, subscription: Any) -> None:
+        """Report on both sides that the message types differ."""
 
     def incompatible_with(self, subscription: Any, policy: str) -> None:
-        """Report on both sides that they are incompatible."""
+        """Report on both sides that a policy is incompatible."""
 
 
 class ServiceEndpoint(Protocol):
@@ -91,21 +91,21 @@ class ServiceEndpoint(Protocol):
 
     @property
     def is_shown(self) -> bool:
-        """Whether its program is traced."""
+        """Whether the service belongs to a program that the trace shows."""
 
     def deliver(self, request: Request) -> None:
         """Queue a request."""
 
 
 class NetworkNode(Protocol):
-    """A node, as the network knows it."""
+    """A node."""
 
     @property
     def context(self) -> ContextLifetime:
-        """Its context."""
+        """The node's context."""
 
     def destroy_node(self) -> None:
-        """Remove it with all that it has."""
+        """Remove the node and its entities."""
 
     def get_name(self) -> str:
-        """Its name without namespace."""
+        """The node's name without namespace."""

@@ -5,12 +5,11 @@ on wall time without a trace, so that the model also works as a plain library.
 """
 
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from itertools import count
-from typing import Protocol
-from weakref import ref
+from weakref import WeakMethod
 
 from sim.clock import PacedClock, RunClock
 from sim.probes.probe import Probe, SilentProbe
@@ -29,9 +28,9 @@ class Host:
     """The state that all contexts of this process share.
 
     ``lock`` guards all state of executors, groups and queues; it is never held during a wait or a callback.
-    ``threads`` replaces the number of threads of every executor (None: the program's own), ``overrides`` has
-    the other changes to the programs. ``default_domain`` is used outside programs. ``takes_signals``: the
-    whole process is the program's, so rclpy's signal handlers may be installed. ``profile``: what it is like.
+    ``threads`` replaces the number of threads of every executor (None: the program's own), and ``overrides``
+    has the other changes to the programs. ``default_domain`` is used outside programs. ``takes_signals``: the
+    process runs only the program, so rclpy's signal handlers may be installed. ``profile``: the release.
     """
 
     clock: RunClock
@@ -44,7 +43,7 @@ class Host:
     profile: Profile = field(default_factory=Profile)
     _gids: Iterator[int] = field(default_factory=lambda: count(1))
     _networks: dict[int, Network] = field(default_factory=dict)
-    _waiters: "list[ref[WaitsExplained]]" = field(default_factory=list)
+    _explainers: list[WeakMethod[Callable[[], int | None]]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.lock = lock_on(self.clock, self.probe.callback_here)
@@ -64,29 +63,23 @@ class Host:
         return next(self._gids).to_bytes(16, "little")
 
     def explain_waits(self) -> int | None:
-        """Record which callbacks wait now, and why; call it before time passes.
+        """Record which callbacks wait now, and why; call this before time passes.
 
-        Returns when the next timer is due: whether it has to wait is known only then.
+        Returns when the next timer is due: only then is known whether that timer has to wait.
         """
         with self.lock:
-            waiters = [each for reference in self._waiters if (each := reference()) is not None]
-            dues = [waiter.explain_waits() for waiter in waiters]
+            alive = [each for reference in self._explainers if (each := reference()) is not None]
+            dues = [explain() for explain in alive]
         return min((due for due in dues if due is not None), default=None)
 
-    def explain_waits_of(self, waiter: "WaitsExplained") -> None:
-        """Include ``waiter`` from now on, as long as it lives."""
-        with self.lock:
-            self._waiters.append(ref(waiter, self._waiters.remove))
+    def explain_waits_with(self, explain: Callable[[], int | None]) -> None:
+        """Make ``explain_waits`` call a bound method, which is held weakly, with the lock held.
 
-
-class WaitsExplained(Protocol):
-    """Something that can explain why its callbacks wait."""
-
-    def explain_waits(self) -> int | None:
-        """Record waits that started or whose reason changed; return when the next timer is due.
-
-        Called with the host's lock held.
+        ``explain`` records the waits that started or whose reason changed, and returns when the next timer is
+        due.
         """
+        with self.lock:
+            self._explainers.append(WeakMethod(explain, self._explainers.remove))
 
 
 _host: Host | None = None

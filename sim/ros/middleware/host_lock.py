@@ -1,4 +1,4 @@
-"""The lock of a host: a polling lock, and one that is a switch point of explored runs."""
+"""The lock of a host: a polling lock, and a lock that is a switch point of explored runs."""
 
 import threading
 import time
@@ -18,10 +18,10 @@ _RETRY = 50e-6
 
 
 class HostLock(type(_RLock())):  # type: ignore[misc]
-    """A lock without a queue: a thread that finds it taken sleeps and tries again.
+    """A lock without a queue: a thread that finds the lock held sleeps and retries.
 
-    It is held only for a few lines, so it is found taken only when the interpreter switched threads
-    meanwhile. Queued threads would pass the lock on at every use from then on, each time with a thread
+    The lock is held only for a few lines, so a thread finds it held only if the interpreter switched threads
+    meanwhile. With a queue, threads would hand the lock over at every later use, each time with a thread
     switch.
     """
 
@@ -32,10 +32,10 @@ class HostLock(type(_RLock())):  # type: ignore[misc]
 
 
 class SwitchedLock:
-    """A host's lock on a virtual clock that explores orders: threads switch before and after it.
+    """The lock of a host on a virtual clock that explores orders: threads switch before and after each use.
 
-    They never switch while one holds it: a thread that finds it taken waits outside virtual time. Reentrant.
-    ``in_callback`` tells whether the calling thread runs a callback: then it is a step of the program's own.
+    Threads never switch while one holds the lock; a thread that finds it held waits in real time. Reentrant.
+    ``in_callback`` returns whether the calling thread runs a callback: then the use is a step of the program.
     """
 
     def __init__(self, clock: VirtualClock, in_callback: Callable[[], object]) -> None:
@@ -61,7 +61,7 @@ class SwitchedLock:
 
 
 def lock_on(clock: RunClock, in_callback: Callable[[], object]) -> AbstractContextManager[bool]:
-    """Make the lock of a host with that clock; ``in_callback`` is that of ``SwitchedLock``."""
+    """Make the lock of a host with that clock; ``in_callback`` is as for ``SwitchedLock``."""
     if isinstance(clock, VirtualClock) and clock.explores:
         return SwitchedLock(clock, in_callback)
     return HostLock()

@@ -17,7 +17,7 @@ from sim.ros.qos.qos import mismatches
 
 
 class Network:
-    """Every node, publisher, subscription and service of the process, by full name."""
+    """The nodes, publishers, subscriptions and services of one domain, by full name."""
 
     def __init__(self) -> None:
         self._nodes: list[NetworkNode] = []
@@ -60,12 +60,12 @@ class Network:
         return tuple(self._subscriptions.get(topic, ()))
 
     def services(self, srv_type: type) -> tuple[ServiceEndpoint, ...]:
-        """The services of a type, in order of their names' first appearance."""
+        """The services of a type, in the order in which their names were first used."""
         return tuple(each for them in self._services.values() for each in them if each.srv_type is srv_type)
 
     def has_service(self, name: str, srv_type: type) -> bool:
         """Whether there is a service of that name and type."""
-        return self._service(name, srv_type) is not None
+        return bool(self._servers(name, srv_type))
 
     def join_publisher(self, publisher: PublisherEndpoint) -> None:
         """Add a publisher, and match it with the subscriptions."""
@@ -101,21 +101,20 @@ class Network:
         self._services[service.name].remove(service)
 
     def send_request(self, name: str, srv_type: type, request: Request) -> bool:
-        """Deliver a request to every server of the service; False if there is none, and it is lost."""
-        self.announce_use(name)
-        servers = [each for each in self._services.get(name, ()) if each.srv_type is srv_type]
+        """Deliver a request to every server of the service; False without a server: the request is lost."""
+        servers = self._servers(name, srv_type)
         for number, each in enumerate(servers):
             own = copy_message(request.data) if number else request.data
             each.deliver(msgspec.structs.replace(request, data=own))
         return bool(servers)
 
-    def _service(self, name: str, srv_type: type) -> ServiceEndpoint | None:
+    def _servers(self, name: str, srv_type: type) -> list[ServiceEndpoint]:
         self.announce_use(name)
-        return next((each for each in self._services.get(name, ()) if each.srv_type is srv_type), None)
+        return [each for each in self._services.get(name, ()) if each.srv_type is srv_type]
 
     def _match(self, publisher: PublisherEndpoint, subscription: SubscriptionEndpoint) -> bool:
         if publisher.msg_type is not subscription.msg_type:
-            publisher.of_another_type_than(subscription)
+            publisher.type_differs_from(subscription)
             return False
         problems = list(mismatches(publisher.qos_profile, subscription.qos_profile))
         if problems:

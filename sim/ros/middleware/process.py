@@ -1,8 +1,8 @@
-"""Simulated processes: a program's arguments, and the state that rclpy keeps in module globals.
+"""Simulated processes: a program's arguments, and the state that rclpy keeps in global variables.
 
 Programs that would be separate processes on a real machine run on threads of one process. Each has its own
-default context, global executor, loggers and arguments: rclpy's module globals are kept per process by
-``of_process``. A thread belongs to the process of the thread that started it.
+default context, global executor, loggers and arguments: ``process_local`` keeps rclpy's global variables per
+process. A thread belongs to the process of the thread that started it.
 """
 
 from __future__ import annotations
@@ -21,21 +21,21 @@ from sim.probes.probe import Probe
 from sim.ros.middleware.endpoints import ContextLifetime
 from sim.ros.middleware.host import Host, current_host
 
-KeptT = TypeVar("KeptT")
+LocalT = TypeVar("LocalT")
 
 
 @dataclass(eq=False)
 class Process:
     """One program on the host. Thread-safe.
 
-    ``number`` and ``label`` identify it on the trace, 0 and empty for the only one. ``arguments`` is its
-    ``sys.argv``, ``environment`` has the variables that differ from the machine's. ``probe`` None: the
-    host's. ``shows_stdout``: whether its output is shown. ``take_output`` gets every line that it prints or
-    logs, and whether it is for stderr, instead of the run; None: the run gets them. ``hear_output`` gets them
-    besides, shown or not. ``has_keyboard``: whether it reads the run's terminal. ``default_context`` is None
-    before its first use and after its end. ``pool_numbers`` numbers its thread pools; ``callbacks`` and
+    ``number`` and ``label`` identify it on the trace (0 and empty for a single one). ``arguments`` is its
+    ``sys.argv``; ``environment`` has the variables that differ from the machine's. ``probe`` None: the
+    host's. ``shows_stdout``: whether its output is shown. ``output_sink(line, is_error)`` gets every line
+    that it prints or logs, instead of the run; None: the run gets the lines. ``output_listener`` also gets
+    the lines, shown or not. ``has_keyboard``: whether it reads the run's terminal. ``default_context`` is
+    None before its first use and after its end. ``pool_numbers`` numbers the thread pools; ``callbacks`` and
     ``spins`` count the callbacks made and the spins started; ``shut_down_at`` is the place of the callback
-    that shut rclpy down, or empty. ``finish_pools`` wait for what the workers of its pools are at.
+    that shut rclpy down, or empty. ``finish_pools`` wait until the workers of the pools are idle.
     """
 
     host: Host
@@ -45,8 +45,8 @@ class Process:
     environment: dict[str, str] = field(default_factory=dict)
     probe: Probe | None = None
     shows_stdout: bool = True
-    take_output: Callable[[str, bool], None] | None = None
-    hear_output: Callable[[str, bool], None] | None = None
+    output_sink: Callable[[str, bool], None] | None = None
+    output_listener: Callable[[str, bool], None] | None = None
     has_keyboard: bool = True
     default_context: ContextLifetime | None = None
     pool_numbers: Iterator[int] = field(default_factory=count)
@@ -54,18 +54,18 @@ class Process:
     spins: int = 0
     shut_down_at: str = ""
     finish_pools: list[WeakMethod[Callable[[], None]]] = field(default_factory=list)
-    _kept: dict[Callable[[], Any], Any] = field(default_factory=dict)
+    _locals: dict[Callable[[], Any], Any] = field(default_factory=dict)
 
-    def keep(self, make: Callable[[], KeptT]) -> KeptT:
-        """The value of ``make`` for this process, made on first access."""
-        if make not in self._kept:
+    def local(self, make: Callable[[], LocalT]) -> LocalT:
+        """The process's own result of ``make``, which is called at the first access."""
+        if make not in self._locals:
             with self.host.lock:
-                self._kept.setdefault(make, make())
-        kept: KeptT = self._kept[make]
-        return kept
+                self._locals.setdefault(make, make())
+        value: LocalT = self._locals[make]
+        return value
 
     def enter(self) -> None:
-        """Assign the calling thread, and the threads that it starts from now on, to this process."""
+        """Assign the calling thread, and the threads that it starts later, to this process."""
         _here().ros_process = self
 
     def start_thread(self, target: Callable[[], None], name: str) -> None:
@@ -82,7 +82,7 @@ _main: Process | None = None
 
 
 def current_process() -> Process:
-    """The calling thread's process: the host's main one by default."""
+    """The process of the calling thread; by default the host's main process."""
     return process_of(_here())
 
 
@@ -92,13 +92,13 @@ def process_of(thread: threading.Thread) -> Process:
     return _main_process() if process is None else process
 
 
-def of_process(make: Callable[[], KeptT]) -> KeptT:
-    """The value of ``make`` for the calling thread's process, made on first access."""
-    return current_process().keep(make)
+def process_local(make: Callable[[], LocalT]) -> LocalT:
+    """The result of ``make`` for the calling thread's process; ``make`` is called at the first access."""
+    return current_process().local(make)
 
 
 def _main_process() -> Process:
-    global _main  # noqa: PLW0603 -- goes with the one host
+    global _main  # noqa: PLW0603 -- one main process per host
     host = current_host()
     if _main is None or _main.host is not host:
         _main = Process(host)
@@ -109,11 +109,11 @@ def _here() -> Any:
     return threading.current_thread()
 
 
-def share_machine() -> None:
-    """Make several simulated processes possible.
+def simulate_processes() -> None:
+    """Prepare this process for several simulated ones.
 
     Threads inherit their process; ``sys.argv`` and the changed variables of ``os.environ`` are those of the
-    process. Other threads keep the present arguments. Call it once, with the host installed.
+    simulated process. Other threads keep the present arguments. Call it once, with the host installed.
     """
     _main_process()
     make: Any = threading.Thread.__init__
@@ -132,7 +132,7 @@ class _Arguments(UserList[str]):
     """The arguments of the calling thread's process."""
 
     def __init__(self) -> None:
-        """Copy nothing: the processes have the arguments."""
+        """Copy nothing: each process has its own arguments."""
 
     @property
     def data(self) -> list[str]:  # type: ignore[override]
@@ -143,12 +143,12 @@ class _Arguments(UserList[str]):
         return self.data[index]
 
     def copy(self) -> list[str]:  # type: ignore[override]
-        """A plain list of them."""
+        """The arguments as a plain list."""
         return list(self.data)
 
 
 class _Environment(MutableMapping[str, str]):
-    """The environment of the calling thread's process: its own variables over the machine's."""
+    """The environment of the calling thread's process: the machine's variables and its own."""
 
     def __init__(self, machine: MutableMapping[str, str]) -> None:
         self._machine = machine
@@ -185,5 +185,5 @@ class _Environment(MutableMapping[str, str]):
         return self
 
     def copy(self) -> dict[str, str]:
-        """A plain dictionary of it."""
+        """The environment as a plain dictionary."""
         return dict(self)

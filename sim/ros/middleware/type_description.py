@@ -1,4 +1,4 @@
-"""Message types described as messages, and the hashes that identify them in ROS 2.
+"""Descriptions of message types as messages, and the hashes of ROS 2 for types.
 
 Source: REP 2016 and rosidl's generator of type descriptions (RIHS01: the SHA-256 of the description as JSON).
 """
@@ -30,17 +30,17 @@ from sim.ros.middleware.type_hash import TypeHash
 _PACKAGE = "type_description_interfaces"
 _VERSION = 1
 _FILLER = ("structure_needs_at_least_one_member", BasicType("uint8"))
-"""The field that ROS 2's IDL gives an empty type."""
+"""The field that ROS 2's IDL adds to an empty type."""
 
 
 @cache
 def type_hash(msg_type: type[Message]) -> TypeHash:
-    """The hash of a type and of all that it contains. Thread-safe."""
+    """The hash of a type and of all types that it contains. Thread-safe."""
     return TypeHash(_VERSION, sha256(json.dumps(_whole(msg_type)).encode()).digest())
 
 
 def type_description(msg_type: type[Message]) -> Any:
-    """A type_description_interfaces/msg/TypeDescription of a type and of all that it contains."""
+    """A type_description_interfaces/msg/TypeDescription of a type and of all types that it contains."""
     whole = _whole(msg_type)
     return message(_PACKAGE, "TypeDescription")(
         type_description=_individual(whole["type_description"]),
@@ -49,7 +49,7 @@ def type_description(msg_type: type[Message]) -> Any:
 
 
 def contained_types(msg_type: type[Message]) -> list[type[Message]]:
-    """All types that a type contains, directly or not, sorted by name."""
+    """All types that a type contains, directly or indirectly, sorted by name."""
     found: dict[str, type[Message]] = {}
     waiting = [msg_type]
     while waiting:

@@ -1,10 +1,10 @@
-"""Hashes of message types, by which ROS 2 checks that two programs use the same type."""
+"""Hashes of message types, with which ROS 2 checks that two programs use the same type."""
 
 from __future__ import annotations
 
 
 class TypeHash:
-    """A hash and the version of its algorithm; unknown without a version."""
+    """A hash, and the version of its algorithm; a version of -1 means an unknown hash."""
 
     _TYPE_HASH_SIZE = 32
 

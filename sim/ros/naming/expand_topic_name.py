@@ -1,14 +1,14 @@
-"""Making the full name of a topic or service from the one that a program writes."""
+"""Expands the name of a topic or service to its full name, as rclpy's function."""
 
 from sim.ros.naming.names import full_name
 from sim.ros.naming.rules import namespace_problem, node_name_problem, topic_name_problem
 
 
 def expand_topic_name(topic_name: str, node_name: str, node_namespace: str) -> str:
-    """The full name that ``topic_name`` stands for in a node of that name and namespace.
+    """The full name of a topic or service for a node of that name and namespace.
 
     Raises:
-        ValueError: one of the names breaks the rules, or a substitution is unknown.
+        ValueError: a name breaks the rules, or a substitution is unknown.
     """
     for found, what in (
         (topic_name_problem(topic_name), "topic name is invalid"),

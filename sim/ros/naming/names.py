@@ -1,50 +1,34 @@
-"""Names of nodes, topics and services: how short ones become full, and which are refused.
-
-The rules themselves are in ``sim.ros.naming.rules``.
-"""
+"""Expands the names of topics and services to full names, and checks both."""
 
 import re
 
-from sim.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException
-from sim.ros.naming.rules import full_topic_name_problem, topic_name_problem
+from sim.ros.naming.validation import validate_full_topic_name, validate_topic_name
 
 _SUBSTITUTION = re.compile(r"\{([^{}]*)\}")
-_NameError = type[InvalidTopicNameException] | type[InvalidServiceNameException]
 
 
 class UnknownSubstitutionError(ValueError):
-    """A name in curly braces stands for nothing."""
+    """A substitution in curly braces is unknown."""
 
     def __init__(self, name: str) -> None:
         super().__init__(f"unknown substitution '{{{name}}}'")
 
 
-def expand_topic(name: str, node_name: str, namespace: str) -> str:
-    """The full name of a topic as a node means it.
+def expand(name: str, node_name: str, namespace: str, *, is_service: bool) -> str:
+    """The full name of a topic or service that a node of that name and namespace means.
 
     Raises:
-        InvalidTopicNameException: the name breaks the rules.
-        UnknownSubstitutionError: it has one.
+        InvalidTopicNameException, InvalidServiceNameException: the name breaks the rules.
+        UnknownSubstitutionError: the name has an unknown substitution.
     """
-    return _expand(name, node_name, namespace, InvalidTopicNameException)
-
-
-def expand_service(name: str, node_name: str, namespace: str) -> str:
-    """The full name of a service as a node means it.
-
-    Raises:
-        InvalidServiceNameException: the name breaks the rules.
-        UnknownSubstitutionError: it has one.
-    """
-    return _expand(name, node_name, namespace, InvalidServiceNameException)
+    validate_topic_name(name, is_service=is_service)
+    full = full_name(name, node_name, namespace)
+    validate_full_topic_name(full, is_service=is_service)
+    return full
 
 
 def full_name(name: str, node_name: str, namespace: str) -> str:
-    """The full name that a well-formed name stands for.
-
-    Raises:
-        UnknownSubstitutionError: it has one.
-    """
+    """The full name that a valid name stands for; UnknownSubstitutionError for an unknown substitution."""
     known = {"node": node_name, "ns": namespace, "namespace": namespace}
 
     def value(match: re.Match[str]) -> str:
@@ -57,12 +41,3 @@ def full_name(name: str, node_name: str, namespace: str) -> str:
     if substituted.startswith("~"):
         return f"{base}/{node_name}{substituted[1:]}"
     return substituted if substituted.startswith("/") else f"{base}/{substituted}"
-
-
-def _expand(name: str, node_name: str, namespace: str, error: _NameError) -> str:
-    if (problem := topic_name_problem(name)) is not None:
-        raise error(name, *problem)
-    full = full_name(name, node_name, namespace)
-    if (problem := full_topic_name_problem(full)) is not None:
-        raise error(full, *problem)
-    return full

@@ -1,11 +1,10 @@
-"""What a node is called, and what the names it uses for topics and services become."""
+"""The name of a node, and the full names of the topics and services that it uses."""
 
 from __future__ import annotations
 
-from sim.ros.naming.names import expand_service, expand_topic
+from sim.ros.naming.names import expand
 from sim.ros.naming.remapping import Remapping
-from sim.ros.naming.validate_namespace import validate_namespace
-from sim.ros.naming.validate_node_name import validate_node_name
+from sim.ros.naming.validation import validate_namespace, validate_node_name
 
 
 class NodeNames:
@@ -17,11 +16,11 @@ class NodeNames:
 
     def __init__(self, name: str, namespace: str, remapping: Remapping) -> None:
         validate_node_name(name)
-        space = namespace if namespace.startswith("/") else f"/{namespace}"
-        validate_namespace(space)
+        absolute = namespace if namespace.startswith("/") else f"/{namespace}"
+        validate_namespace(absolute)
         self.name = remapping.node_name(name)
-        # A rule for one node's namespace knows the node by the name it has got.
-        self.namespace = remapping.namespace(space, self.name)
+        # A rule for the namespace of one node names the node by its remapped name.
+        self.namespace = remapping.namespace(absolute, self.name)
         self._remapping = remapping
 
     @property
@@ -34,26 +33,14 @@ class NodeNames:
         """The name of the node's logger, such as ``arm.sub_node``."""
         return self.full_name.strip("/").replace("/", ".")
 
-    def expanded_topic(self, topic: str) -> str:
-        """The full name of a topic, before remapping.
+    def resolve(self, name: str, *, is_service: bool, only_expand: bool) -> str:
+        """The full name of a topic or service; remapped, unless ``only_expand``.
 
         Raises:
-            InvalidTopicNameException: the name breaks the rules.
+            InvalidTopicNameException, InvalidServiceNameException: the name breaks the rules.
+            UnknownSubstitutionError: the name has an unknown substitution.
         """
-        return expand_topic(topic, self.name, self.namespace)
-
-    def topic(self, topic: str) -> str:
-        """The full name of a topic; raises as ``expanded_topic``."""
-        return self._remapping.topic(self.expanded_topic(topic), self.name, self.namespace)
-
-    def expanded_service(self, service: str) -> str:
-        """The full name of a service, before remapping.
-
-        Raises:
-            InvalidServiceNameException: the name breaks the rules.
-        """
-        return expand_service(service, self.name, self.namespace)
-
-    def service(self, service: str) -> str:
-        """The full name of a service; raises as ``expanded_service``."""
-        return self._remapping.service(self.expanded_service(service), self.name, self.namespace)
+        full = expand(name, self.name, self.namespace, is_service=is_service)
+        if only_expand:
+            return full
+        return self._remapping.renamed(full, self.name, self.namespace, is_service=is_service)

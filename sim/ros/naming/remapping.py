@@ -1,17 +1,17 @@
-"""Remapping: rules such as ``odom:=/robot/odom`` that give a node, its topics and its services other names.
+"""Remapping: rules such as ``odom:=/robot/odom`` that rename nodes, topics and services.
 
-Source of the rules: the ROS 2 design article "Remapping names", and rcl's reading of it.
+Source of the rules: the ROS 2 design article "Remapping names", and rcl.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import Enum
 
 from sim.ros.exceptions import NameValidationException
-from sim.ros.naming.names import expand_service, expand_topic
+from sim.ros.naming.names import expand
 
 _TOKEN = r"[A-Za-z_][A-Za-z0-9_]*"
 _NODE_PREFIX = re.compile(rf"({_TOKEN}):")
@@ -20,8 +20,8 @@ _NAMESPACE = re.compile(rf"/|(/{_TOKEN})+")
 _SCHEMES = ("rostopic://", "rosservice://")
 
 
-class Renamed(Enum):
-    """What a rule gives another name to."""
+class RemapTarget(Enum):
+    """What a rule renames."""
 
     NODE = "node"
     NAMESPACE = "namespace"
@@ -31,14 +31,14 @@ class Renamed(Enum):
 
 
 class RemapRuleError(ValueError):
-    """A text is no remapping rule; it says why."""
+    """A text is not a remapping rule; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class RemapRule:
-    """One rule; without ``node`` it holds for every node."""
+    """One rule, for one node or (``node`` None) for every node."""
 
-    renamed: Renamed
+    target: RemapTarget
     node: str | None
     match: str
     replacement: str
@@ -58,14 +58,14 @@ def parse_rule(text: str) -> RemapRule:
         node, left = prefix[1], left[prefix.end() :]
     if left in {"__node", "__name"}:
         _require(re.compile(_TOKEN), right, "a node's name")
-        return RemapRule(Renamed.NODE, node, left, right)
+        return RemapRule(RemapTarget.NODE, node, left, right)
     if left == "__ns":
         _require(_NAMESPACE, right, "a namespace that begins with '/'")
-        return RemapRule(Renamed.NAMESPACE, node, left, right)
-    renamed, match = _kind(left)
+        return RemapRule(RemapTarget.NAMESPACE, node, left, right)
+    target, match = _kind(left)
     _require(_RESOURCE, match, "the name of a topic or service")
     _require(_RESOURCE, right, "the name of a topic or service")
-    return RemapRule(renamed, node, match, right)
+    return RemapRule(target, node, match, right)
 
 
 def is_rule(text: str) -> bool:
@@ -77,11 +77,11 @@ def is_rule(text: str) -> bool:
     return True
 
 
-def _kind(left: str) -> tuple[Renamed, str]:
-    for scheme, renamed in zip(_SCHEMES, (Renamed.TOPIC, Renamed.SERVICE), strict=True):
+def _kind(left: str) -> tuple[RemapTarget, str]:
+    for scheme, target in zip(_SCHEMES, (RemapTarget.TOPIC, RemapTarget.SERVICE), strict=True):
         if left.startswith(scheme):
-            return renamed, left.removeprefix(scheme)
-    return Renamed.TOPIC_OR_SERVICE, left
+            return target, left.removeprefix(scheme)
+    return RemapTarget.TOPIC_OR_SERVICE, left
 
 
 def _require(form: re.Pattern[str], text: str, what: str) -> None:
@@ -92,39 +92,31 @@ def _require(form: re.Pattern[str], text: str, what: str) -> None:
 
 
 class Remapping:
-    """The rules that hold for a node, the first that fits first."""
+    """The remapping rules of a node; the first rule that fits is applied."""
 
     def __init__(self, rules: Iterable[RemapRule]) -> None:
         self._rules = tuple(rules)
 
     def node_name(self, name: str) -> str:
-        """The name of the node that calls itself ``name``."""
-        return self._replaced(Renamed.NODE, name) or name
+        """The remapped name of a node that the program calls ``name``."""
+        return self._replacement(RemapTarget.NODE, name) or name
 
     def namespace(self, namespace: str, node_name: str) -> str:
-        """The namespace of a node; its name is the one it has got."""
-        return self._replaced(Renamed.NAMESPACE, node_name) or namespace
+        """The remapped namespace of a node; ``node_name`` is the remapped name."""
+        return self._replacement(RemapTarget.NAMESPACE, node_name) or namespace
 
-    def topic(self, full: str, node_name: str, namespace: str) -> str:
-        """What the node uses for the topic of that full name."""
-        return self._renamed(full, Renamed.TOPIC, expand_topic, node_name, namespace)
-
-    def service(self, full: str, node_name: str, namespace: str) -> str:
-        """What the node uses for the service of that full name."""
-        return self._renamed(full, Renamed.SERVICE, expand_service, node_name, namespace)
-
-    def _replaced(self, renamed: Renamed, node_name: str) -> str | None:
-        fitting = (each for each in self._rules if each.renamed is renamed and each.node in {None, node_name})
-        return next((each.replacement for each in fitting), None)
-
-    def _renamed(
-        self, full: str, kind: Renamed, expand: Callable[[str, str, str], str], node_name: str, namespace: str
-    ) -> str:
+    def renamed(self, full: str, node_name: str, namespace: str, *, is_service: bool) -> str:
+        """The name that the node uses for the topic or service of that full name."""
+        targets = {RemapTarget.TOPIC_OR_SERVICE, RemapTarget.SERVICE if is_service else RemapTarget.TOPIC}
         for rule in self._rules:
-            if rule.renamed in {kind, Renamed.TOPIC_OR_SERVICE} and rule.node in {None, node_name}:
+            if rule.target in targets and rule.node in {None, node_name}:
                 try:
-                    if expand(rule.match, node_name, namespace) == full:
-                        return expand(rule.replacement, node_name, namespace)
+                    if expand(rule.match, node_name, namespace, is_service=is_service) == full:
+                        return expand(rule.replacement, node_name, namespace, is_service=is_service)
                 except NameValidationException:
                     continue
         return full
+
+    def _replacement(self, target: RemapTarget, node_name: str) -> str | None:
+        fitting = (each for each in self._rules if each.target is target and each.node in {None, node_name})
+        return next((each.replacement for each in fitting), None)

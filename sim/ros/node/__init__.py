@@ -1,1 +1,1 @@
-"""Nodes, and what every node brings along: its parameters' services, its clock, its log lines' topic."""
+"""Nodes, and the parts of every node: parameter services, clock, ``/rosout``."""

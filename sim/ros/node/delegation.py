@@ -1,4 +1,4 @@
-"""Methods and properties of a node that belong to one of its parts: rclpy has them all on one class."""
+"""Delegation: makes methods and properties of a node's parts available on the node, as in rclpy."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ ResultT = TypeVar("ResultT")
 
 
 class Delegated(Generic[PartT]):
-    """Makes methods of Node out of those of the part that a node has as ``attribute``."""
+    """Makes methods of Node from those of the part in ``attribute``."""
 
     def __init__(self, attribute: str) -> None:
         self._attribute = attribute
@@ -20,7 +20,7 @@ class Delegated(Generic[PartT]):
     def __call__(
         self, method: Callable[Concatenate[PartT, ParametersT], ResultT]
     ) -> Callable[Concatenate[Any, ParametersT], ResultT]:
-        """Have a node's part do it; a wrong call is told as one of Node's: programs know no other class."""
+        """Delegate a method. Errors of a wrong call name ``Node``, the only class that programs know."""
         attribute = self._attribute
 
         @wraps(method)
@@ -31,6 +31,6 @@ class Delegated(Generic[PartT]):
         return call
 
     def view(self, of: Any) -> property:
-        """Show a property of the part as one of the node."""
+        """Delegate a read-only property."""
         attribute, read = self._attribute, of.fget
         return property(lambda node: read(getattr(node, attribute)), doc=of.__doc__)

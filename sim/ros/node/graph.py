@@ -1,4 +1,4 @@
-"""What a node can ask about the graph: who is there, and who speaks of what under which name."""
+"""A node's queries of the graph: nodes, topics, services and their endpoints."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sim.ros.entities.topic_endpoint_info import TopicEndpointInfo, TopicEndpoin
 from sim.ros.exceptions import NodeNameNonExistentError
 from sim.ros.middleware.type_description import type_hash
 from sim.ros.naming.expand_topic_name import expand_topic_name
-from sim.ros.naming.validate_full_topic_name import validate_full_topic_name
+from sim.ros.naming.validation import validate_full_topic_name
 from sim.ros.qos.offered import as_discovered
 
 if TYPE_CHECKING:
@@ -25,25 +25,25 @@ if TYPE_CHECKING:
 NamesAndTypes: TypeAlias = list[tuple[str, list[str]]]
 
 _POLL = 100_000_000
-"""Nanoseconds between two looks of ``wait_for_node``."""
+"""Nanoseconds between two polls of ``wait_for_node``."""
 
 
 def nodes_on(network: Network) -> tuple[Node, ...]:
-    """The nodes of a network whose programs have not ended, oldest first. With the host's lock held."""
-    # A program that has ended is gone, also if it left its nodes undestroyed.
+    """The nodes of a network whose programs have not ended, oldest first. Call it with the host's lock."""
+    # A program that has ended is gone, even if it has not destroyed its nodes.
     return tuple(cast("Node", node) for node in network.nodes() if node.context.ok())
 
 
 def publishers_of(node: Node) -> tuple[Publisher, ...]:
-    """The publishers of a node, among them the one for ``/rosout``, which its ``publishers`` do not name."""
+    """The publishers of a node, including that of ``/rosout``, which ``Node.publishers`` leaves out."""
     rosout = node._rosout_publisher
     return (*(() if rosout is None else (rosout,)), *node.publishers)
 
 
 class Graph:
-    """The questions of a node about the graph, answered for its whole network.
+    """A node's queries of its whole network.
 
-    Names are expanded as the node means them, and not remapped. A destroyed node answers with InvalidHandle.
+    Names are expanded for the node, but not remapped. The methods of a destroyed node raise InvalidHandle.
     """
 
     def __init__(self, node: Node) -> None:
@@ -68,7 +68,7 @@ class Graph:
         return [node.get_fully_qualified_name() for node in self._nodes()]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
-        """Wait until there is a node of that full name; False when ``timeout`` seconds were not enough."""
+        """Wait until there is a node of that full name; False after ``timeout`` seconds."""
         clock = self._node.context.host.clock
         end = clock.now() + timeout * 1e9
         wanted = f"/{fully_qualified_node_name.lstrip('/')}"
@@ -93,46 +93,46 @@ class Graph:
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
-        """The topics that a node publishes; raises NodeNameNonExistentError without that node."""
+        """The topics that a node publishes; NodeNameNonExistentError without that node."""
         node = self._named(node_name, node_namespace, "publisher")
         return _sorted((each.topic_name, each.msg_type) for each in publishers_of(node))
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
-        """The topics that a node subscribes to; raises NodeNameNonExistentError without that node."""
+        """The topics that a node subscribes to; NodeNameNonExistentError without that node."""
         node = self._named(node_name, node_namespace, "subscriber")
         return _sorted((each.topic_name, each.msg_type) for each in node.subscriptions)
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """The services that a node offers; raises NodeNameNonExistentError without that node."""
+        """The services that a node offers; NodeNameNonExistentError without that node."""
         node = self._named(node_name, node_namespace, "service")
         return _sorted((each.name, each.srv_type) for each in node.services)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
-        """The services that a node calls; raises NodeNameNonExistentError without that node."""
+        """The services that a node calls; NodeNameNonExistentError without that node."""
         node = self._named(node_name, node_namespace, "client")
         return _sorted((each.name, each.srv_type) for each in node.clients)
 
     # One topic or service
 
     def count_publishers(self, topic_name: str) -> int:
-        """How many publishers a topic has."""
+        """The number of publishers of a topic."""
         full = self._full(topic_name, is_service=False)
         return self._count(lambda node: (each.topic_name == full for each in publishers_of(node)))
 
     def count_subscribers(self, topic_name: str) -> int:
-        """How many subscriptions a topic has."""
+        """The number of subscriptions of a topic."""
         full = self._full(topic_name, is_service=False)
         return self._count(lambda node: (each.topic_name == full for each in node.subscriptions))
 
     def count_clients(self, service_name: str) -> int:
-        """How many clients a service has."""
+        """The number of clients of a service."""
         full = self._full(service_name, is_service=True)
         return self._count(lambda node: (each.name == full for each in node.clients))
 
     def count_services(self, service_name: str) -> int:
-        """How many offer a service."""
+        """The number of servers of a service."""
         full = self._full(service_name, is_service=True)
         return self._count(lambda node: (each.name == full for each in node.services))
 

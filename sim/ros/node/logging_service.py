@@ -1,4 +1,4 @@
-"""The two services by which others read and set the levels of a program's loggers."""
+"""The two services with which other nodes read and set the levels of a program's loggers."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class LoggingService:
-    """Offers the levels of the program's loggers, in the node's default group."""
+    """Offers the two services, in the node's default group."""
 
     def __init__(self, node: Node) -> None:
         for srv_type, name, callback in (

@@ -1,4 +1,4 @@
-"""Nodes: what a program builds its publishers, subscriptions, timers, services and clients on."""
+"""Nodes, which have publishers, subscriptions, timers, services and clients."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ _entities = Delegated[NodeEntities]("_node_entities")
 class Node:
     """A node of the ROS graph.
 
-    ``cli_args`` are arguments for this node alone and count before the program's, which are left out
-    without ``use_global_arguments``. ``parameter_overrides`` count before both. Without
-    ``enable_rosout`` its log lines do not go to ``/rosout``.
+    ``cli_args`` are arguments for this node only and override the program's arguments, which are ignored
+    without ``use_global_arguments``. ``parameter_overrides`` override both. Without
+    ``enable_rosout`` the log lines are not published on ``/rosout``.
 
     Raises:
-        NotInitializedException: ``rclpy.init()`` has not been called.
+        NotInitializedException: ``rclpy.init()`` was not called.
         InvalidNodeNameException, InvalidNamespaceException: a name breaks the rules.
         RCLInvalidROSArgsError, UnknownROSArgsError: ``cli_args`` cannot be read.
     """
@@ -108,11 +108,11 @@ class Node:
         self._type_description_service = TypeDescriptionService(self)
         self._node_entities.overrides = self._callback_overrides()
 
-    __module__ = "rclpy.node"  # as its name is printed
+    __module__ = "rclpy.node"  # printed in tracebacks and reprs
 
     PARAM_REL_TOL = PARAM_REL_TOL
 
-    # What its parts do
+    # Methods of its parts
     declare_parameter = _parameters(ParameterStore.declare_parameter)
     declare_parameters = _parameters(ParameterStore.declare_parameters)
     undeclare_parameter = _parameters(ParameterStore.undeclare_parameter)
@@ -171,7 +171,7 @@ class Node:
     destroy_guard_condition = _entities(NodeEntities.destroy_guard_condition)
     destroy_rate = _entities(NodeEntities.destroy_rate)
 
-    # What it has
+    # Entities
 
     publishers = _entities.view(NodeEntities.publishers)
     subscriptions = _entities.view(NodeEntities.subscriptions)
@@ -181,77 +181,76 @@ class Node:
     guards = _entities.view(NodeEntities.guards)
     waitables = _entities.view(NodeEntities.waitables)
 
-    # What it is
+    # Properties
 
     @property
     def context(self) -> Context:
-        """The context it lives in."""
+        """The node's context."""
         return self._context
 
     @property
     def default_callback_group(self) -> CallbackGroup:
-        """The mutually exclusive group of all entities that name none."""
+        """The mutually exclusive group of all entities that are created without a group."""
         return self._node_entities.default_group
 
     @property
     def handle(self) -> Handle:
-        """What keeps it alive while it is used."""
+        """A handle that keeps the node alive while it is used."""
         return Handle(self)
 
     def destroy(self) -> None:
-        """Remove everything, as ``destroy_node``."""
+        """Destroy the node, as ``destroy_node``."""
         self.destroy_node()
 
     def get_name(self) -> str:
-        """Its name without namespace; InvalidHandle once it was destroyed."""
+        """The node's name without namespace; InvalidHandle if the node is destroyed."""
         with self.handle:
             return self._node_names.name
 
     def get_namespace(self) -> str:
-        """Its namespace, ``/`` for none; InvalidHandle once it was destroyed."""
+        """The node's namespace, at least ``/``; InvalidHandle if the node is destroyed."""
         with self.handle:
             return self._node_names.namespace
 
     def get_fully_qualified_name(self) -> str:
-        """Namespace and name, such as ``/arm/sub_node``; InvalidHandle once it was destroyed."""
+        """Namespace and name, such as ``/arm/sub_node``; InvalidHandle if the node is destroyed."""
         with self.handle:
             return self._node_names.full_name
 
     def assert_liveliness(self) -> None:
-        """Tell that it lives, which nobody watches."""
+        """Do nothing: the liveliness of nodes is not watched."""
 
     def get_logger(self) -> RcutilsLogger:
-        """Its logger."""
+        """The node's logger."""
         return self._logger
 
     def get_clock(self) -> Clock:
-        """Its clock."""
+        """The node's clock."""
         return self._clock
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """The full name of a topic as this node means it; remapped, unless ``only_expand``.
+        """The full name of a topic for this node; remapped, unless ``only_expand``.
 
         Raises:
             InvalidTopicNameException, ValueError: the name breaks the rules, or a substitution is unknown.
             InvalidHandle: the node was destroyed.
         """
         with self.handle:
-            return self._node_names.expanded_topic(topic) if only_expand else self._node_names.topic(topic)
+            return self._node_names.resolve(topic, is_service=False, only_expand=only_expand)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """The full name of a service as this node means it; remapped, unless ``only_expand``.
+        """The full name of a service for this node; remapped, unless ``only_expand``.
 
         Raises:
             InvalidServiceNameException, ValueError: the name breaks the rules, or a substitution is unknown.
             InvalidHandle: the node was destroyed.
         """
         with self.handle:
-            names = self._node_names
-            return names.expanded_service(service) if only_expand else names.service(service)
+            return self._node_names.resolve(service, is_service=True, only_expand=only_expand)
 
     @property
     def executor(self) -> Executor | None:
-        """The executor that serves it, or that did last: removing a node from one changes nothing here."""
+        """The executor that serves the node, or served it last: removing the node does not reset it."""
         return self._agenda.latest_executor
 
     @executor.setter
@@ -266,10 +265,10 @@ class Node:
             self._agenda.executor = new_executor
             new_executor.add_node(self)
 
-    # Its end
+    # Destruction
 
     def destroy_node(self) -> None:
-        """Remove everything; the executor that serves the node lets go of it."""
+        """Remove the node and its entities from the network and from its executor."""
         with self._agenda.host.lock:
             if self.destroyed:
                 return
@@ -284,7 +283,7 @@ class Node:
             self._context.network.leave_node(self)
 
     def _tell_of_own_end(self) -> None:
-        """Tell of it if one of the node's own callbacks is what destroys it."""
+        """Record it on the trace if one of the node's own callbacks destroys the node."""
         probe = self._context.probe
         here = probe.callback_here()
         running = (each for each in self._agenda.entities if each.trace_id == here)
@@ -292,7 +291,7 @@ class Node:
             probe.node_destroyed_by_itself(self._node_names.full_name, entity)
 
     def _callback_overrides(self) -> NodeOverrides | None:
-        """What a person changed about the node; only what is on the screen can be changed there."""
+        """The run's overrides for the node; only a node on the trace can have some."""
         overrides = self._context.host.overrides
         if overrides is None or not self._context.probe.visible:
             return None

@@ -1,4 +1,4 @@
-"""What a node makes, has and removes: publishers, subscriptions, timers, services, clients and the rest."""
+"""Creates, lists and removes a node's entities."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 
 
 class NodeEntities:
-    """The entities of a node. Any thread may make and remove them, also while the node is spun."""
+    """The entities of a node. Thread-safe, also while the node is spun."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -43,67 +43,67 @@ class NodeEntities:
         self.default_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
         self.overrides: NodeOverrides | None = None
-        """What a person changed about the node; None while it is made, for what it brings along is not the
+        """The run's overrides; None while the node is created, because the node's own entities are not the
         program's."""
 
-    # What it has
+    # Listing
 
     @property
     def publishers(self) -> Iterator[Publisher]:
-        """Its publishers."""
+        """The node's publishers."""
         yield from tuple(self._publishers)
 
     @property
     def subscriptions(self) -> Iterator[Subscription]:
-        """Its subscriptions, oldest first."""
+        """The node's subscriptions, oldest first."""
         yield from self._agenda.of(Subscription)
 
     @property
     def timers(self) -> Iterator[Timer]:
-        """Its timers, oldest first."""
+        """The node's timers, oldest first."""
         yield from self._agenda.of(Timer)
 
     @property
     def services(self) -> Iterator[Service]:
-        """Its services, oldest first."""
+        """The node's services, oldest first."""
         yield from self._agenda.of(Service)
 
     @property
     def clients(self) -> Iterator[Client]:
-        """Its clients, oldest first."""
+        """The node's clients, oldest first."""
         yield from self._agenda.of(Client)
 
     @property
     def guards(self) -> Iterator[NodeGuardCondition]:
-        """Its guard conditions, oldest first."""
+        """The node's guard conditions, oldest first."""
         yield from self._agenda.of(NodeGuardCondition)
 
     @property
     def waitables(self) -> Iterator[Any]:
-        """Its waitables, oldest first: the program's own, and what tells of events and serves actions."""
+        """The node's waitables, oldest first: the program's own, event handlers, and actions."""
         for each in tuple(self._agenda.entities):
             if each.kind is EntityKind.WAITABLE:
                 yield each.waitable if isinstance(each, WaitableEntity) else each
 
     def add_waitable(self, waitable: Waitable[Any]) -> None:
-        """Have a waitable served."""
+        """Add a waitable."""
         with self._agenda.host.lock:
-            self._agenda.add_asked(WaitableEntity(self._node, waitable))
+            self._agenda.add_polled(WaitableEntity(self._node, waitable))
 
     def remove_waitable(self, waitable: Waitable[Any]) -> None:
-        """Serve a waitable no more.
+        """Remove a waitable.
 
         Raises:
-            ValueError: it was not added.
+            ValueError: the waitable was not added.
         """
         with self._agenda.host.lock:
-            for each in self._agenda.asked:
+            for each in self._agenda.polled:
                 if each.waitable is waitable:
-                    self._agenda.remove_asked(each)
+                    self._agenda.remove_polled(each)
                     return
         raise ValueError("the waitable was not added to this node")
 
-    # Making entities
+    # Creating
 
     def create_publisher(
         self,
@@ -116,11 +116,11 @@ class NodeEntities:
         qos_overriding_options: QoSOverridingOptions | None = None,
         publisher_class: type[Publisher] = Publisher,
     ) -> Publisher:
-        """Make a publisher; ``qos_profile`` may be a depth.
+        """Create a publisher; ``qos_profile`` may be a depth.
 
         Raises:
             InvalidTopicNameException: the topic's name breaks the rules.
-            AttributeError, RuntimeError: ``msg_type`` is no message class.
+            AttributeError, RuntimeError: ``msg_type`` is not a message class.
         """
         profile, name = as_profile(qos_profile), self._node.resolve_topic_name(topic)
         if qos_overriding_options is not None:
@@ -136,7 +136,7 @@ class NodeEntities:
             callback_group=callback_group,
         )
         self._publishers.append(publisher)
-        self._agenda.has_now(len(self._publishers), "publishers")
+        self._agenda.report_many(len(self._publishers), "publishers")
         return publisher
 
     def create_subscription(
@@ -151,13 +151,13 @@ class NodeEntities:
         qos_overriding_options: QoSOverridingOptions | None = None,
         raw: bool = False,
     ) -> Subscription:
-        """Make a subscription; ``qos_profile`` may be a depth.
+        """Create a subscription; ``qos_profile`` may be a depth.
 
-        The callback takes a message (with ``raw`` its bytes), or a message and its info.
+        The callback takes a message (``raw``: its bytes), or a message and its info.
 
         Raises:
             InvalidTopicNameException: the topic's name breaks the rules.
-            AttributeError, RuntimeError: ``msg_type`` is no message class, or the callback takes too much.
+            AttributeError, RuntimeError: ``msg_type`` is not a message class, or the callback does not fit.
         """
         name, profile = self._node.resolve_topic_name(topic), as_profile(qos_profile)
         if qos_overriding_options is not None:
@@ -189,7 +189,7 @@ class NodeEntities:
         clock: Clock | None = None,
         autostart: bool = True,
     ) -> Timer:
-        """Make a timer that calls back every ``timer_period_sec`` seconds."""
+        """Create a timer that calls ``callback`` every ``timer_period_sec`` seconds."""
         period = int(float(timer_period_sec) * 1_000_000_000)
         self._context.require_ok("failed to create timer")
         with self._agenda.host.lock:
@@ -204,10 +204,10 @@ class NodeEntities:
         return timer
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
-        """Make a rate that sleeps ``frequency`` times a second.
+        """Create a rate whose sleeps end ``frequency`` times a second.
 
         Raises:
-            ValueError: the frequency is not above zero.
+            ValueError: the frequency is not positive.
         """
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
@@ -228,7 +228,7 @@ class NodeEntities:
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,
     ) -> Service:
-        """Make a service."""
+        """Create a service."""
         check_is_valid_srv_type(srv_type)
         name = self._node.resolve_service_name(srv_name)
         self._context.require_ok("failed to create service", NODE_ENDED)
@@ -247,7 +247,7 @@ class NodeEntities:
         qos_profile: QoSProfile = qos_profile_services_default,
         callback_group: CallbackGroup | None = None,
     ) -> Client:
-        """Make a client of a service."""
+        """Create a client of a service."""
         check_is_valid_srv_type(srv_type)
         name = self._node.resolve_service_name(srv_name)
         self._context.require_ok("failed to create client", NODE_ENDED)
@@ -261,7 +261,7 @@ class NodeEntities:
     def create_guard_condition(
         self, callback: Callable[[], Any] | None, callback_group: CallbackGroup | None = None
     ) -> NodeGuardCondition:
-        """Make a guard condition."""
+        """Create a guard condition."""
         self._context.require_ok("failed to create guard_condition")
         with self._agenda.host.lock:
             group = self._chosen_group(callback_group, "" if callback is None else callback_name(callback))
@@ -270,15 +270,15 @@ class NodeEntities:
         return guard
 
     def _chosen_group(self, wanted: CallbackGroup | None, name: str) -> CallbackGroup:
-        """The group of what goes by ``name``: the program's choice unless a person made another."""
+        """The group of a callback: the program's choice, unless the run overrides it."""
         default = self.default_group
         asked = default if wanted is None else wanted
         return asked if self.overrides is None else self.overrides.group(name, asked, default)
 
-    # Removing them
+    # Removing
 
     def destroy_publisher(self, publisher: Publisher) -> bool:
-        """Remove a publisher; whether it was this node's."""
+        """Remove a publisher; False if it is not this node's."""
         if publisher not in self._publishers:
             return False
         self._publishers.remove(publisher)
@@ -286,26 +286,26 @@ class NodeEntities:
         return True
 
     def destroy_subscription(self, subscription: Subscription) -> bool:
-        """Remove a subscription; whether it was this node's."""
+        """Remove a subscription; False if it is not this node's."""
         return self._agenda.remove(subscription)
 
     def destroy_service(self, service: Service) -> bool:
-        """Remove a service; whether it was this node's."""
+        """Remove a service; False if it is not this node's."""
         return self._agenda.remove(service)
 
     def destroy_client(self, client: Client) -> bool:
-        """Remove a client; whether it was this node's."""
+        """Remove a client; False if it is not this node's."""
         return self._agenda.remove(client)
 
     def destroy_timer(self, timer: Timer) -> bool:
-        """Remove a timer; whether it was this node's."""
+        """Remove a timer; False if it is not this node's."""
         return self._agenda.remove(timer)
 
     def destroy_guard_condition(self, guard: NodeGuardCondition) -> bool:
-        """Remove a guard condition; whether it was this node's."""
+        """Remove a guard condition; False if it is not this node's."""
         return self._agenda.remove(guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
-        """Remove a rate and its timer; whether it was this node's."""
+        """Remove a rate and its timer; False if it is not this node's."""
         rate.destroy()
         return self._agenda.remove(rate._timer)

@@ -1,4 +1,4 @@
-"""What the run's overrides mean for one node: which group and which period a callback gets."""
+"""Applies the run's overrides to one node: the groups of its callbacks and the periods of its timers."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ class NodeOverrides:
         return self._overrides.period(self._node, callback, asked)
 
     def group(self, callback: str, asked: CallbackGroup, default: CallbackGroup) -> CallbackGroup:
-        """The group of a callback for which the program asked for another; ``default`` is the node's."""
+        """The group of a callback; ``asked`` is the program's choice, ``default`` the default group."""
         match self._overrides.group_choice(self._node, callback):
             case None:
                 return asked
             case GroupChoice.OWN:
                 return MutuallyExclusiveCallbackGroup()
-            case GroupChoice.SHARED as wish:
-                return self._shared.setdefault(wish, MutuallyExclusiveCallbackGroup())
-            case GroupChoice.REENTRANT as wish:
-                return self._shared.setdefault(wish, ReentrantCallbackGroup())
+            case GroupChoice.SHARED as choice:
+                return self._shared.setdefault(choice, MutuallyExclusiveCallbackGroup())
+            case GroupChoice.REENTRANT as choice:
+                return self._shared.setdefault(choice, ReentrantCallbackGroup())
             case GroupChoice.DEFAULT:
                 return default

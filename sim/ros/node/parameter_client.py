@@ -1,4 +1,4 @@
-"""Reading and setting the parameters of another node, through its services."""
+"""Reads and sets the parameters of another node by its services."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
 FutureCallback: TypeAlias = Callable[[Future[Any]], None]
 
 _POLL = 0.25
-"""Seconds between two looks of ``wait_for_services``, as in rclpy."""
+"""Seconds between two polls of ``wait_for_services``, as in rclpy."""
 
 
 class AsyncParameterClient:
-    """Asks for another node's parameters. Every method sends one request and returns the reply's future.
+    """Accesses another node's parameters. Every method sends one request, and returns its future.
 
-    ``callback``, where one is given, is called with that future once it is done. The clients belong to
-    ``node``, whose executor brings the replies in.
+    ``callback``, if given, is called with that future once it is done. The clients belong to
+    ``node``, whose executor takes the replies.
     """
 
     def __init__(
@@ -68,9 +68,9 @@ class AsyncParameterClient:
         )
 
     def wait_for_services(self, timeout_sec: float | None = None) -> bool:
-        """Wait until all services are there; False when ``timeout_sec`` seconds were not enough.
+        """Wait until all services are offered; False after ``timeout_sec`` seconds.
 
-        It looks four times a second, and so may come back a little after the timeout.
+        It polls four times a second, and so may return a little after the timeout.
         """
         clock = self.node.context.host.clock
         left = math.inf if timeout_sec is None else timeout_sec
@@ -85,12 +85,12 @@ class AsyncParameterClient:
         depth: int | None = None,
         callback: FutureCallback | None = None,
     ) -> Future[Any]:
-        """Ask for the names under the prefixes (none: all), at most ``depth`` parts deep (0: any)."""
+        """Request the names with the prefixes (none: all), at most ``depth`` levels deep (0: any)."""
         request = rcl_interfaces.ListParameters.Request(prefixes=prefixes or [], depth=depth or 0)
         return _sent(self._list_parameter_client, request, callback)
 
     def get_parameters(self, names: list[str], callback: FutureCallback | None = None) -> Future[Any]:
-        """Ask for values; the reply has none at all if one of the names has none."""
+        """Request values; the reply is empty if one of the parameters has no value."""
         request = rcl_interfaces.GetParameters.Request(names=names)
         return _sent(self._get_parameter_client, request, callback)
 
@@ -102,12 +102,12 @@ class AsyncParameterClient:
         return _sent(self._set_parameter_client, request, callback)
 
     def describe_parameters(self, names: list[str], callback: FutureCallback | None = None) -> Future[Any]:
-        """Ask for descriptors."""
+        """Request descriptors."""
         request = rcl_interfaces.DescribeParameters.Request(names=names)
         return _sent(self._describe_parameters_client, request, callback)
 
     def get_parameter_types(self, names: list[str], callback: FutureCallback | None = None) -> Future[Any]:
-        """Ask for types."""
+        """Request types."""
         request = rcl_interfaces.GetParameterTypes.Request(names=names)
         return _sent(self._get_parameter_types_client, request, callback)
 
@@ -119,7 +119,7 @@ class AsyncParameterClient:
         return _sent(self._set_parameters_atomically_client, request, callback)
 
     def delete_parameters(self, names: list[str], callback: FutureCallback | None = None) -> Future[Any]:
-        """Remove parameters; the other node refuses that for those whose type is fixed."""
+        """Remove parameters; the other node refuses this for statically typed ones."""
         return self.set_parameters([Parameter(name) for name in names], callback)
 
     def load_parameter_file(

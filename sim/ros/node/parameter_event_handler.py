@@ -1,4 +1,4 @@
-"""Callbacks for changes of parameters, one's own or another node's, as ``/parameter_events`` tells them."""
+"""Callbacks for changes of parameters, of this or another node, from ``/parameter_events``."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ class ParameterEventCallbackHandle:
 
 
 class ParameterEventHandler:
-    """Listens to ``/parameter_events`` on behalf of a node. Thread-safe.
+    """Subscribes a node to ``/parameter_events``, and calls callbacks. Thread-safe.
 
-    Of several callbacks the newest is called first; those for one parameter come before those for events.
+    The newest callback is called first, and callbacks for one parameter before those for events.
     """
 
     class Callbacks:
-        """The callbacks of a handler, and which of them an event concerns. ``lock`` guards them."""
+        """The callbacks of a handler. ``lock`` guards them."""
 
         def __init__(self, lock: AbstractContextManager[bool]) -> None:
             self.event_callbacks: list[ParameterEventCallbackHandle] = []
@@ -48,7 +48,7 @@ class ParameterEventHandler:
             self._lock = lock
 
         def event_callback(self, event: Any) -> None:
-            """Call those that the event concerns; with ``node_names``, events of other nodes concern none."""
+            """Call the callbacks for an event; with ``node_names``, events of other nodes are ignored."""
             with self._lock:
                 if self.node_names and event.node not in self.node_names:
                     return
@@ -64,28 +64,28 @@ class ParameterEventHandler:
                 callback(message)
 
         def add_parameter_event_callback(self, callback: MessageCallback) -> ParameterEventCallbackHandle:
-            """Have ``callback`` called with every event."""
+            """Call ``callback`` with every event."""
             handle = ParameterEventCallbackHandle(callback)
             with self._lock:
                 self.event_callbacks.insert(0, handle)
             return handle
 
         def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
-            """Call it no more; ValueError if it was not called."""
+            """Remove a callback; ValueError if it was not added."""
             with self._lock:
                 self.event_callbacks.remove(handle)
 
         def add_parameter_callback(
             self, parameter_name: str, node_name: str, callback: MessageCallback
         ) -> ParameterCallbackHandle:
-            """Have ``callback`` called with every new value of a parameter."""
+            """Call ``callback`` with every new value of a parameter."""
             handle = ParameterCallbackHandle(parameter_name, node_name, callback)
             with self._lock:
                 self.parameter_callbacks.setdefault((parameter_name, node_name), []).insert(0, handle)
             return handle
 
         def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
-            """Call it no more; KeyError or ValueError if it was not called."""
+            """Remove a callback; KeyError or ValueError if it was not added."""
             key = (handle.parameter_name, handle.node_name)
             with self._lock:
                 self.parameter_callbacks[key].remove(handle)
@@ -101,12 +101,12 @@ class ParameterEventHandler:
         )
 
     def destroy(self) -> None:
-        """Listen no more."""
+        """Remove the subscription."""
         self.node.destroy_subscription(self._parameter_event_subscription)
 
     @staticmethod
     def get_parameter_from_event(event: Any, parameter_name: str, node_name: str) -> Any:
-        """The message of a node's parameter that is new or changed in an event, else None."""
+        """The message of a node's parameter that is new or changed in an event, or None."""
         if event.node != node_name:
             return None
         every = ParameterEventHandler.get_parameters_from_event(event)
@@ -118,30 +118,30 @@ class ParameterEventHandler:
         yield from chain(event.new_parameters, event.changed_parameters)
 
     def configure_nodes_filter(self, node_names: list[str] | None = None) -> bool:
-        """Hear the events of these nodes only (none named: of all); True, for that always works here."""
+        """Use only the events of these nodes (none: of all nodes); return True."""
         names = frozenset(self._resolve_path(name) for name in node_names or ())
         self._callbacks.node_names = names
         return True
 
     def add_parameter_event_callback(self, callback: MessageCallback) -> ParameterEventCallbackHandle:
-        """Have ``callback`` called with every rcl_interfaces/msg/ParameterEvent."""
+        """Call ``callback`` with every rcl_interfaces/msg/ParameterEvent."""
         return self._callbacks.add_parameter_event_callback(callback)
 
     def remove_parameter_event_callback(self, callback_handle: ParameterEventCallbackHandle) -> None:
-        """Call it no more; ValueError if it was not called."""
+        """Remove a callback; ValueError if it was not added."""
         self._callbacks.remove_parameter_event_callback(callback_handle)
 
     def add_parameter_callback(
         self, parameter_name: str, node_name: str, callback: MessageCallback
     ) -> ParameterCallbackHandle:
-        """Have ``callback`` called with the rcl_interfaces/msg/Parameter whenever one node's changes.
+        """Call ``callback`` with the rcl_interfaces/msg/Parameter whenever a node's parameter changes.
 
-        A relative ``node_name`` counts from this node's namespace; an empty one means this node.
+        A relative ``node_name`` is in this node's namespace; an empty one means this node.
         """
         return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
 
     def remove_parameter_callback(self, callback_handle: ParameterCallbackHandle) -> None:
-        """Call it no more; KeyError or ValueError if it was not called."""
+        """Remove a callback; KeyError or ValueError if it was not added."""
         self._callbacks.remove_parameter_callback(callback_handle)
 
     def _resolve_path(self, node_path: str | None = None) -> str:

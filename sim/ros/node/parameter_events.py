@@ -1,4 +1,4 @@
-"""What ``/parameter_events`` tells of a node whose parameters were set."""
+"""Publishes changes of a node's parameters on ``/parameter_events``."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ if TYPE_CHECKING:
 
 
 def parameter_event_publisher(node: Node) -> Publisher:
-    """Make the publisher of a node's parameter events."""
+    """Create the publisher of a node's parameter events."""
     return node.create_publisher(
         rcl_interfaces.ParameterEvent, "/parameter_events", qos_profile_parameter_events
     )
 
 
 def publish_change(publisher: Publisher, change: ParameterChange) -> None:
-    """Tell whoever listens; without a listener nothing is sent, for the trace is the program's own."""
+    """Publish a change; without a subscription nothing is sent, which keeps the trace short."""
     publisher.require_usable()
     if publisher.get_subscription_count() == 0:
         return

@@ -1,4 +1,4 @@
-"""The six services by which others read and set a node's parameters."""
+"""The six services with which other nodes read and set a node's parameters."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ if TYPE_CHECKING:
 
 
 class ParameterService:
-    """Offers a node's parameters, in the node's default group.
+    """Offers the six services, in the node's default group.
 
-    One name that cannot be answered leaves the whole answer empty, as in rclpy.
+    As in rclpy, a response is empty if one of the names is unknown or has no value.
     """
 
     def __init__(self, node: Node) -> None:

@@ -1,4 +1,4 @@
-"""Letting the user of a program override the quality of service of a topic, by parameters."""
+"""Overrides of a topic's QoS by parameters."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class InvalidQosOverridesError(Exception):
-    """The program's callback refused the overridden profile."""
+    """The program's callback refused an overridden profile."""
 
     __module__ = "rclpy.qos_overriding_options"
 
@@ -27,8 +27,8 @@ class InvalidQosOverridesError(Exception):
 class QoSOverridingOptions:
     """Which policies may be overridden.
 
-    ``callback`` gets the overridden profile and returns a SetParametersResult; ``entity_id`` tells several
-    publishers or subscriptions of one topic apart.
+    ``callback`` gets the overridden profile and returns a SetParametersResult; ``entity_id`` distinguishes
+    several publishers or subscriptions of one topic.
     """
 
     def __init__(
@@ -49,19 +49,19 @@ class QoSOverridingOptions:
 
     @property
     def callback(self) -> Callable[[QoSProfile], Any] | None:
-        """What judges the overridden profile."""
+        """The callback that accepts or refuses the overridden profile."""
         return self._callback
 
     @property
     def entity_id(self) -> str | None:
-        """What tells several of one topic apart."""
+        """The id that distinguishes several endpoints of one topic."""
         return self._entity_id
 
     @classmethod
     def with_default_policies(
         cls, *, callback: Callable[[QoSProfile], Any] | None = None, entity_id: str | None = None
     ) -> QoSOverridingOptions:
-        """History, depth and reliability may be overridden."""
+        """Options that allow overrides of history, depth and reliability."""
         kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
         return cls(kinds, callback=callback, entity_id=entity_id)
 
@@ -73,10 +73,10 @@ def overridden(
     qos: QoSProfile,
     options: QoSOverridingOptions,
 ) -> QoSProfile:
-    """A profile with what the parameters ``qos_overrides.<topic>.<entity>.<policy>`` say; declares them.
+    """A profile with the values of ``qos_overrides.<topic>.<entity>.<policy>``, which are declared here.
 
     Raises:
-        InvalidQosOverridesError: the options' callback refuses the outcome.
+        InvalidQosOverridesError: the options' callback refuses the profile.
     """
     changed = replace(qos)
     _declare_qos_parameters(entity_type, node, topic, changed, options)
@@ -90,7 +90,7 @@ def _declare_qos_parameters(
     qos: QoSProfile,
     options: QoSOverridingOptions,
 ) -> None:
-    """Declare the parameters and put what they say into ``qos``; under the name that rclpy has for it."""
+    """Declare the parameters, and set the policies of ``qos``. The name is rclpy's."""
     from sim.ros.entities.publisher import Publisher
 
     entity = "publisher" if issubclass(entity_type, Publisher) else "subscription"
@@ -117,7 +117,7 @@ def _declared(node: Node, name: str, value: Any) -> Any:
 
 
 def _get_qos_policy_parameter(qos: QoSProfile, policy_kind: QoSPolicyKind) -> bool | int | str:
-    """The value of a policy as a parameter has it; under the name that rclpy has for it."""
+    """The value of a policy as a parameter. The name is rclpy's."""
     policy: Any = getattr(qos, policy_kind.name.lower())
     if isinstance(policy, QoSPolicyEnum):
         return policy.short_key

@@ -1,6 +1,6 @@
 """``/rosout``: the log lines of every node as messages.
 
-Only for subscriptions messages are made: without one a line is kept as it is, for those that come late.
+Messages are made only for subscriptions; the latest lines are kept for late subscriptions.
 """
 
 from __future__ import annotations
@@ -34,11 +34,11 @@ class RosoutPublisher(Publisher):
     """Publishes the lines of a node's logger, and of its children, as rcl_interfaces/msg/Log."""
 
     def __init__(self, node: Node) -> None:
-        self.loggers = current_process().keep(Loggers)
+        self.loggers = current_process().local(Loggers)
         self._lines: deque[LogRecord] = deque(maxlen=qos_profile_rosout_default.depth)
         silent = PublisherEventCallbacks(use_default_callbacks=False)
         super().__init__(node, rcl_interfaces.Log, ROSOUT_TOPIC, qos_profile_rosout_default, silent)
-        # What is kept are the lines, not the messages.
+        # This class keeps lines instead of messages.
         self._kept = None
 
     def log(self, record: LogRecord) -> None:
@@ -51,7 +51,7 @@ class RosoutPublisher(Publisher):
                 self.send(_message(record))
 
     def catch_up(self, subscription: Subscription) -> None:
-        """Give a late subscription the lines that have not expired, if it wants that."""
+        """Send the lines that have not expired to a late subscription, if it is transient local."""
         if subscription.qos_profile.durability != DurabilityPolicy.TRANSIENT_LOCAL:
             return
         epoch, now = self._host.clock.epoch, self._host.clock.now()
@@ -67,8 +67,8 @@ class RosoutPublisher(Publisher):
 
 
 def offer_rosout(node: Node) -> RosoutPublisher | None:
-    """Make the publisher of a node's log lines; None: none is wanted, or that logger has one."""
-    loggers = current_process().keep(Loggers)
+    """Create the publisher of a node's log lines; None if it is disabled, or the logger has a publisher."""
+    loggers = current_process().local(Loggers)
     if not loggers.rosout_enabled:
         return None
     name = node.get_logger().name
@@ -86,8 +86,8 @@ def offer_rosout(node: Node) -> RosoutPublisher | None:
 
 
 def withdraw_rosout(node: Node, publisher: RosoutPublisher | None) -> None:
-    """Publish the log lines of nodes of that name no more."""
-    loggers = current_process().keep(Loggers) if publisher is None else publisher.loggers
+    """Stop publishing the log lines of nodes of that name."""
+    loggers = current_process().local(Loggers) if publisher is None else publisher.loggers
     loggers.rosout.pop(node.get_logger().name, None)
     if publisher is not None:
         publisher.destroy()
@@ -99,7 +99,7 @@ def _message(record: LogRecord) -> Any:
         level=int(record.severity),
         name=record.logger,
         msg=record.text,
-        file=record.place.file,
-        function=record.place.function,
-        line=record.place.line,
+        file=record.call_site.file,
+        function=record.call_site.function,
+        line=record.call_site.line,
     )

@@ -1,4 +1,4 @@
-"""Where a node's clocks have their time from: the run's clock, or ``/clock`` with ``use_sim_time``."""
+"""The time source of a node's clocks: the run's clock, or ``/clock`` with ``use_sim_time``."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ USE_SIM_TIME_NAME = "use_sim_time"
 
 
 class TimeSource:
-    """Sets the clocks attached to it as ``/clock`` says, while ROS time is active.
+    """Sets the attached clocks to the time of ``/clock`` while ROS time is active.
 
-    The node declares ``use_sim_time`` and obeys it, at the start and whenever it is set. ``/clock`` is
-    heard in the node's default callback group, as in rclpy: a callback that holds the group stops ROS time.
+    The node declares ``use_sim_time``, and follows it at the start and whenever it is set. As in rclpy, the
+    subscription of ``/clock`` is in the node's default group: a callback that holds the group stops ROS time.
     """
 
     def __init__(self, *, node: Node | None = None) -> None:
@@ -39,7 +39,7 @@ class TimeSource:
 
     @property
     def ros_time_is_active(self) -> bool:
-        """Whether the clocks follow ``/clock``; may be set."""
+        """Whether the clocks follow ``/clock``; can be set."""
         return self._ros_time_is_active
 
     @ros_time_is_active.setter
@@ -55,10 +55,10 @@ class TimeSource:
             self._unsubscribe()
 
     def attach_node(self, node: Node) -> None:
-        """Hear ``/clock`` through a node, and obey its ``use_sim_time``.
+        """Subscribe to ``/clock`` through a node, and follow its ``use_sim_time``.
 
         Raises:
-            TypeError: it is no node.
+            TypeError: the object is not a node.
         """
         if not isinstance(node, OwnerNode):
             raise TypeError("Node must be of type rclpy.node.Node")
@@ -80,10 +80,10 @@ class TimeSource:
         node.add_on_set_parameters_callback(self._on_set)
 
     def detach_node(self) -> None:
-        """Hear ``/clock`` no more.
+        """Unsubscribe from ``/clock``.
 
         Raises:
-            RuntimeError: the node that heard it is gone.
+            RuntimeError: the node with the subscription is gone.
         """
         if self._clock_sub is not None and self._get_node() is None:
             raise RuntimeError("Unable to destroy previously created clock subscription")
@@ -92,10 +92,10 @@ class TimeSource:
         self._node_weak_ref = None
 
     def attach_clock(self, clock: Clock) -> None:
-        """Set a clock of ROS time from now on, at once to the last time heard.
+        """Set a clock of ROS time now to the last received time, and later to each new one.
 
         Raises:
-            ValueError: it is another kind of clock.
+            ValueError: the clock has another type.
         """
         if not isinstance(clock, ROSClock):
             raise ValueError("Only clocks with type ROS_TIME can be attached.")  # noqa: TRY004 -- rclpy's

@@ -1,4 +1,4 @@
-"""The service that describes message types, and the parameter that switches it off."""
+"""The service that describes message types, and the parameter that disables it."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ _HASH = re.compile(r"RIHS01_[0-9a-f]{64}")
 
 
 class TypeDescriptionService:
-    """Declares the parameter on a node and, unless it is false, offers ``~/get_type_description``.
+    """Declares the parameter on a node and, unless it is False, offers ``~/get_type_description``.
 
-    It describes the types of the messages that the node publishes and subscribes to.
+    The service describes the message types that the node publishes and subscribes to.
     """
 
     def __init__(self, node: Node) -> None:

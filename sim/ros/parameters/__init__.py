@@ -1,1 +1,1 @@
-"""Parameters and their values, where they come from, and a node's store of them."""
+"""Parameters, their values in YAML, and a node's store of parameters."""

@@ -1,4 +1,4 @@
-"""What a parameter's descriptor allows: its type, and the range and steps of its values. Pure functions."""
+"""Checks of a value against a parameter's descriptor: type, range and step. Pure functions."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from typing import Any
 from sim.ros.parameters.parameter import Parameter
 
 PARAM_REL_TOL = 1e-6
-"""How far a floating-point value may be from a limit or step, relative to it; as in rclpy."""
+"""The relative tolerance of a floating-point value at a limit or step, as in rclpy."""
 
 
 def has_wrong_type(parameter: Parameter[Any], descriptor: Any) -> bool:
-    """Whether a value is of another type than a statically typed parameter's."""
+    """Whether a value has another type than a statically typed parameter."""
     return not descriptor.dynamic_typing and parameter.type_ not in (Parameter.Type.NOT_SET, descriptor.type)
 
 
 def objection(parameter: Parameter[Any], descriptor: Any) -> str:
-    """Why the descriptor does not allow the value; empty if it does.
+    """The reason why the descriptor does not allow the value; empty if it does.
 
-    A dynamically typed descriptor takes the type of the value.
+    A dynamically typed descriptor gets the type of the value.
     """
     if descriptor.dynamic_typing:
         descriptor.type = parameter.type_.value

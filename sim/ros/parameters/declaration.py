@@ -1,4 +1,4 @@
-"""One entry of ``declare_parameters``: what it may look like, and what it means."""
+"""Reads one entry of ``declare_parameters``."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NAME_ONLY = (
 
 
 class Declaration(NamedTuple):
-    """A parameter to be: its name without namespace, its default value, its descriptor with the type."""
+    """A declared parameter: its name without namespace, default value, and descriptor with the type."""
 
     name: str
     value: Any
@@ -29,7 +29,7 @@ def read_declaration(index: int, entry: tuple[Any, ...]) -> Declaration:
     """Read (name,), (name, value or type) or (name, value or type, descriptor).
 
     Raises:
-        TypeError, ValueError: it is not of that form, or contradicts itself.
+        TypeError, ValueError: the entry has another form, or contradicts itself.
     """
     if not 1 <= len(entry) <= 3:
         raise TypeError(

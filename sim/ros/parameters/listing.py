@@ -1,4 +1,4 @@
-"""Which parameters a list of prefixes and a depth name."""
+"""Selects parameters by prefixes and depth."""
 
 from collections.abc import Iterable
 
@@ -6,10 +6,10 @@ from sim.ros.parameters.parameter import PARAMETER_SEPARATOR_STRING
 
 
 def listed(names: Iterable[str], prefixes: list[str], depth: int) -> tuple[list[str], list[str]]:
-    """The names at most ``depth`` parts deep (0: any) under the prefixes (none: all), and their parents.
+    """The names with the prefixes (none: all), at most ``depth`` levels deep (0: any), and their parents.
 
     Raises:
-        TypeError, ValueError: the prefixes are not texts in a list, the depth is not a number from 0 on.
+        TypeError, ValueError: the prefixes are not a list of str, or the depth is not an int of at least 0.
     """
     if not isinstance(prefixes, list):
         raise TypeError("The prefixes argument must be a list")

@@ -1,4 +1,4 @@
-"""Parameters: named values of a node, each of one of ten types, and how they travel as messages."""
+"""Parameters: named values with one of ten types, and their conversion to messages."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ AllowableParameterValue: TypeAlias = (
     "| tuple[bytes, ...] | tuple[bool, ...] | tuple[int, ...] | tuple[float, ...] | tuple[str, ...] "
     "| array.array[int] | array.array[float] | None"
 )
-"""What the value of a parameter can be."""
+"""The types of a parameter's value."""
 
 AllowableParameterValueT = TypeVar("AllowableParameterValueT")
 
@@ -29,11 +29,11 @@ _NUMBER_SEQUENCES = (list, tuple, array.array)
 
 
 class Parameter(Generic[AllowableParameterValueT]):
-    """A parameter's name, type and value; immutable. Without a type, the value decides.
+    """A parameter's name, type and value; immutable. By default the value determines the type.
 
     Raises:
-        TypeError: ``type_`` is no ``Parameter.Type``, or no type fits the value.
-        ValueError: the value is not of that type.
+        TypeError: ``type_`` is not a ``Parameter.Type``, or no type fits the value.
+        ValueError: the value does not have that type.
     """
 
     class Type(IntEnum):
@@ -52,7 +52,7 @@ class Parameter(Generic[AllowableParameterValueT]):
 
         @classmethod
         def from_parameter_value(cls, parameter_value: object) -> Parameter.Type:
-            """The type of a parameter with that value; an empty list counts as BYTE_ARRAY.
+            """The type of a parameter with that value; BYTE_ARRAY for an empty list.
 
             Raises:
                 TypeError: no parameter can have such a value.
@@ -97,7 +97,7 @@ class Parameter(Generic[AllowableParameterValueT]):
 
     @classmethod
     def from_parameter_msg(cls, param_msg: Any) -> Parameter[Any]:
-        """From an rcl_interfaces/msg/Parameter."""
+        """Make a parameter from an rcl_interfaces/msg/Parameter."""
         type_ = Parameter.Type(param_msg.value.type)
         value = None if type_ is Parameter.Type.NOT_SET else getattr(param_msg.value, _field(type_))
         return cls(param_msg.name, type_, value)
@@ -117,34 +117,34 @@ class Parameter(Generic[AllowableParameterValueT]):
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """The parameter's name."""
         return self._name
 
     @property
     def type_(self) -> Parameter.Type:
-        """Its type."""
+        """The parameter's type."""
         return self._type_
 
     @property
     def value(self) -> Any:
-        """Its value; None while it has none."""
+        """The parameter's value; None if it is not set."""
         return self._value
 
     def get_parameter_value(self) -> Any:
-        """The value as an rcl_interfaces/msg/ParameterValue."""
+        """Convert the value to an rcl_interfaces/msg/ParameterValue."""
         message = rcl_interfaces.ParameterValue(type=self._type_.value)
         if self._type_ is not Parameter.Type.NOT_SET:
-            # An array.array of another type code than the message's is converted, as a list is.
+            # An array.array with another type code than the message's is converted by way of a list.
             value = list(self._value) if isinstance(self._value, array.array) else self._value
             setattr(message, _field(self._type_), value)
         return message
 
     def to_parameter_msg(self) -> Any:
-        """The same as an rcl_interfaces/msg/Parameter."""
+        """Convert the parameter to an rcl_interfaces/msg/Parameter."""
         return rcl_interfaces.Parameter(name=self._name, value=self.get_parameter_value())
 
 
-# In the order in which a value's type is looked for: True is an int too.
+# In the order in which a value's type is searched: True is also an int.
 _SCALARS: dict[Parameter.Type, type] = {
     Parameter.Type.BOOL: bool,
     Parameter.Type.INTEGER: int,
@@ -161,12 +161,12 @@ _ARRAYS: dict[Parameter.Type, type] = {
 
 
 def _field(type_: Parameter.Type) -> str:
-    """Where a ParameterValue message keeps a value of that type."""
+    """The field of a ParameterValue message for values of that type."""
     return f"{type_.name.lower()}_value"
 
 
 def parameter_value_to_python(parameter_value: Any) -> Any:
-    """The value in an rcl_interfaces/msg/ParameterValue, arrays as lists; None if it is not set.
+    """The value of an rcl_interfaces/msg/ParameterValue, with arrays as lists; None if it is not set.
 
     Raises:
         RuntimeError: the message's type is unknown.
@@ -182,12 +182,12 @@ def parameter_value_to_python(parameter_value: Any) -> Any:
 
 
 def get_parameter_value(string_value: str) -> Any:
-    """An rcl_interfaces/msg/ParameterValue of a value written as YAML; what is no value is a text."""
+    """Convert a value in YAML to an rcl_interfaces/msg/ParameterValue; invalid YAML is taken as a text."""
     try:
         plain = parameter_yaml.read_value(string_value)
     except ParameterYamlError:
         plain = string_value
-    # An empty list has no type; the command line takes it for one of truth values.
+    # An empty list has no type; as on ROS 2's command line, it is a list of truth values.
     parameter = Parameter("", Parameter.Type.BOOL_ARRAY, []) if plain is None else Parameter("", value=plain)
     return parameter.get_parameter_value()
 
@@ -198,15 +198,15 @@ def parameter_dict_from_yaml_file(
     target_nodes: list[str] | None = None,
     namespace: str = "",
 ) -> dict[str, Any]:
-    """Read a parameter file: rcl_interfaces/msg/Parameter messages by name, ``namespace`` put before each.
+    """Read a parameter file: rcl_interfaces/msg/Parameter messages by name, with ``namespace`` as a prefix.
 
-    Those of ``target_nodes`` only, if any are named, else of every node; those under ``/**`` count with
-    ``use_wildcard``, and are overridden by a node's own.
+    The result has the parameters of ``target_nodes`` (none: of all nodes). Those under ``/**`` are used with
+    ``use_wildcard``; a node's own parameters override them.
 
     Raises:
-        RuntimeError: a node is not in the file, or nothing is selected.
+        RuntimeError: a node is not in the file, or no parameters are selected.
         OSError: the file cannot be read.
-        ParameterYamlError: it is no parameter file.
+        ParameterYamlError: it is not a parameter file.
     """
     by_node = parameter_yaml.read_nodes(untrusted.read_text(Path(parameter_file)))
     chosen = ["/**"] if use_wildcard and "/**" in by_node else []

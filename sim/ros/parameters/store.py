@@ -1,4 +1,4 @@
-"""What a node does with parameters: it declares, sets, describes and removes them, and asks its callbacks."""
+"""A node's parameters: declares, sets, describes and removes them, and calls the callbacks."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ from sim.ros.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from sim.ros.naming.validate_parameter_name import validate_parameter_name
+from sim.ros.naming.validation import validate_parameter_name
 from sim.ros.parameters.checks import has_wrong_type, objection
 from sim.ros.parameters.declaration import read_declaration
 from sim.ros.parameters.listing import listed
-from sim.ros.parameters.overruled import Overruled
+from sim.ros.parameters.nested_sets import NestedSetDetector
 from sim.ros.parameters.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
 
 AnyParameter: TypeAlias = Parameter[Any]
@@ -37,7 +37,7 @@ _NOTHING_LEFT = (
 
 @dataclass(slots=True)
 class ParameterChange:
-    """What one setting of parameters did."""
+    """The changes of one setting of parameters."""
 
     new: list[AnyParameter] = field(default_factory=list)
     changed: list[AnyParameter] = field(default_factory=list)
@@ -45,9 +45,9 @@ class ParameterChange:
 
 
 class ParameterStore:
-    """The parameters of a node, by name. Callbacks run on the thread that sets, the newest first.
+    """The parameters of a node by name. Callbacks run on the thread that sets parameters, the newest first.
 
-    ``tell`` hears of every change, ``overruled`` of what an on-set callback sets in vain.
+    ``tell`` is called with every change, ``overruled`` with each name that a callback sets without effect.
     """
 
     def __init__(
@@ -59,7 +59,7 @@ class ParameterStore:
         allow_undeclared: bool,
     ) -> None:
         self._tell = tell
-        self._overruled = Overruled(overruled)
+        self._overruled = NestedSetDetector(overruled)
         self._parameters: dict[str, AnyParameter] = {}
         self._descriptors: dict[str, Any] = {}
         self._parameter_overrides = {each.name: each for each in overrides}
@@ -75,12 +75,12 @@ class ParameterStore:
     ) -> AnyParameter:
         """Declare a parameter with a value, or with a ``Parameter.Type`` and no value yet.
 
-        An override from the command line, a file or the node's construction counts before ``value``.
+        An override from the command line, a file or the node's constructor replaces ``value``.
 
         Raises:
             ParameterAlreadyDeclaredException, InvalidParameterException, InvalidParameterTypeException:
-                it exists, has no name, or is overridden by a value of another type.
-            InvalidParameterValueException: its descriptor or a callback refuses the value.
+                the parameter exists, has no name, or is overridden by a value of another type.
+            InvalidParameterValueException: the descriptor or a callback refuses the value.
         """
         declared: tuple[Any, ...] = (name,)
         if value is not None or descriptor is not None:
@@ -96,12 +96,12 @@ class ParameterStore:
     ) -> list[AnyParameter]:
         """Declare parameters given as (name,), (name, value or type) or (name, value or type, descriptor).
 
-        ``namespace`` and a dot come before each name, unless it is empty.
+        Each name gets the prefix ``namespace`` and a dot, unless the namespace is empty.
 
         Raises:
-            TypeError, ValueError: an entry is not of that form, or contradicts itself.
+            TypeError, ValueError: an entry has another form, or contradicts itself.
             ParameterAlreadyDeclaredException, InvalidParameterException, InvalidParameterTypeException,
-            InvalidParameterValueException: as ``declare_parameter``; what came before it stays declared.
+            InvalidParameterValueException: as ``declare_parameter``; earlier parameters stay declared.
         """
         wanted: list[tuple[AnyParameter, Any]] = []
         for index, entry in enumerate(parameters):
@@ -119,7 +119,7 @@ class ParameterStore:
         return [self._parameters[name] for name in names]
 
     def declare_overrides(self) -> None:
-        """Declare every parameter that is overridden from outside."""
+        """Declare all parameters that have overrides."""
         declared = [
             (each.name, each.value, rcl_interfaces.ParameterDescriptor())
             for each in self._parameter_overrides.values()
@@ -146,7 +146,7 @@ class ParameterStore:
         """Remove a parameter.
 
         Raises:
-            ParameterNotDeclaredException, ParameterImmutableException: it does not exist, or is read-only.
+            ParameterNotDeclaredException, ParameterImmutableException: it is not declared, or is read-only.
         """
         if not self.has_parameter(name):
             raise ParameterNotDeclaredException(name)
@@ -158,7 +158,7 @@ class ParameterStore:
     # Reading
 
     def has_parameter(self, name: str) -> bool:
-        """Whether it is declared."""
+        """Whether a parameter is declared."""
         return name in self._parameters
 
     def get_parameter(self, name: str) -> AnyParameter:
@@ -177,19 +177,19 @@ class ParameterStore:
         return parameter
 
     def get_parameters(self, names: list[str]) -> list[AnyParameter]:
-        """Parameters in the order of their names; raises as ``get_parameter``."""
+        """The parameters of these names, in the same order; raises as ``get_parameter``."""
         _require_names(names)
         return [self.get_parameter(name) for name in names]
 
     def get_parameter_or(self, name: str, alternative_value: AnyParameter | None = None) -> AnyParameter:
-        """A parameter, or the alternative (by default one that is not set) if it has no value."""
+        """A parameter; without a value, the alternative, which by default is an unset parameter."""
         parameter = self._parameters.get(name)
         if parameter is not None and parameter.type_ is not _NOT_SET:
             return parameter
         return Parameter(name, _NOT_SET) if alternative_value is None else alternative_value
 
     def get_parameters_by_prefix(self, prefix: str) -> dict[str, AnyParameter]:
-        """Every parameter called ``prefix.…`` by the rest of its name; the empty prefix means all."""
+        """The parameters called ``prefix.…`` by the rest of their names; the empty prefix means all."""
         start = prefix + PARAMETER_SEPARATOR_STRING if prefix else ""
         return {
             name.removeprefix(start): parameter
@@ -214,10 +214,10 @@ class ParameterStore:
         return [self.get_parameter_type(name) for name in names]
 
     def list_parameters(self, prefixes: list[str], depth: int) -> Any:
-        """The names at most ``depth`` parts deep (0: any) under the prefixes (none: all), as a message.
+        """The names with the prefixes (none: all), at most ``depth`` levels deep (0: any), as a message.
 
         Raises:
-            TypeError, ValueError: the prefixes are not texts in a list, the depth is not a number from 0 on.
+            TypeError, ValueError: the prefixes are not a list of str, or the depth is not an int from 0 on.
         """
         names, nested = listed(self._parameters, prefixes, depth)
         return rcl_interfaces.ListParametersResult(names=names, prefixes=nested)
@@ -225,19 +225,19 @@ class ParameterStore:
     # Setting
 
     def set_parameters(self, parameter_list: list[AnyParameter]) -> list[Any]:
-        """Set parameters one by one; a result for each. ``NOT_SET`` removes a dynamically typed one.
+        """Set parameters one by one, and return their results. ``NOT_SET`` removes a dynamically typed one.
 
         Raises:
             ParameterNotDeclaredException: one is not declared, and undeclared ones are not allowed; then
-                none is set.
-            TypeError: one is no ``Parameter``.
+                no parameter is set.
+            TypeError: one is not a ``Parameter``.
         """
         if not self._pre_set_parameters_callbacks:
             self._require_declared(parameter_list)
         return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
 
     def set_parameters_atomically(self, parameter_list: list[AnyParameter]) -> Any:
-        """Set all of the parameters, or none; one result. Raises as ``set_parameters``."""
+        """Set all of the parameters or none, and return one result. Raises as ``set_parameters``."""
         chosen = list(parameter_list)
         if self._pre_set_parameters_callbacks:
             asked = tuple(self._pre_set_parameters_callbacks)
@@ -300,33 +300,33 @@ class ParameterStore:
     # Callbacks
 
     def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
-        """Have ``callback`` say, before anything is checked, what is to be set in place of what was asked."""
+        """Let ``callback`` replace the parameters to set, before any check."""
         self._pre_set_parameters_callbacks.insert(0, callback)
 
     def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Have ``callback`` allow or refuse what is about to be set, by a SetParametersResult.
+        """Let ``callback`` allow or refuse the parameters to set, by a SetParametersResult.
 
         Raises:
-            TypeError: it cannot be called.
+            TypeError: the callback is not callable.
         """
         if not callable(callback):
             raise TypeError("Callback must be callable, got {}", type(callback))
         self._on_set_parameters_callbacks.insert(0, callback)
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Have ``callback`` told what was set."""
+        """Call ``callback`` with the parameters that were set."""
         self._post_set_parameters_callbacks.insert(0, callback)
 
     def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
-        """Ask ``callback`` no more; ValueError if it was not asked."""
+        """Remove ``callback``; ValueError if it was not added."""
         self._pre_set_parameters_callbacks.remove(callback)
 
     def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
-        """Ask ``callback`` no more; ValueError if it was not asked."""
+        """Remove ``callback``; ValueError if it was not added."""
         self._on_set_parameters_callbacks.remove(callback)
 
     def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
-        """Tell ``callback`` no more; ValueError if it was not told."""
+        """Remove ``callback``; ValueError if it was not added."""
         self._post_set_parameters_callbacks.remove(callback)
 
     # Describing
@@ -347,14 +347,14 @@ class ParameterStore:
         return [self.describe_parameter(name) for name in names]
 
     def set_descriptor(self, name: str, descriptor: Any, alternative_value: Any = None) -> Any:
-        """Give a parameter another descriptor; returns its value, a ParameterValue, afterwards.
+        """Replace a parameter's descriptor, and return its value, a ParameterValue.
 
-        Where the new descriptor does not allow the value, the alternative, also a ParameterValue, replaces
-        it. A descriptor that names no type keeps the parameter's.
+        If the new descriptor does not allow the value, the alternative, also a ParameterValue, replaces
+        it. A descriptor without a type keeps the parameter's type.
 
         Raises:
             ParameterNotDeclaredException, ParameterImmutableException: it is not declared, or is read-only.
-            InvalidParameterValueException: neither value is allowed.
+            InvalidParameterValueException: the descriptor allows neither value.
         """
         current = self.get_parameter(name)
         if not self.has_parameter(name):

@@ -1,7 +1,7 @@
-"""Parameters written as YAML: single values, and files of them for one or more nodes.
+"""Parameters in YAML: single values, and files for one or more nodes.
 
-A value gets the type that ROS's parameter parser gives it, which differs from YAML 1.2 in details: ``yes``,
-``on`` and ``Y`` are truth values too, and numbers follow C. Source: rcl_yaml_param_parser's README and tests.
+A value gets the type of ROS's parameter parser, which differs from YAML 1.2: ``yes``, ``on``
+and ``Y`` are also truth values, and numbers follow C. Source: rcl_yaml_param_parser's README and tests.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ from sim.files import plain_yaml, untrusted
 from sim.files.plain_yaml import YamlError
 
 PlainValue: TypeAlias = "bool | int | float | str | list[bool] | list[int] | list[float] | list[str] | None"
-"""What a parameter can be set to in YAML; an empty list has no type and comes as None."""
+"""The values of parameters in YAML; an empty list has no type and is read as None."""
 
 NodeParameters: TypeAlias = "dict[str, dict[str, PlainValue]]"
-"""Values by the name of the node (or a pattern of names) and the name of the parameter."""
+"""Values by the node's name (or a pattern of names) and the parameter's name."""
 
 _TRUE = frozenset(("y", "Y", "yes", "Yes", "YES", "true", "True", "TRUE", "on", "On", "ON"))
 _FALSE = frozenset(("n", "N", "no", "No", "NO", "false", "False", "FALSE", "off", "Off", "OFF"))
@@ -26,7 +26,7 @@ _INTEGER = re.compile(r"[+-]?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
 _FLOAT = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _SPECIAL_FLOAT = re.compile(r"[+-]?\.?(inf|nan|infinity)", re.IGNORECASE)
 _MOST_DIGITS = 1000
-"""Python itself refuses to read a decimal number of some thousand digits as an integer."""
+"""The most digits of an integer: Python refuses to read decimal numbers with some thousand digits."""
 _INT64 = range(-(2**63), 2**63)
 _TEXT_TAG = "tag:yaml.org,2002:str"
 _KEY = "ros__parameters"
@@ -34,7 +34,7 @@ _TYPE_WORDS = {bool: "bool", int: "integer", float: "double", str: "string"}
 
 
 class ParameterYamlError(ValueError):
-    """Not YAML, or YAML that is no parameter; the text names the reason and the line."""
+    """The text is not YAML, or not a parameter; the message names the reason and the line."""
 
     __module__ = "rclpy.parameter"
 
@@ -43,7 +43,7 @@ def read_value(text: str) -> PlainValue:
     """Read one value, such as ``5``, ``[1.0, 2.0]`` or ``on``.
 
     Raises:
-        ParameterYamlError: it is no value that a parameter can have.
+        ParameterYamlError: it is not a value of a parameter.
     """
     root = _compose(text)
     if root is None:
@@ -55,24 +55,24 @@ def read_file(path: str) -> NodeParameters:
     """Read a parameter file.
 
     Raises:
-        ParameterYamlError: the file cannot be read, or is no parameter file.
+        ParameterYamlError: the file cannot be read, or is not a parameter file.
     """
     try:
         text = untrusted.read_text(Path(path))
     except OSError as error:
         raise ParameterYamlError(f"Error opening YAML file: {error.strerror}") from None
     except ValueError as error:
-        # A name with a zero byte in it is no name of a file.
+        # A name with a zero byte cannot be the name of a file.
         reason = "it is not UTF-8" if isinstance(error, UnicodeDecodeError) else "there cannot be such a file"
         raise ParameterYamlError(f"Error opening YAML file: {reason}") from None
     return read_nodes(text)
 
 
 def read_nodes(text: str) -> NodeParameters:
-    """Read the text of a parameter file.
+    """Parse the text of a parameter file.
 
     Raises:
-        ParameterYamlError: it is not a file of parameters.
+        ParameterYamlError: it is not a parameter file.
     """
     root = _compose(text)
     found: NodeParameters = {}
@@ -144,7 +144,7 @@ def _scalar(node: Any) -> bool | int | float | str:
     if text in _TRUE or text in _FALSE:
         return text in _TRUE
     number = _number(text)
-    # Only a tag written out makes a text of what looks like a number.
+    # Only an explicit tag makes a text of something that looks like a number.
     return text if number is None or (node.tag == _TEXT_TAG and _is_numeric(text)) else number
 
 
@@ -157,7 +157,7 @@ def _number(text: str) -> int | float | None:
 
 
 def _integer_or_double(text: str) -> int | float:
-    # What does not fit 64 bits is read once more by C's strtod, which knows hexadecimal digits and no octal.
+    # A number that does not fit 64 bits is read as by C's strtod, which knows hexadecimal but not octal.
     if len(text) <= _MOST_DIGITS and (value := _c_integer(text)) in _INT64:
         return value
     if text.lstrip("+-")[:2] not in {"0x", "0X"}:

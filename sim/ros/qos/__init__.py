@@ -1,1 +1,1 @@
-"""Quality of service: policies, profiles, and which offer meets which request."""
+"""Quality of service: policies, profiles and their compatibility."""

@@ -1,4 +1,4 @@
-"""Which publishers a subscription can hear: what is requested against what is offered.
+"""The compatibility of offered and requested QoS profiles.
 
 Source: the ROS 2 documentation, "QoS compatibilities".
 """
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class QoSCompatibility(IntEnum):
-    """Whether a subscription hears a publisher: yes, perhaps, no."""
+    """Whether two profiles are compatible: yes, perhaps, no."""
 
     OK = 0
     WARNING = 1
@@ -30,7 +30,7 @@ class _Mismatch(NamedTuple):
 
 
 def mismatches(offered: QoSProfile, requested: QoSProfile) -> Iterator[str]:
-    """Name the policies by which a subscription cannot hear a publisher; nothing: they match."""
+    """Yield the names of the incompatible policies."""
     for each in _errors(offered, requested):
         yield each.policy
 
@@ -38,9 +38,9 @@ def mismatches(offered: QoSProfile, requested: QoSProfile) -> Iterator[str]:
 def qos_check_compatible(
     publisher_qos: QoSProfile, subscription_qos: QoSProfile
 ) -> tuple[QoSCompatibility, str]:
-    """Whether a subscription with one profile hears a publisher with another, and why not.
+    """Whether the profiles of a publisher and a subscription are compatible, and the reason if not.
 
-    WARNING if that cannot be told, since one of them leaves a policy to the system.
+    WARNING if that is unknown, because one profile leaves a policy to the system.
     """
     texts = [f"ERROR: {each.text};" for each in _errors(publisher_qos, subscription_qos)]
     if texts:

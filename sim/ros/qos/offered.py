@@ -1,4 +1,4 @@
-"""What a publisher offers, as others see it and as rosbag2 writes it down."""
+"""The profile of a publisher as other nodes see it, and as rosbag2 stores it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _SECOND = 1_000_000_000
 
 
 def as_discovered(profile: QoSProfile) -> QoSProfile:
-    """A profile as others see it: what was left open has become what DDS takes for it."""
+    """The profile that other nodes discover: unspecified policies have the defaults of DDS."""
     seen = copy(profile)
     for name in ("lifespan", "deadline", "liveliness_lease_duration"):
         if getattr(seen, name) == Duration():

@@ -1,4 +1,4 @@
-"""The policies of a quality of service, under the values that ROS 2 gives them."""
+"""The QoS policies, with the values of ROS 2."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class QoSPolicyKind(IntEnum):
-    """Which policy of a profile."""
+    """The kinds of policies in a profile."""
 
     INVALID = 1 << 0
     DURABILITY = 1 << 1
@@ -26,26 +26,26 @@ def qos_policy_name_from_kind(policy_kind: QoSPolicyKind | int) -> str:
 
 
 class QoSPolicyEnum(IntEnum):
-    """Base of the policies whose values have names."""
+    """Base of the policies with named values."""
 
     @property
     def short_key(self) -> str:
-        """The value's name in lower case, as the command line writes it."""
+        """The value's name in lower case, as on the command line."""
         return self.name.lower()
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """Every short name of the policy."""
+        """The short names of all values."""
         return [each.short_key for each in cls]
 
     @classmethod
     def get_from_short_key(cls, name: str) -> int:
-        """The value of a policy's short name; KeyError for an unknown one."""
+        """The value of a short name; KeyError for an unknown one."""
         return int(cls[name.upper()])
 
 
 class HistoryPolicy(QoSPolicyEnum):
-    """What a full queue does."""
+    """Whether a queue keeps the last messages or all."""
 
     SYSTEM_DEFAULT = 0
     KEEP_LAST = 1
@@ -72,7 +72,7 @@ class ReliabilityPolicy(QoSPolicyEnum):
 
 
 class DurabilityPolicy(QoSPolicyEnum):
-    """Whether a late subscription gets what was published before it."""
+    """Whether a late subscription gets earlier messages."""
 
     SYSTEM_DEFAULT = 0
     TRANSIENT_LOCAL = 1
@@ -86,7 +86,7 @@ class DurabilityPolicy(QoSPolicyEnum):
 
 
 class LivelinessPolicy(QoSPolicyEnum):
-    """How a publisher shows that it lives."""
+    """How a publisher asserts its liveliness."""
 
     SYSTEM_DEFAULT = 0
     AUTOMATIC = 1

@@ -1,4 +1,4 @@
-"""Quality of service: how many messages are kept, and which publishers a subscription can hear."""
+"""QoS profiles."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ QoSLivelinessPolicy = LivelinessPolicy
 
 
 class InvalidQoSProfileException(Exception):
-    """A quality of service that contradicts itself."""
+    """The settings of a profile contradict each other."""
 
     __module__ = "rclpy.qos"
 
@@ -70,11 +70,11 @@ _UNSPECIFIED = Duration()
 
 @dataclass(slots=True, init=False)
 class QoSProfile:
-    """How a publisher, subscription, service or client treats its messages.
+    """The QoS profile of a publisher, subscription, service or client.
 
     Raises:
-        InvalidQoSProfileException: neither a history nor a depth is given, or KEEP_LAST without a depth.
-        AssertionError: there is no such policy, or a value is of the wrong type.
+        InvalidQoSProfileException: neither history nor depth is given, or KEEP_LAST without a depth.
+        AssertionError: there is no such policy, or a value has the wrong type.
         ValueError: the depth is negative, or a policy has no such value.
     """
 
@@ -115,23 +115,23 @@ class QoSProfile:
         return f"{type(self).__name__}({', '.join(values)})"
 
     def get_c_qos_profile(self) -> RmwQoSProfile:
-        """The same as the layers below rclpy know it."""
+        """Convert the profile to that of the layers below rclpy."""
         return RmwQoSProfile({each.name: getattr(self, each.name) for each in fields(self)})
 
     @property
     def queue_length(self) -> int | None:
-        """How many messages a queue keeps; None for all of them. A depth of 0 keeps one, as DDS does."""
+        """The length of the queue; None: unlimited. As in DDS, a depth of 0 keeps one message."""
         return None if self.history == HistoryPolicy.KEEP_ALL else max(self.depth, 1)
 
 
 @dataclass(frozen=True)
 class RmwQoSProfile:
-    """A profile as the layers below rclpy know it; ``QoSProfile(**profile.to_dict())`` makes it one again."""
+    """A profile of the layers below rclpy; ``QoSProfile(**profile.to_dict())`` converts it back."""
 
     settings: dict[str, Any]
 
     def to_dict(self) -> dict[str, Any]:
-        """The settings, policies as numbers."""
+        """The settings, with policies as numbers."""
         return {
             name: int(value) if isinstance(value, QoSPolicyEnum) else value
             for name, value in self.settings.items()
@@ -204,7 +204,7 @@ qos_profile_best_available = QoSProfile(
 
 
 class QoSPresetProfiles(Enum):
-    """The profiles that ROS 2 has made up; of equal ones the first gives its name to all, as in rclpy."""
+    """ROS 2's predefined profiles; as in rclpy, equal profiles are aliases of the first one."""
 
     UNKNOWN = qos_profile_unknown
     DEFAULT = qos_profile_default
@@ -218,7 +218,7 @@ class QoSPresetProfiles(Enum):
 
     @classmethod
     def short_keys(cls) -> list[str]:
-        """Every short name of a profile."""
+        """The short names of all profiles."""
         return [name.lower() for name in cls.__members__]
 
     @classmethod
@@ -229,10 +229,10 @@ class QoSPresetProfiles(Enum):
 
 
 def as_profile(qos: QoSProfile | int) -> QoSProfile:
-    """A profile as it is; a number as the depth of a default profile.
+    """A profile as it is; an int as the depth of a default profile.
 
     Raises:
-        TypeError: it is neither.
+        TypeError: it is neither a profile nor an int.
         ValueError: the depth is negative.
     """
     if isinstance(qos, QoSProfile):

@@ -1,7 +1,7 @@
-"""A model of rclpy: the same names, the same order of callbacks, and every reason for waiting on a trace.
+"""The face of the model: the modules of rclpy.
 
-``import rclpy`` means this package in an engine process (see ``sim.ros.importing``). Its modules are rclpy's,
-and say where the model has what they offer. A folder that begins with an underscore only groups modules:
+``import rclpy`` imports this package in an engine process (see ``sim.ros.importing``). Its modules have
+rclpy's names, and import their content from the model. A folder with a leading underscore groups modules;
 it is not part of their names.
 """
 
@@ -17,7 +17,7 @@ from sim.ros.context import utilities
 from sim.ros.context.context import Context
 from sim.ros.context.signals import SignalHandlerOptions, install_signal_handlers, uninstall_signal_handlers
 from sim.ros.context.utilities import get_default_context, get_rmw_implementation_identifier, ok
-from sim.ros.middleware.process import of_process
+from sim.ros.middleware.process import process_local
 from sim.ros.node.node import Node
 from sim.ros.parameters.parameter import Parameter
 from sim.ros.scheduling.executors import Executor, SingleThreadedExecutor
@@ -49,7 +49,7 @@ __path__.extend(str(folder) for folder in sorted(Path(__path__[0]).glob("_[a-z]*
 if not TYPE_CHECKING:
 
     def __getattr__(name: str) -> Any:
-        """A module of rclpy, also for a program that imports no more than ``rclpy``."""
+        """A module of rclpy, also for a program that imports only ``rclpy``."""
         try:
             return import_module(f"{__name__}.{name}")
         except ModuleNotFoundError:
@@ -57,7 +57,7 @@ if not TYPE_CHECKING:
 
 
 class _GlobalExecutor:
-    """The executor that a process's ``spin`` uses, for its present default context."""
+    """The global executor of a process, for its present default context."""
 
     def __init__(self) -> None:
         self.executor: Executor | None = None
@@ -77,8 +77,8 @@ def init(
     ``signal_handler_options`` None means all for the default context, none for another.
 
     Raises:
-        RuntimeError: it was called before.
-        RCLError, UnknownROSArgsError: a ROS argument cannot be read, or is none.
+        RuntimeError: the context was initialised before.
+        RCLError, UnknownROSArgsError: a ROS argument cannot be read, or is unknown.
     """
     default = get_default_context()
     chosen = default if context is None else context
@@ -90,7 +90,7 @@ def init(
 
 
 class InitContextManager:
-    """What ``init`` returns; ``with rclpy.init():`` ends the context at the block's end."""
+    """The result of ``init``; ``with rclpy.init():`` shuts the context down at the end of the block."""
 
     def __init__(self, context: Context) -> None:
         self.context = context
@@ -104,17 +104,17 @@ class InitContextManager:
 
 
 def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """End the context; signals are handled no more, by default if it is the default context.
+    """End the context. The signal handlers are removed; by default only for the default context.
 
     Raises:
-        RuntimeError: it has not begun.
+        RuntimeError: the context is not initialised.
     """
     utilities.shutdown(context=context)
     _forget_signals(context, uninstall_handlers)
 
 
 def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
-    """Do as ``shutdown``, if the context has begun and not ended."""
+    """Do as ``shutdown``, if the context is initialised and has not ended."""
     utilities.try_shutdown(context=context)
     _forget_signals(context, uninstall_handlers)
 
@@ -138,7 +138,7 @@ def create_node(
     automatically_declare_parameters_from_overrides: bool = False,
     enable_logger_service: bool = False,
 ) -> Node:
-    """Make a node; everything as for ``Node``."""
+    """Create a node; the arguments are those of ``Node``."""
     return Node(
         node_name,
         context=context,
@@ -155,9 +155,9 @@ def create_node(
 
 
 def get_global_executor() -> Executor:
-    """The single-threaded executor that ``spin`` uses."""
+    """The single-threaded executor of ``spin``."""
     context = get_default_context()
-    own = of_process(_GlobalExecutor)
+    own = process_local(_GlobalExecutor)
     if own.executor is None or own.executor.context is not context:
         own.executor = SingleThreadedExecutor(context=context)
     return own.executor
@@ -168,7 +168,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
 
     Raises:
         RuntimeError: the executor is already spinning.
-        ExternalShutdownException: the context ended meanwhile.
+        ExternalShutdownException: the context ended.
     """
     chosen = get_global_executor() if executor is None else executor
     try:
@@ -180,7 +180,7 @@ def spin(node: Node, executor: Executor | None = None) -> None:
 
 
 def spin_once(node: Node, *, executor: Executor | None = None, timeout_sec: float | None = None) -> None:
-    """Run one of the node's callbacks, waiting at most ``timeout_sec`` seconds for it."""
+    """Run one callback of the node; wait for at most ``timeout_sec`` seconds."""
     with _attached(node, executor) as chosen:
         chosen.spin_once(timeout_sec=timeout_sec)
 
@@ -195,7 +195,7 @@ def spin_until_future_complete(
 
 @contextmanager
 def _attached(node: Node, executor: Executor | None) -> Generator[Executor, None, None]:
-    """The executor, which serves the node meanwhile."""
+    """The executor, which serves the node in this context."""
     chosen = get_global_executor() if executor is None else executor
     added = False
     try:

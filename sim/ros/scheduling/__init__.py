@@ -1,1 +1,1 @@
-"""Who may run, and when: wait set, agenda, callback groups, executors, workers, tasks."""
+"""Decides which callback runs when: wait set, agenda, callback groups, executors, workers, tasks."""

@@ -1,6 +1,6 @@
-"""A node's agenda: its entities, which of them have something to take, and when its timers fall due.
+"""A node's agenda: its entities, which of them are ready, and when its timers are due.
 
-It is an object of its own so that a program's node, which inherits from ``Node``, cannot overwrite any of it
+It is an object of its own, so that a program's node, which inherits from ``Node``, cannot overwrite it
 with attributes of the same names.
 """
 
@@ -24,17 +24,17 @@ EntityT = TypeVar("EntityT", bound="Entity")
 
 
 MANY = 1_000
-"""So many entities of a node, the last one made by a callback, are told of: it will not be the last."""
+"""The number of entities of a node that is reported, if a callback made the last one."""
 
 
 class Agenda:
-    """What an executor has to know of a node. Used with the host's lock held."""
+    """The state of a node that its executor needs. Use it with the host's lock held."""
 
     def __init__(self, host: Host, probe: Probe) -> None:
         self.host = host
         self.entities: list[Entity] = []
-        self.asked: list[WaitableEntity] = []
-        """The waitables that a program wrote: an executor asks them whether they are ready."""
+        self.polled: list[WaitableEntity] = []
+        """The waitables that the program wrote; an executor polls whether they are ready."""
         self._probe = probe
         self._orders = 0
         self._pending: dict[Entity, None] = {}
@@ -42,7 +42,7 @@ class Agenda:
         self._executor: weakref.ref[Executor] | None = None
         self._latest_executor: weakref.ref[Executor] | None = None
         self._watchers: dict[Watcher, None] = {}
-        host.explain_waits_of(self)
+        host.explain_waits_with(self.explain_waits)
 
     @property
     def executor(self) -> Executor | None:
@@ -58,79 +58,79 @@ class Agenda:
 
     @property
     def latest_executor(self) -> Executor | None:
-        """The executor that served the node last, or does still."""
+        """The executor that serves the node, or served it last."""
         return None if self._latest_executor is None else self._latest_executor()
 
     def forget_executors(self) -> None:
-        """Be served by none, as if that had always been so."""
+        """Reset the present and the latest executor to None."""
         self._executor = self._latest_executor = None
 
     def next_order(self) -> int:
-        """The place of another entity in the order of creation."""
+        """The next number in the order of creation."""
         self._orders += 1
         return self._orders
 
     def add(self, entity: Entity) -> None:
-        """Take in an entity."""
+        """Add an entity."""
         self.entities.append(entity)
         if entity.traced and entity.shown_callback() is not None:
             entity.node.context.process.callbacks += 1
         self._probe.entity_made(entity)
-        self.has_now(len(self.entities), "timers, subscriptions, services or clients")
+        self.report_many(len(self.entities), "timers, subscriptions, services or clients")
         self.wake_executor()
 
-    def has_now(self, number: int, kind: str) -> None:
-        """Tell, as the number grows to ``MANY``, of a node whose callbacks make ever more of a kind."""
+    def report_many(self, number: int, kind: str) -> None:
+        """Report a node whose callbacks create ever more entities, when their number reaches ``MANY``."""
         if number == MANY and self._probe.callback_here():
             self._probe.many_made(number, kind)
 
     def remove(self, entity: Entity) -> bool:
-        """Let an entity go; whether it was there."""
+        """Remove an entity; False if it was not on the agenda."""
         with self.host.lock:
             if entity not in self.entities:
                 return False
             self.entities.remove(entity)
             entity.destroyed = True
-            entity.nothing_left()
+            entity.become_idle()
             self._probe.entity_gone(entity)
             self.wake_executor()
             entity.removed()
         return True
 
-    def add_asked(self, entity: WaitableEntity) -> None:
-        """Take in a waitable that has to be asked."""
+    def add_polled(self, entity: WaitableEntity) -> None:
+        """Add a waitable that has to be polled."""
         with self.host.lock:
-            self.asked.append(entity)
-            self._tell_of_asked()
+            self.polled.append(entity)
+            self._polled_changed()
             self.add(entity)
 
-    def remove_asked(self, entity: WaitableEntity) -> None:
-        """Let a waitable go that had to be asked."""
+    def remove_polled(self, entity: WaitableEntity) -> None:
+        """Remove a waitable that had to be polled."""
         with self.host.lock:
-            self.asked.remove(entity)
-            self._tell_of_asked()
+            self.polled.remove(entity)
+            self._polled_changed()
             self.remove(entity)
 
-    def _tell_of_asked(self) -> None:
+    def _polled_changed(self) -> None:
         executor = self.executor
         if executor is not None:
             executor._waitables_changed()
 
     def found(self, entity: WaitableEntity, *, ready: bool, now: int) -> None:
-        """An executor that looks at what is ready has asked a waitable."""
+        """Record what an executor found when it polled a waitable."""
         if not ready:
-            entity.nothing_left()
+            entity.become_idle()
         elif not (entity.pending or entity.destroyed):
             entity.pending = True
             entity.ready_since = now
             self._pending[entity] = None
 
     def of(self, kind: type[EntityT]) -> tuple[EntityT, ...]:
-        """The entities of a kind, oldest first."""
+        """The entities of a class, oldest first."""
         return tuple(each for each in tuple(self.entities) if isinstance(each, kind))
 
     def entity_ready(self, entity: Entity) -> None:
-        """An entity has something to take."""
+        """An entity became ready."""
         self._pending[entity] = None
         executor = self.executor
         if executor is not None:
@@ -139,18 +139,18 @@ class Agenda:
             self._wake_watchers()
 
     def entity_has_more(self, entity: Entity) -> None:
-        """An entity that is ready has more to take."""
+        """A ready entity has more to take."""
         executor = self.executor
         if executor is not None:
             executor._entity_has_more(entity)
 
     def entity_idle(self, entity: Entity) -> None:
-        """An entity has nothing more to take."""
+        """An entity is no longer ready."""
         self._pending.pop(entity, None)
         self._probe.wait_ended(entity)
 
     def timer_set(self, timer: Entity) -> None:
-        """A timer has another due time."""
+        """A timer has a new due time."""
         heappush(self._timer_queue, (timer.due, timer.order, timer))
         executor = self.executor
         if executor is not None:
@@ -159,7 +159,7 @@ class Agenda:
             self._wake_watchers()
 
     def watch(self, watcher: Watcher) -> None:
-        """Wake ``watcher`` once more is ready while no executor serves the node, or one begins to."""
+        """Wake ``watcher`` once an entity becomes ready without an executor, or an executor is assigned."""
         self._watchers[watcher] = None
 
     def _wake_watchers(self) -> None:
@@ -170,7 +170,7 @@ class Agenda:
                 each.wake()
 
     def collect_due(self, now: int) -> dict[Entity, None]:
-        """Everything that has something to take, once the timers that are due are among it."""
+        """The ready entities, including the timers that are due."""
         while (due := self.next_due()) is not None and due <= now:
             timer = heappop(self._timer_queue)[2]
             timer.pending = True
@@ -179,7 +179,7 @@ class Agenda:
         return self._pending
 
     def next_due(self) -> int | None:
-        """When the next timer that is not due yet falls due; None without one."""
+        """The due time of the next timer that is not ready yet; None without such a timer."""
         queue = self._timer_queue
         while queue:
             due, _, timer = queue[0]
@@ -189,13 +189,13 @@ class Agenda:
         return None
 
     def wake_executor(self) -> None:
-        """Have the executor look again at what is ready."""
+        """Make the executor check again what is ready."""
         executor = self.executor
         if executor is not None:
             executor.wake()
 
     def explain_waits(self) -> int | None:
-        """Record which callbacks wait, and why; returns when the next timer falls due."""
+        """Record which callbacks wait, and why; return when the next timer is due."""
         if not self._probe.visible:
             return None
         executor = self.executor

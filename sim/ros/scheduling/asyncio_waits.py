@@ -1,4 +1,4 @@
-"""Lets a task of asyncio await one of rclpy's futures."""
+"""Lets a task of asyncio await a future of rclpy."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ _SUSPENDABLE = inspect.CO_COROUTINE | inspect.CO_GENERATOR | inspect.CO_ASYNC_GE
 
 
 def driven_by_asyncio() -> bool:
-    """Whether asyncio, and no executor, runs the coroutine that awaits; asked inside ``__await__``."""
+    """Whether asyncio, not an executor, runs the awaiting coroutine; to be called inside ``__await__``."""
     if "asyncio" not in sys.modules:
         return False
     frame: FrameType | None = sys._getframe(1)
@@ -25,7 +25,7 @@ def driven_by_asyncio() -> bool:
 
 
 def wait_in_asyncio(wake_when_done: Callable[[AsyncioWaiter], None]) -> Generator[Any, None, None]:
-    """Suspend the running asyncio task until the future whose ``wake_when_done`` this is has a result."""
+    """Suspend the running asyncio task until the future that has this ``wake_when_done`` is done."""
     import asyncio
 
     loop = asyncio.get_running_loop()
@@ -35,7 +35,7 @@ def wait_in_asyncio(wake_when_done: Callable[[AsyncioWaiter], None]) -> Generato
 
 
 class AsyncioWaiter:
-    """A task of asyncio that waits for a future."""
+    """A task of asyncio that waits for a future of rclpy."""
 
     def __init__(self, loop: AbstractEventLoop, waiter: Future[None]) -> None:
         self._loop = loop

@@ -1,4 +1,4 @@
-"""Callback groups: who may run while who runs."""
+"""Callback groups: they decide which callbacks may run at the same time."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ Member: TypeAlias = "Entity | Waitable[Any]"
 
 
 class CallbackGroup(ABC):
-    """Decides when the callbacks of its entities may run; a program may write its own kind.
+    """Decides when the callbacks of its entities may run. A program may write a subclass.
 
-    Entities are held weakly, in the order of their joining, so that every run is the same. The three
-    questions below are asked by executors with the host's lock held.
+    Entities are held weakly, in the order in which they were added, so that all runs are equal. Executors
+    call the three abstract methods with the host's lock held.
     """
 
     trace_kind: ClassVar[GroupKind] = GroupKind.CUSTOM
@@ -39,11 +39,11 @@ class CallbackGroup(ABC):
 
     @abstractmethod
     def can_execute(self, entity: Entity) -> bool:
-        """Whether the entity's callback may begin now."""
+        """Whether the entity's callback may start now."""
 
     @abstractmethod
     def beginning_execution(self, entity: Entity) -> bool:
-        """Let the entity's callback begin; False refuses it."""
+        """Admit the entity's callback; False: it is refused."""
 
     @abstractmethod
     def ending_execution(self, entity: Entity) -> None:
@@ -51,24 +51,24 @@ class CallbackGroup(ABC):
 
 
 class ReentrantCallbackGroup(CallbackGroup):
-    """Lets everything in at any time, the same callback several times at once too."""
+    """Admits every callback at any time, also the same callback several times at once."""
 
     trace_kind = GroupKind.REENTRANT
 
     def can_execute(self, entity: Entity) -> bool:
-        """Whether the entity's callback may begin now: always."""
+        """True: the entity's callback may always start."""
         return True
 
     def beginning_execution(self, entity: Entity) -> bool:
-        """Let the callback begin: always."""
+        """True: the callback is admitted."""
         return True
 
     def ending_execution(self, entity: Entity) -> None:
-        """Nothing needs to be undone."""
+        """Do nothing."""
 
 
 class MutuallyExclusiveCallbackGroup(CallbackGroup):
-    """Lets one callback in at a time."""
+    """Admits one callback at a time."""
 
     trace_kind = GroupKind.EXCLUSIVE
 
@@ -78,16 +78,16 @@ class MutuallyExclusiveCallbackGroup(CallbackGroup):
 
     @property
     def holder(self) -> Entity | None:
-        """The entity whose callback is inside."""
+        """The entity whose callback runs."""
         return self._active_entity
 
     def can_execute(self, entity: Entity) -> bool:
-        """Whether nobody is inside. The entity must be a member."""
+        """Whether no callback of the group runs. The entity must be a member."""
         assert weakref.ref(entity) in self.entities
         return self._active_entity is None
 
     def beginning_execution(self, entity: Entity) -> bool:
-        """Let the callback in if nobody is inside."""
+        """Admit the callback if no callback of the group runs."""
         assert weakref.ref(entity) in self.entities
         if self._active_entity is None:
             self._active_entity = entity

@@ -1,8 +1,9 @@
-"""What an executor serves next: the tasks that are due, then one snapshot of what is ready, to its end.
+"""The work that an executor serves next: the tasks that are due, then one whole snapshot of ready entities.
 
-A cycle begins with a gathering: whatever is not handed out and let in by its group is waited for. What
-becomes ready first ends the waiting, and is served before the executor gathers again. So what was left out,
-because its group was busy or it was still handed out, comes a snapshot later, even if it could run by then.
+A cycle begins with a gathering: the executor waits for every entity that is not handed out and that its group
+admits. The first ready entities end the wait, and are served before the next gathering. So an entity that was
+left out, because its group was busy or it was still handed out, comes one snapshot later, even if it could
+run.
 """
 
 from __future__ import annotations
@@ -24,31 +25,31 @@ if TYPE_CHECKING:
     from sim.ros.scheduling.task import Task
 
 Work: TypeAlias = "Entity | Task[Any]"
-"""What a cycle yields."""
+"""The work that a cycle yields."""
 _gatherings = count(1)
-"""Each gathering of any executor has a number of its own, for entities move between executors."""
+"""Numbers the gatherings of all executors, because entities move between executors."""
 
 
 class _Following(Enum):
-    """What comes once all that was found is served."""
+    """The next step once all found work is served."""
 
     TASKS = auto()
-    """A new cycle, which begins with its tasks."""
+    """Start a new cycle with its tasks."""
     GATHERING = auto()
-    """What can run is gathered, for the tasks of this cycle are served."""
+    """Gather what can run: the tasks of this cycle are served."""
     WAITING = auto()
-    """What was gathered is waited for."""
+    """Wait for what was gathered."""
 
 
-# Asked for several times a callback, and a member of an enumeration is slow to find.
+# Module constants, because every callback reads them several times and looking up an enum member is slow.
 _TASKS, _GATHERING, _WAITING = _Following
 
 
 class Cycle:
-    """One cycle after another, over ``nodes`` or those of them that are in view. With the host's lock held.
+    """The cycles of one executor over ``nodes``. Use it with the host's lock held.
 
-    ``entity_of`` tells whose callback a task goes on with; None: nobody's. ``chosen`` may leave more out of a
-    snapshot.
+    ``entity_of`` returns the entity whose callback a task continues, or None. ``chosen`` may leave further
+    entities out of a snapshot.
     """
 
     def __init__(
@@ -62,7 +63,7 @@ class Cycle:
         self.view = nodes
         """The nodes that are waited for."""
         self.may_serve: Callable[[], bool] | None = None
-        """Whether what was just found may be served yet; None: always, for nothing runs while this waits."""
+        """Whether found work may be served yet; None: always, as nothing runs while the executor waits."""
         self._nodes = nodes
         self._clock = clock
         self._entity_of = entity_of
@@ -70,17 +71,17 @@ class Cycle:
         self._newest_task_first = profile.newest_task_first
         self._asks_tasks_again = not profile.resumes_at_once
         self.wanted: tuple[Any, ...] = ()
-        """What is waited for: how long, over which nodes, and until which condition holds."""
+        """The present wait: its timeout, its nodes, and the condition that ends it."""
         self._snapshot: deque[Entity] = deque()
         self._tasks: deque[Task[Any]] = deque()
         self._due_tasks: deque[Task[Any]] = deque()
         self.foreign_awaits: list[Task[Any]] = []
-        """Tasks that await something unknown: they ask again after the executor is next woken."""
+        """Tasks that await something unknown; they are resumed when the executor is next woken."""
         self._following = _TASKS
         self.held = False
         """Whether what was found waits until it may be served."""
         self._found_all = False
-        """Whether what ``next`` gave is of a snapshot of all that was ready when it was asked."""
+        """Whether the result of ``next`` is from a snapshot of all entities that were ready."""
         self._yielded = False
         self._gathering = next(_gatherings)
         self._groups_left_out: set[CallbackGroup] = set()
@@ -88,20 +89,20 @@ class Cycle:
 
     @property
     def about_to_look(self) -> bool:
-        """Whether the next thing to do is to take a new snapshot."""
+        """Whether the next step is to take a new snapshot."""
         is_served = not (self._due_tasks or self._snapshot)
         return is_served and not (self._tasks and self._following is _TASKS)
 
     @property
     def waits(self) -> bool:
-        """Whether all that was found is served, and what was gathered is waited for."""
+        """Whether all found work is served, and the executor waits for what was gathered."""
         return self._following is _WAITING
 
-    def want(self, wanted: tuple[Any, ...], nodes: Iterable[OwnerNode] | None) -> None:
-        """Wait for something else than until now: the rest of the snapshot is let go.
+    def set_wanted(self, wanted: tuple[Any, ...], nodes: Iterable[OwnerNode] | None) -> None:
+        """Change the present wait, and drop the rest of the snapshot.
 
         Raises:
-            NotImplementedError: one of ``nodes`` is not served.
+            NotImplementedError: one of ``nodes`` was not added to the executor.
         """
         self.wanted = wanted
         self.view = self._nodes if nodes is None else self._chosen(nodes)
@@ -123,7 +124,7 @@ class Cycle:
     # What is served next
 
     def next(self, now: int) -> Work | None:
-        """The next to serve, an entity marked as handed out; None: nothing is ready, or may be served yet."""
+        """The next work, with its entity marked as handed out; None: nothing may be served now."""
         self._found_all = False
         if self.held and not self._released():
             return None
@@ -143,14 +144,14 @@ class Cycle:
         self.held = self.may_serve is not None and not self.may_serve()
         return not self.held
 
-    def rest(self, now: int) -> Work | None:
+    def next_found(self, now: int) -> Work | None:
         """The next to serve of what is found already; None: that is served, or may not be served yet."""
         return None if self.held else self._serve(now)
 
-    def ends(self, now: int) -> bool:
-        """Whether a snapshot of which something was served has come to its end; asked once for each.
+    def snapshot_ended(self, now: int) -> bool:
+        """Whether a snapshot that was served in part is now at its end. Call it once per snapshot.
 
-        If not, the rest is still there.
+        If it is not, the rest stays.
         """
         if self._due_tasks:
             return False
@@ -173,7 +174,7 @@ class Cycle:
         return self._following is not _WAITING
 
     def would_find(self, now: int) -> bool:
-        """Whether there is something to serve, or would be after gathering now."""
+        """Whether there is work to serve, or would be after a gathering now."""
         return bool(self._due_tasks or self._tasks or self._snapshot or snapshot(self.view, now))
 
     def hold(self) -> None:
@@ -190,7 +191,7 @@ class Cycle:
         return entity
 
     def _holds(self, now: int) -> bool:
-        """Whether there is another one in the snapshot that still holds; those before it are let go."""
+        """Whether the snapshot has an entity that can still run; the entities before it are dropped."""
         found = self._snapshot
         while found:
             entity = found[0]
@@ -204,14 +205,14 @@ class Cycle:
         return False
 
     def _find(self, now: int) -> bool:
-        """Find what is served next: what was waited for, else tasks, else what a new gathering finds."""
+        """Find the next work: what was waited for, else tasks, else the result of a new gathering."""
         following, self._following = self._following, _TASKS
         if following is _TASKS:
             self._ask_again()
             if self._take_tasks():
                 return True
         found = self._ready(now)
-        if following is _WAITING and not self._ended_in_vain():
+        if following is _WAITING and not self._wait_ended_early():
             awaited = self._awaited(found)
             if awaited:
                 self._name(awaited)
@@ -222,10 +223,11 @@ class Cycle:
         # Tasks that came meanwhile end the waiting as it begins.
         return self._gather(found) or self._take_tasks()
 
-    def _ended_in_vain(self) -> bool:
-        """Whether the waiting was over before anything came of what was waited for; else that was in time.
+    def _wait_ended_early(self) -> bool:
+        """Whether the wait ended before one of its entities became ready.
 
-        What wakes the executor, the beginning of a callback say, and what the callback sends next are a race.
+        The wake-up of the executor, for example by the start of a callback, races with what the callback
+        sends.
         """
         is_race = self._woken_in is not None or len(self._tasks) > 0
         return is_race and self._clock.choose(2) == 1
@@ -235,7 +237,7 @@ class Cycle:
         return found if self._is_chosen is None else deque(filter(self._is_chosen, found))
 
     def _gather(self, found: deque[Entity]) -> bool:
-        """Wait for all that can run, of which ``found`` is ready; whether that is something."""
+        """Start to wait for all that can run, of which ``found`` is ready; return whether it is not empty."""
         self._following = _TASKS if found else _WAITING
         self._yielded = False
         self._found_all = True
@@ -245,24 +247,26 @@ class Cycle:
 
     def _name(self, found: deque[Entity]) -> None:
         for each in found:
-            each.noticed()
+            each.on_snapshot()
         self._snapshot = found
 
     def _awaited(self, found: deque[Entity]) -> deque[Entity]:
-        """Those of what is ready that the waiting in progress has not left out."""
+        """The ready entities that the present wait includes."""
         gathering, groups = self._gathering, self._groups_left_out
         return deque(
             each for each in found if each.entered_in != gathering and each.callback_group not in groups
         )
 
     def _take_tasks(self) -> bool:
-        """Serve the tasks that are there now, those of nodes in view; whether there are any of these."""
+        """Make the present tasks of nodes in view due; return whether there are any."""
         if not self._tasks:
             return False
         self._due_tasks, self._tasks = self._tasks, self._due_tasks
         if self.view is not self._nodes:
             self._put_tasks_off()
-        if self._asks_tasks_again and len(self._due_tasks) > 1:  # they stay in one list until they are done
+        if (
+            self._asks_tasks_again and len(self._due_tasks) > 1
+        ):  # rclpy keeps tasks in one list until they are done
             self._due_tasks = deque(sorted(self._due_tasks, key=lambda task: task.number))
         if self._newest_task_first:
             self._due_tasks.reverse()
@@ -271,7 +275,7 @@ class Cycle:
         return bool(self._due_tasks)
 
     def _put_tasks_off(self) -> None:
-        """Leave the callbacks of nodes that are out of view for another cycle."""
+        """Leave the callbacks of nodes that are not in view for another cycle."""
         in_view: deque[Task[Any]] = deque()
         for task in self._due_tasks:
             entity = self._entity_of(task)
@@ -279,7 +283,7 @@ class Cycle:
             (in_view if is_seen else self._tasks).append(task)
         self._due_tasks = in_view
 
-    # What the waiting in progress has left out
+    # What the present wait leaves out
 
     def stop_waiting(self) -> None:
         """Wait no longer for what was gathered."""
@@ -288,12 +292,12 @@ class Cycle:
             self._following = _TASKS
 
     def entered(self, entity: Entity) -> None:
-        """A handler has begun to run: what it is for was handed out, and the executor is woken."""
+        """A handler starts: its entity was handed out, and the executor is woken."""
         self.woken()
         entity.entered_in = self._gathering
 
-    def leaves(self, entity: Entity) -> None:
-        """A callback is about to free its group, and to wake the executor."""
+    def leaving(self, entity: Entity) -> None:
+        """A callback is about to leave its group, and to wake the executor."""
         self.woken()
         if entity.entered_in != self._gathering:
             group = entity.callback_group
@@ -301,9 +305,9 @@ class Cycle:
                 self._groups_left_out.add(group)
 
     def woken(self) -> None:
-        """The executor gathers again as soon as the running thread lets it.
+        """The executor gathers again as soon as the running thread waits.
 
-        Where it did so unseen, because there was nothing to find, this catches up on it.
+        If it has done so without finding anything, this gathers now.
         """
         turn = self._clock.turn
         if turn != self._woken_in:
@@ -312,7 +316,7 @@ class Cycle:
             self._woken_in = turn
 
     def catch_up(self) -> None:
-        """Gather again if the executor was woken since, and the running thread has let it."""
+        """Gather again if the executor was woken, and the running thread has waited since."""
         if self._woken_in is not None and self._woken_in != self._clock.turn:
             self._regather()
 
@@ -338,10 +342,10 @@ class Cycle:
             self.recall_foreign_awaits()
 
     def recall_foreign_awaits(self) -> None:
-        """The executor is woken: have the tasks that await something unknown ask again."""
+        """Resume the tasks that await something unknown, because the executor is woken."""
         self._tasks.extend(self.foreign_awaits)
         self.foreign_awaits.clear()
 
 
 _STAGES = ("the rest", "what was waited for")
-"""What is served before a new gathering."""
+"""The stages that are served before a new gathering."""

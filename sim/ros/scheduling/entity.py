@@ -1,4 +1,4 @@
-"""What a wait set is made of: things that become ready and then have their callback run once."""
+"""Entities: they become ready, and an executor then runs their callback once."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
     from sim.ros.scheduling.callback_groups import CallbackGroup
 
 NEVER = 1 << 62
-"""The due time of what time alone does not make ready."""
+"""The due time of an entity that time alone does not make ready."""
 
 
 @runtime_checkable
 class OwnerNode(Protocol):
-    """The node that entities belong to, as far as they and executors know it."""
+    """The node of entities, as entities and executors use it."""
 
     _agenda: Agenda
     trace_id: int
@@ -32,42 +32,42 @@ class OwnerNode(Protocol):
 
     @property
     def context(self) -> Context:
-        """The context it lives in."""
+        """The node's context."""
 
     @property
     def default_callback_group(self) -> CallbackGroup:
-        """The group of all entities that name none."""
+        """The group of all entities that are created without one."""
 
     def get_name(self) -> str:
-        """Its name without namespace."""
+        """The node's name without namespace."""
 
     def get_namespace(self) -> str:
-        """Its namespace."""
+        """The node's namespace."""
 
     def get_fully_qualified_name(self) -> str:
-        """Namespace and name."""
+        """The node's namespace and name."""
 
     def get_clock(self) -> Clock:
-        """Its clock."""
+        """The node's clock."""
 
     def get_logger(self) -> RcutilsLogger:
-        """Its logger."""
+        """The node's logger."""
 
     def resolve_topic_name(self, topic: str) -> str:
-        """The full name of a topic as the node means it."""
+        """The full name of a topic of this node."""
 
     def resolve_service_name(self, service: str) -> str:
-        """The full name of a service as the node means it."""
+        """The full name of a service of this node."""
 
     def create_publisher(self, msg_type: type, topic: str, qos_profile: Any, /) -> Any:
-        """Make a publisher."""
+        """Create a publisher."""
 
     def destroy_publisher(self, publisher: Any, /) -> bool:
-        """Remove a publisher; whether it was this node's."""
+        """Remove a publisher; False if it is not this node's."""
 
 
-class Taken(msgspec.Struct, frozen=True, gc=False):
-    """What one take brought: the data for the callback, and what the trace tells of it."""
+class TakenData(msgspec.Struct, frozen=True, gc=False):
+    """The data that one take got for a callback, and what the trace records about the take."""
 
     data: Any
     message: int
@@ -78,18 +78,18 @@ class Taken(msgspec.Struct, frozen=True, gc=False):
 class Entity:
     """Base of timers, subscriptions, guard conditions, clients and services.
 
-    All attributes are guarded by the host's lock. ``handed_out`` is set from the moment an executor yields
+    The host's lock guards all attributes. ``handed_out`` is set from the moment at which an executor yields
     the entity until its handler runs; meanwhile no executor yields it again. ``entered_in`` is the number of
-    its executor's gathering in which its callback last began, which leaves it out. ``pending`` tells that
-    there is something to take. ``stuck``: taking failed, so that it stays handed out and its group held.
+    the gathering in which its callback last started, and which leaves it out. ``pending``: the entity has
+    something to take. ``stuck``: a take failed, so that the entity stays handed out and its group held.
     """
 
     kind: ClassVar[EntityKind]
     rank: ClassVar[int]
-    """Place of the kind in the order in which a snapshot is served."""
+    """The position of this kind in the order in which a snapshot is served."""
 
     traced = True
-    """Whether the trace shows it."""
+    """Whether the trace shows the entity."""
 
     served = True
     """Whether it is called by itself; if not, what it is a part of is."""
@@ -98,7 +98,7 @@ class Entity:
     """What the latest arrived at, where several things make it ready."""
 
     due = NEVER
-    """When it becomes ready by the passing of time alone, on the run's clock."""
+    """When the entity becomes ready by time alone, in nanoseconds of the run's clock."""
 
     __class_getitem__: ClassVar[Any] = classmethod(GenericAlias)
 
@@ -122,20 +122,20 @@ class Entity:
 
     @property
     def handle(self) -> Handle:
-        """What keeps it alive while it is used."""
+        """A handle that keeps the entity alive while it is used."""
         return Handle(self)
 
     @property
     def logger_name(self) -> str:
-        """The name of its node's logger."""
+        """The name of the node's logger."""
         return self.node.get_logger().name
 
     def destroy(self) -> None:
-        """Remove it from its node."""
+        """Remove the entity from its node."""
         self.node._agenda.remove(self)
 
     def removed(self) -> None:
-        """Its node has let it go. With the host's lock held."""
+        """The entity was removed from its node. Called with the host's lock held."""
 
     def __enter__(self) -> Self:
         self.node.context.host.profile.require_with_blocks(self)
@@ -145,41 +145,41 @@ class Entity:
         self.destroy()
 
     def require_alive(self) -> None:
-        """Raise InvalidHandle if it was destroyed; while its handle is held it counts as alive."""
+        """Raise InvalidHandle if the entity was destroyed; while its handle is entered it counts as alive."""
         if self.destroyed:
             with self.handle:
                 return
 
     def shown_callback(self) -> Callable[..., Any] | None:
-        """The function that a learner knows this entity by; None: it has none of its own."""
+        """The function that the program gave the entity to call; None if the entity has none."""
+        return getattr(self, "callback", None)
+
+    def take(self, now: int) -> TakenData | None:
+        """Take the data for the callback; None: there is none. Called with the host's lock held."""
         raise NotImplementedError
 
-    def take(self, now: int) -> Taken | None:
-        """Take what the callback gets; None: nothing is there after all. With the host's lock held."""
-        raise NotImplementedError
-
-    def invoke(self, taken: Taken) -> Any:
-        """Run the callback; a coroutine it returns is for the executor to drive. Without the lock."""
+    def invoke(self, taken: TakenData) -> Any:
+        """Run the callback, without the lock; the executor drives a returned coroutine."""
         raise NotImplementedError
 
     def ready_at(self, now: int) -> bool:
-        """Whether there is something to take, for a wait set that is looked at ``now``."""
+        """Whether a wait set finds the entity ready at ``now``."""
         return self.pending
 
     def falls_due(self, due: int) -> bool:
-        """Whether it still becomes ready at ``due``, by the passing of time alone."""
+        """Whether the entity still becomes ready at ``due`` by time alone."""
         return self.due == due and not (self.pending or self.destroyed)
 
-    def noticed(self) -> None:
-        """A snapshot names this entity."""
+    def on_snapshot(self) -> None:
+        """A snapshot includes this entity."""
 
     def still_ready(self, now: int) -> bool:
-        """Whether a snapshot that names this entity still holds when its turn comes."""
+        """Whether the entity, which is in a snapshot, may still run when its turn comes."""
         return not self.destroyed
 
     @property
     def queued(self) -> int:
-        """How often there is something to take."""
+        """How many items there are to take."""
         return int(self.pending)
 
     def arrivals(self) -> Sequence[Entity | None]:
@@ -190,7 +190,7 @@ class Entity:
         """Have the next take be of what arrived there alone, where takes differ."""
 
     def become_ready(self, since: int) -> None:
-        """There is something to take from now on, or more. With the host's lock held."""
+        """An item to take has arrived. Called with the host's lock held."""
         if not self.pending:
             self.pending = True
             self.ready_since = since
@@ -198,12 +198,12 @@ class Entity:
         else:
             self.node._agenda.entity_has_more(self)
 
-    def nothing_left(self) -> None:
-        """There is nothing more to take. With the host's lock held."""
+    def become_idle(self) -> None:
+        """There is nothing more to take. Called with the host's lock held."""
         if self.pending:
             self.pending = False
             self.node._agenda.entity_idle(self)
 
 
 def never_called(_data: Any, _more: Any = None) -> None:
-    """Stand in for the callback of an entity from which somebody takes what arrives."""
+    """The callback of an entity whose items are taken without an executor."""

@@ -1,4 +1,4 @@
-"""What an EventsExecutor has to do, in the order in which it came."""
+"""The queue of an EventsExecutor's events, in the order of their arrival."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ if TYPE_CHECKING:
     from sim.clock import RunClock
 
 Event: TypeAlias = Callable[[], None]
-"""Something to do, without the host's lock held."""
+"""An action that runs without the host's lock."""
 
 
 class Appointment:
-    """What ``EventQueue.at`` was told to do later, unless it is called off."""
+    """An action that ``EventQueue.at`` runs later, unless it is cancelled."""
 
     __slots__ = ("action",)
 
@@ -25,16 +25,16 @@ class Appointment:
         self.action: Callable[[], None] | None = action
 
     def call_off(self) -> None:
-        """Do it no more."""
+        """Cancel the action."""
         self.action = None
 
 
 class EventQueue:
-    """Events, first come, first served. Everything but ``next`` is called with the host's lock held."""
+    """Events, first come, first served. Call everything but ``next`` with the host's lock held."""
 
     def __init__(self, clock: RunClock, lock: AbstractContextManager[bool]) -> None:
         self.stopped = False
-        """Whether ``next`` gives nothing more."""
+        """Whether ``next`` returns no more events."""
         self._clock = clock
         self._lock = lock
         self._events: deque[Event] = deque()
@@ -44,26 +44,26 @@ class EventQueue:
         self._waiting = False
 
     def put(self, event: Event) -> None:
-        """Add an event, behind what fell due before it."""
+        """Add an event, after the actions that are due before it."""
         if self._appointments:
             self._keep_appointments(self._clock.now())
         self._events.append(event)
         self._wake()
 
     def at(self, due: int, action: Callable[[], None]) -> Appointment:
-        """Have ``action``, which may add events, done at a time: with the lock held, whatever runs then."""
+        """Run ``action``, which may add events, at a time, with the lock held, also while an event runs."""
         made = Appointment(action)
         heappush(self._appointments, (due, next(self._numbers), made))
         self._wake()
         return made
 
     def stop(self) -> None:
-        """Give nothing more, though the present event goes on to its end."""
+        """Return no more events; the present one runs to its end."""
         self.stopped = True
         self._wake()
 
     def next(self, deadline: int | None) -> Event | None:
-        """Wait for the next event until ``deadline``; None: it was stopped, or time is up and none came."""
+        """Wait for the next event until ``deadline``; None: the queue was stopped, or the deadline passed."""
         while True:
             with self._lock:
                 self._waiting = False

@@ -1,11 +1,11 @@
-"""rclpy's EventsExecutor: one queue, which everything that arrives goes into, and nobody asks a group.
+"""rclpy's EventsExecutor: it has one queue of all events, and ignores callback groups.
 
-Its rules are those of rclpy's C++ code (Jazzy 7.1.9), and these were measured too, on Jazzy 7.1.5: the order
-of what arrives, timers called twice, exceptions, timeouts, tasks, guard conditions, what is destroyed while
-it is queued, ``call`` and ``shutdown`` in a callback. Read from the code alone: jumps of ROS time, waitables.
-The wheels' own ``spin()`` never wakes, for its endless deadline overflows; what was measured had a timeout.
-Two things the real one leaves to chance are done in the order of creation: what is found when a node is
-added, and timers that are due at the same moment.
+Its rules are those of rclpy's C++ code (Jazzy 7.1.9). Measured on Jazzy 7.1.5 as well were: the order of
+arrivals, timers called twice, exceptions, timeouts, tasks, guard conditions, entities destroyed while queued,
+``call`` and ``shutdown`` in a callback. Only read from the code were: jumps of ROS time, waitables. The
+wheels' own ``spin()`` never wakes, because its infinite deadline overflows; all measurements had timeouts.
+Two orders that are random in rclpy are the order of creation here: of the entities found when a node is
+added, and of timers that are due at the same moment.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ from sim.probes.own_code import is_own
 from sim.quantities.nanoseconds import wait_ns
 from sim.ros.context.utilities import get_default_context, timeout_sec_to_nsec
 from sim.ros.logging.logger import get_logger
-from sim.ros.scheduling.clock_timers import ClockTimer, ClockTimers
+from sim.ros.scheduling.clock_timers import ClockTimers
 from sim.ros.scheduling.entity import NEVER, Entity
 from sim.ros.scheduling.event_queue import EventQueue
 from sim.ros.scheduling.executor import Executor
 from sim.ros.scheduling.task import Future, Task
-from sim.ros.scheduling.waitable_entity import WaitableEntity, ask_waitables
+from sim.ros.scheduling.waitable_entity import WaitableEntity, poll_waitables
 from sim.ros.scheduling.waiting_ends import ExternalShutdownException
 from sim.trace.events import EntityKind
 
@@ -47,11 +47,11 @@ _REGISTRATION_ORDER = (*_PLURALS, EntityKind.WAITABLE)
 
 
 class EventsExecutor(Executor):
-    """Runs callbacks in the thread that spins, in the order in which messages, ticks and tasks came.
+    """Runs callbacks in the spinning thread, in the order in which messages, ticks and tasks arrived.
 
-    Callback groups are never asked: none keeps a callback waiting, and nothing runs beside anything. What
-    ``spin`` does not take from the queue is there when it spins again. A timer's coroutine runs as a
-    task. In releases that do so for no other, a subscription's never runs, and a service's raises TypeError.
+    Callback groups are ignored: no callback waits for one, and callbacks never overlap. Events that
+    ``spin`` leaves in the queue run at the next spin. A timer's coroutine runs as a
+    task. In some releases a subscription's coroutine never runs, and a service's raises TypeError.
 
     Raises:
         RuntimeError: out of ``spin``, when a node has a guard condition.
@@ -87,7 +87,7 @@ class EventsExecutor(Executor):
         self._run_events(None)
 
     def spin_once(self, timeout_sec: float | None = None) -> None:
-        """Run events up to the first that is a callback's, even if that finds nothing to take any more.
+        """Run events up to and including the first callback's, even if that has nothing to take.
 
         It waits at most ``timeout_sec`` seconds (None: for ever; negative: not at all).
         """
@@ -96,12 +96,12 @@ class EventsExecutor(Executor):
     def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run callbacks until the future is done.
 
-        After ``timeout_sec`` seconds it comes back once the queue is empty, which a busy one never is.
+        After ``timeout_sec`` seconds it returns when the queue is empty, which a busy queue never is.
         """
         self._run_until_complete(future, timeout_sec, stop_after_one=False)
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """Run events up to the first that is a callback's, unless the future is done first."""
+        """Run events up to and including the first callback's, unless the future is done before."""
         self._run_until_complete(future, timeout_sec, stop_after_one=True)
 
     def _refuses_second_spin(self) -> bool:
@@ -118,9 +118,9 @@ class EventsExecutor(Executor):
         future.remove_done_callback(stop)
 
     def _run_events(self, timeout_sec: float | None, *, stop_after_one: bool = False) -> None:
-        """Run events until stopped, or until the time is up and there is none.
+        """Run events until stopped, or until the timeout is over and the queue is empty.
 
-        An exception leaves the queue stopped if it was: the next spin then comes back at once.
+        After an exception a stopped queue stays stopped: the next spin returns at once.
         """
         try:
             with self._enter_spin():
@@ -131,7 +131,7 @@ class EventsExecutor(Executor):
                     self._clock.poll()
                 while (event := self._queue.next(deadline)) is not None:
                     event()
-                    if self._asks_waitables:
+                    if self._polls_waitables:
                         self._queue_ready_waitables()
                 self._queue.stopped = False
         finally:
@@ -149,9 +149,9 @@ class EventsExecutor(Executor):
             self._stop()
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Stop spinning, and let all nodes go; False if ``timeout_sec`` seconds were not enough.
+        """Stop spinning, and remove all nodes; False if ``timeout_sec`` seconds were not enough.
 
-        A callback that shuts its own executor down waits for itself.
+        A callback that shuts down its own executor waits for itself.
         """
         nanoseconds = timeout_sec_to_nsec(timeout_sec)
         ended = self._clock.auto_reset_event()
@@ -165,10 +165,10 @@ class EventsExecutor(Executor):
             self._let_all_go()
         return True
 
-    # Which entities it has
+    # Its entities
 
     def wake(self) -> None:
-        """Queue a look at what the nodes have; until it is that look's turn, nothing new is served."""
+        """Queue an update of the entities; new entities are served after that update."""
         with self._lock:
             if not self._update_queued:
                 self._update_queued = True
@@ -195,32 +195,32 @@ class EventsExecutor(Executor):
         added = [each for each in wanted if each not in self._registered]
         for each in sorted(added, key=lambda each: _REGISTRATION_ORDER.index(each.kind)):
             self._registered[each] = None
-            self._begin_to_hear_of(each)
+            self._register_entity(each)
         for each in [each for each in self._registered if each not in wanted]:
             del self._registered[each]
             if each.kind is EntityKind.TIMER:
-                timer = cast("ClockTimer", each)
-                self._timers[timer.clock].remove(timer)
-                if not self._timers[timer.clock].timers:
-                    del self._timers[timer.clock]
+                clock = _clock_of(each)
+                self._timers[clock].remove(each)
+                if not self._timers[clock].timers:
+                    del self._timers[clock]
 
-    def _begin_to_hear_of(self, entity: Entity) -> None:
+    def _register_entity(self, entity: Entity) -> None:
         if entity.kind is EntityKind.TIMER:
-            timer = cast("ClockTimer", entity)
-            if timer.clock not in self._timers:
-                self._timers[timer.clock] = ClockTimers(
-                    timer.clock, self._clock, self._lock, self._queue, self._call_timer
+            clock = _clock_of(entity)
+            if clock not in self._timers:
+                self._timers[clock] = ClockTimers(
+                    clock, self._clock, self._lock, self._queue, self._call_timer
                 )
-            self._timers[timer.clock].add(timer)
+            self._timers[clock].add(entity)
         elif entity.queued:
             self._queue.put(partial(self._serve, entity, entity.arrivals()))
         elif entity.due < NEVER:
             self._timer_set(entity)
 
-    # Being told; with the host's lock held
+    # Notifications, with the host's lock held
 
     def _entity_ready(self, entity: Entity) -> None:
-        """Something arrived: one event each. Timers are looked at when they fall due, and when time jumps."""
+        """Queue an event for an item that arrived. Timers are checked when due, and when time jumps."""
         if entity in self._registered and entity.kind is not EntityKind.TIMER:
             self._queue.put(partial(self._serve, entity, (entity.arrived_at,)))
 
@@ -230,7 +230,7 @@ class EventsExecutor(Executor):
         if timer not in self._registered or timer is self._taken:
             return
         if timer.kind is EntityKind.TIMER:
-            self._timers[cast("ClockTimer", timer).clock].look_soon()
+            self._timers[_clock_of(timer)].look_soon()
         else:
             self._queue.at(timer.due, partial(_come_due, timer, timer.due))
 
@@ -239,19 +239,19 @@ class EventsExecutor(Executor):
             self._timers[clock].look_soon()
 
     def _wake(self) -> None:
-        """Nothing is looked for: what is ready is in the queue."""
+        """Do nothing: what is ready is in the queue."""
 
     def _resume(self, task: Task[Any]) -> None:
         with self._lock:
             self._queue.put(partial(self._step, task))
 
     def _resume_at_wake_up(self, task: Task[Any]) -> None:
-        """Something foreign is asked again after the next callback."""
+        """Resume a task that awaits something unknown after the next callback."""
         with self._lock:
             self._parked.append(task)
 
     def _waitables_changed(self) -> None:
-        self._asks_waitables = any(node._agenda.asked for node in self._nodes)
+        self._polls_waitables = any(node._agenda.polled for node in self._nodes)
         self.wake()
 
     # Events
@@ -265,9 +265,9 @@ class EventsExecutor(Executor):
             self._call(entity, arrived)
         self._go_on_with_parked()
 
-    def _call_timer(self, timer: ClockTimer) -> None:
+    def _call_timer(self, timer: Entity) -> None:
         self._postponed = False
-        self._call(cast("Entity", timer))
+        self._call(timer)
         if not self._postponed:
             self._stop_if_one_is_enough()
         self._go_on_with_parked()
@@ -290,7 +290,7 @@ class EventsExecutor(Executor):
             raise
 
     @sends_responses
-    def _coroutine_came(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
+    def _coroutine_returned(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
         """A callback has returned a coroutine."""
         runs_all = self._profile.events_executor_runs_coroutines
         if runs_all or entity.kind not in (EntityKind.SUBSCRIPTION, EntityKind.SERVICE):
@@ -305,7 +305,7 @@ class EventsExecutor(Executor):
             self._runner.end(entity, outer)
 
     def _step(self, task: Task[Any]) -> None:
-        """Run a task as far as it gets; what it awaits queues it again."""
+        """Run a task up to its next await; what it awaits queues it again."""
         self._stop_if_one_is_enough()
         with self._lock:
             self._runner.begin(task, self._clock.now())
@@ -325,16 +325,20 @@ class EventsExecutor(Executor):
     # A program's waitables
 
     def _queue_ready_waitables(self) -> None:
-        """Ask those of which only the program knows whether they are ready."""
-        due = ask_waitables(self, self.get_nodes())
+        """Poll the program's waitables, and queue those that are ready."""
+        due = poll_waitables(self, self.get_nodes())
         with self._lock:
             if self._next_asking is not None:
                 self._next_asking.call_off()
             self._next_asking = None if due is None else self._queue.at(due, self.wake)
-            for each in [each for node in self._nodes for each in node._agenda.asked]:
+            for each in [each for node in self._nodes for each in node._agenda.polled]:
                 if each.pending and each not in self._queued_waitables:
                     self._queued_waitables.add(each)
                     self._entity_ready(each)
+
+
+def _clock_of(timer: Entity) -> Clock:
+    return cast("Any", timer).clock  # type: ignore[no-any-return]
 
 
 def _come_due(entity: Entity, due: int) -> None:
@@ -347,7 +351,7 @@ def _waits_for_guards(entity: Entity) -> bool:
 
 
 def _log(error: Exception, logger: RcutilsLogger, kind: str) -> None:
-    """Log an exception that comes out of ``spin``, and where the program raised it."""
+    """Log an exception that ``spin`` raises, and the place in the program."""
     trace = error.__traceback__
     while trace is not None and not is_own(trace.tb_frame):
         trace = trace.tb_next

@@ -1,7 +1,7 @@
-"""What all executors share: waiting until something is ready, and running it.
+"""The base of all executors: waits until something is ready, and runs it.
 
-The order is decided by the wait set, the exclusion by the callback groups; the kinds of executor add the
-threads. Whoever changes what is ready wakes the executor if it waits.
+The wait set decides the order, and the callback groups decide what may overlap; the kinds of executor add the
+threads. Code that makes something ready wakes a waiting executor.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.handlers import Handler
 from sim.ros.scheduling.running import CallbackRunner
 from sim.ros.scheduling.task import Future, Task
-from sim.ros.scheduling.waitable_entity import WaitableEntity, ask_waitables
+from sim.ros.scheduling.waitable_entity import WaitableEntity, poll_waitables
 from sim.ros.scheduling.waiting_ends import (
     ConditionReachedException,
     ExternalShutdownException,
@@ -36,16 +36,16 @@ FoundT = TypeVar("FoundT")
 
 
 class Executor:
-    """Base of all executors; a program may write its own kind by ``_spin_once_impl`` or ``spin_once``."""
+    """Base of all executors. A program may write a subclass with ``_spin_once_impl`` or ``spin_once``."""
 
     threads = 1
-    """How many callbacks can run at once."""
+    """How many callbacks can run at the same time."""
     already_spinning = "Executor is already spinning"
-    """What is raised when it is spun while it spins."""
+    """The message of the RuntimeError for a nested or second spin."""
 
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = get_default_context() if context is None else context
-        self._context.require_begun("failed to create guard_condition")
+        self._context.require_initialized("failed to create guard_condition")
         self._host = self._context.host
         self._lock = self._host.lock
         self._clock = self._host.clock
@@ -62,7 +62,7 @@ class Executor:
             self._profile,
         )
         self._signal = self._clock.auto_reset_event()
-        self._asks_waitables = False
+        self._polls_waitables = False
         self._waitables_due: int | None = None
         self._waits_until: int | None = None
         self._waiting = self._spinning = self._is_shutdown = False
@@ -71,11 +71,11 @@ class Executor:
 
     @property
     def context(self) -> Context:
-        """The context it lives in."""
+        """The executor's context."""
         return self._context
 
     def add_node(self, node: OwnerNode) -> bool:
-        """Serve a node from now on, and let its former executor go; whether it was not served already."""
+        """Serve a node, in place of its former executor; False if this executor serves it already."""
         with self._lock:
             if node in self._nodes:
                 return False
@@ -89,7 +89,7 @@ class Executor:
             return True
 
     def remove_node(self, node: OwnerNode) -> None:
-        """Serve a node no more."""
+        """Stop serving a node."""
         with self._lock:
             if node in self._nodes:
                 self._nodes.remove(node)
@@ -98,28 +98,28 @@ class Executor:
                 self._waitables_changed()
 
     def get_nodes(self) -> list[OwnerNode]:
-        """The nodes it serves."""
+        """The nodes that this executor serves."""
         return list(self._nodes)
 
     def wake(self) -> None:
-        """Have it look again at what is ready."""
+        """Make the executor check again what is ready. Thread-safe."""
         with self._lock:
             self._wake()
 
     def create_future(self) -> Future[Any]:
-        """Make a future whose done-callbacks run as tasks of this executor."""
+        """Create a future whose done-callbacks run as tasks of this executor."""
         return Future(executor=self)
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
-        """Run a function or coroutine soon, before whatever else is ready."""
+        """Run a function or coroutine in the next cycle, before other ready work."""
         task: Task[Any] = Task(callback, args, kwargs, executor=self)
         self._resume(task)
         return task
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Yield nothing more; True.
+        """Stop yielding work; return True.
 
-        As in rclpy, what runs is not waited for, whatever ``timeout_sec`` says.
+        As in rclpy, running callbacks are not waited for; ``timeout_sec`` is ignored.
         """
         with self._lock:
             self._is_shutdown = self._runner.refuses = True
@@ -163,7 +163,7 @@ class Executor:
                 left.timeout = (end - now) / 1e9
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
-        """Run one callback, unless the future is done first."""
+        """Run one callback, unless the future is done before."""
         with self._enter_spin():
             self._wake_by(future)
             self._spin_once_impl(timeout_sec, future._settled)
@@ -183,7 +183,7 @@ class Executor:
     ) -> None:
         if type(self).spin_once is Executor.spin_once:
             raise NotImplementedError
-        # Programs written for Humble say by this method how to spin.
+        # Programs written for Humble override this method.
         self.spin_once(seconds_of(timeout_sec))
 
     @contextmanager
@@ -204,27 +204,27 @@ class Executor:
     def _refuses_second_spin(self) -> bool:
         return self._profile.refuses_second_spin
 
-    def _want(
+    def _set_wanted(
         self, timeout_sec: Timeout, nodes: Iterable[OwnerNode] | None, condition: Callable[[], bool]
     ) -> None:
-        """Tell what is waited for next; if that is not what was last, the rest of the snapshot is let go."""
+        """Set the present wait; if it differs from the last one, the rest of the snapshot is dropped."""
         if (wanted := (timeout_sec, nodes, condition)) != self._cycle.wanted:
             with self._lock:
-                self._cycle.want(wanted, nodes)
+                self._cycle.set_wanted(wanted, nodes)
                 self._wake()
-        elif self._waiting:  # another thread does, which has to be in a release that lets it
+        elif self._waiting:  # another thread waits, in a release that allows a second spin
             raise ValueError("generator already executing")
 
     def _await_work(
         self, timeout_sec: Timeout, condition: Callable[[], bool], on_found: Callable[[Work, int], FoundT]
     ) -> FoundT:
-        """Wait for the next thing to run, marked as handed out, and return what ``on_found`` makes of it.
+        """Wait for the next work, mark it as handed out, and return the result of ``on_found``.
 
-        ``on_found`` gets the time too and is called with the lock still held.
+        ``on_found`` gets the work and the time, and is called with the lock held.
 
         Raises:
             ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException:
-                there is none for that reason.
+                there is no work, for that reason.
         """
         nanoseconds = -1 if timeout_sec is None else timeout_sec_to_nsec(seconds_of(timeout_sec))
         deadline = None if nanoseconds < 0 else self._clock.now() + nanoseconds
@@ -233,12 +233,12 @@ class Executor:
         elif nanoseconds > 0:
             self._context.require_ok("failed to create timer")
         while True:
-            asked = self._asks_waitables and self._cycle.about_to_look and self._ask_waitables()
+            asked = self._polls_waitables and self._cycle.about_to_look and self._poll_waitables()
             with self._lock:
                 self._waiting = False
                 now = self._clock.now()
                 self._raise_if_over(condition)
-                if nanoseconds == 0 and self._cycle.ends(now):
+                if nanoseconds == 0 and self._cycle.snapshot_ended(now):
                     raise TimeoutException
                 work = self._cycle.next(now)
                 if work is not None:
@@ -247,7 +247,7 @@ class Executor:
                     self._wake()
                     self._cycle.stop_waiting()
                     raise TimeoutException
-                if self._asks_waitables and not asked and self._cycle.about_to_look:
+                if self._polls_waitables and not asked and self._cycle.about_to_look:
                     continue
                 dues = (node._agenda.next_due() for node in self._cycle.view)
                 known = [due for due in (deadline, self._waitables_due, *dues) if due is not None]
@@ -258,7 +258,7 @@ class Executor:
                     self._cycle.catch_up()
 
     def _raise_if_over(self, condition: Callable[[], bool]) -> None:
-        """Raise what says why nothing more is waited for. With the lock held."""
+        """Raise the exception that ends the wait, if it is over. Called with the lock held."""
         if self._is_shutdown:
             over: type[Exception] = ShutdownException
         elif not self._context.ok():
@@ -270,28 +270,28 @@ class Executor:
         self._cycle.stop_waiting()
         raise over
 
-    def _ask_waitables(self) -> bool:
-        """Ask a program's waitables, for a cycle that is about to begin; True."""
+    def _poll_waitables(self) -> bool:
+        """Poll a program's waitables for a cycle that is about to begin; return True."""
         with self._lock:
-            # What becomes ready while they are asked has to end the waiting that may follow.
+            # What becomes ready during the poll has to end the wait that may follow.
             self._waiting, self._waits_until = True, None
-        self._waitables_due = ask_waitables(self, tuple(self._cycle.view))
+        self._waitables_due = poll_waitables(self, tuple(self._cycle.view))
         return True
 
     def _waitables_changed(self) -> None:
-        """Nodes or a program's waitables came or went. With the lock held."""
-        self._asks_waitables = any(node._agenda.asked for node in self._nodes)
+        """Nodes or a program's waitables were added or removed. Called with the lock held."""
+        self._polls_waitables = any(node._agenda.polled for node in self._nodes)
         self._waitables_due = None
         self.wake()
 
-    # Being told; with the host's lock held
+    # Notifications, with the host's lock held
 
     def _entity_ready(self, entity: Entity) -> None:
         if self._waiting and not entity.handed_out and entity.callback_group.can_execute(entity):
-            self._work_came()
+            self._work_arrived()
 
     def _entity_has_more(self, entity: Entity) -> None:
-        """Something more arrived for an entity that is ready already."""
+        """Another item arrived for an entity that is ready already."""
 
     def _timer_set(self, timer: Entity) -> None:
         if not self._waiting:
@@ -302,33 +302,33 @@ class Executor:
             self._signal.set()
 
     def _expiry_set(self, _clock: Any) -> None:
-        """An action server has set the timer of a clock by which it forgets goals."""
+        """An action server has set the timer for dropping goals."""
 
     def _wake(self) -> None:
         self._cycle.recall_foreign_awaits()
-        self._rouse()
+        self._wake_spinner()
 
-    def _work_came(self) -> None:
-        """There is something to run now, while the thread that spins waits."""
+    def _work_arrived(self) -> None:
+        """Work has arrived while the spinning thread waits."""
         self._signal.set()
 
-    def _rouse(self) -> None:
-        """Have the thread that spins go on if it waits, which no program can tell from its going on late."""
+    def _wake_spinner(self) -> None:
+        """Wake the spinning thread if it waits."""
         if self._waiting:
             self._signal.set()
 
     def _ask_awaiting(self) -> None:
-        """A callback has begun or ended, which wakes the executor: tasks that await something ask again."""
+        """A callback has started or ended: resume the tasks that await something unknown."""
         if self._cycle.foreign_awaits:
             self._recall_awaiting()
 
     def _recall_awaiting(self) -> None:
         self._cycle.recall_foreign_awaits()
         if self._waiting:
-            self._work_came()
+            self._work_arrived()
 
-    def _look_again(self) -> None:
-        """Something may be ready that was not; whoever calls this does not look for it."""
+    def _recheck(self) -> None:
+        """A group was freed: an entity may be ready that the caller does not look for."""
         self._wake()
 
     def _resume(self, task: Task[Any]) -> None:
@@ -340,12 +340,12 @@ class Executor:
         with self._lock:
             self._cycle.foreign_awaits.append(task)
 
-    def _coroutine_came(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
-        """A callback has returned a coroutine, and ``outer`` ran on its thread before."""
+    def _coroutine_returned(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
+        """A callback has returned a coroutine; ``outer`` ran on its thread before."""
         self._runner.drive(entity, coroutine, outer)
 
     def _failed_after_await(self, task: Task[Any], _error: Exception) -> None:
-        """A coroutine raised after an await: whoever asks its task for the error gets it, and nobody else."""
+        """A coroutine raised after an await: only a reader of the task's exception gets the error."""
         task._exception_fetched = False
 
     def _workers_busy(self) -> bool:
@@ -354,9 +354,9 @@ class Executor:
     # For executors written by a program
 
     def can_execute(self, entity: Entity) -> bool:
-        """Whether an entity is waited on: it is not handed out, and its group would let it in.
+        """Whether the executor waits for an entity: it is not handed out, and its group would admit it.
 
-        A program's own kind of executor may leave more out of a cycle. It is asked with the host's lock held.
+        A subclass may leave more entities out of a cycle. Called with the host's lock held.
         """
         return not entity.handed_out and entity.callback_group.can_execute(entity)
 
@@ -366,16 +366,16 @@ class Executor:
         nodes: Iterable[OwnerNode] | None = None,
         condition: Callable[[], bool] = never,
     ) -> tuple[Task[Any], Any, OwnerNode | None]:
-        """Wait for the next callback, of ``nodes`` or of all: a task that runs it, its entity and its node.
+        """Wait for the next callback of ``nodes`` (None: all); return a task for it, its entity and its node.
 
-        For a task of ``create_task`` there is neither entity nor node.
+        For a task of ``create_task`` entity and node are None.
 
         Raises:
             ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException:
-                there is none for that reason.
+                there is no work, for that reason.
             NotImplementedError: one of ``nodes`` was not added.
         """
-        self._want(timeout_sec, nodes, condition)
+        self._set_wanted(timeout_sec, nodes, condition)
         work = self._await_work(timeout_sec, condition, lambda work, _now: work)
         task = work if isinstance(work, Task) else Handler(work, self)
         entity = self._runner.entity_of(task)
@@ -389,7 +389,7 @@ class Executor:
         nodes: Iterable[OwnerNode] | None = None,
         condition: Callable[[], bool] = never,
     ) -> Generator[tuple[Task[Any], Any, OwnerNode | None], None, None]:
-        """What ``wait_for_ready_callbacks`` returns, time after time."""
+        """Yield the results of ``wait_for_ready_callbacks``."""
         while True:
             yield self.wait_for_ready_callbacks(timeout_sec, nodes, condition)
 

@@ -1,4 +1,4 @@
-"""The executors of rclpy: one runs callbacks in the thread that spins, one on a pool of workers."""
+"""The executors of rclpy: one runs callbacks in the spinning thread, the other on a pool of workers."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from sim.ros.context.utilities import get_available_threads, get_default_context
 from sim.ros.scheduling.cycle import Work
 from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.executor import Executor
-from sim.ros.scheduling.running import Started
+from sim.ros.scheduling.running import StartedWork
 from sim.ros.scheduling.task import Future, Task
 from sim.ros.scheduling.waiting_ends import (
     ConditionReachedException,
@@ -40,20 +40,20 @@ __all__ = [
 
 
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
-    """Call a function, or await what a coroutine function returns; gives what comes of it."""
+    """Call a function, or call and await a coroutine function; return the result."""
     if inspect.iscoroutinefunction(callback):
         return await callback(*args)
     return callback(*args)
 
 
 class SingleThreadedExecutor(Executor):
-    """Runs callbacks one after another in the thread that spins.
+    """Runs callbacks one after another in the spinning thread.
 
-    An exception in a callback leaves ``spin`` at once; spinning again goes on.
+    ``spin`` raises an exception of a callback at once; it can be called again.
     """
 
     def __new__(cls, *, context: Context | None = None) -> Self:
-        """Make it; where the run was set up with a number of threads, the kind with that many."""
+        """Create the executor; a MultiThreadedExecutor if the run overrides the number of threads."""
         chosen = get_default_context() if context is None else context
         if cls is SingleThreadedExecutor and (chosen.host.threads or 1) > 1 and chosen.probe.visible:
             return MultiThreadedExecutor(context=chosen)  # type: ignore[return-value]
@@ -62,7 +62,7 @@ class SingleThreadedExecutor(Executor):
     def _spin_once_impl(
         self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
     ) -> None:
-        self._want(timeout_sec, None, wait_condition)
+        self._set_wanted(timeout_sec, None, wait_condition)
         try:
             started = self._await_work(timeout_sec, wait_condition, self._begin_and_start)
         except (ShutdownException, TimeoutException, ConditionReachedException):
@@ -70,15 +70,15 @@ class SingleThreadedExecutor(Executor):
         if started is not None:
             self._runner.run(started)
 
-    def _begin_and_start(self, work: Work, now: int) -> Started | None:
+    def _begin_and_start(self, work: Work, now: int) -> StartedWork | None:
         begun = self._runner.begin(work, now)
         return None if begun is None else self._runner.start(begun)
 
 
 class MultiThreadedExecutor(Executor):
-    """Runs callbacks on a pool of ``num_threads`` workers; the thread that spins only dispatches.
+    """Runs callbacks on a pool of ``num_threads`` workers; the spinning thread only dispatches them.
 
-    None: as many as the CPUs this process may use, else 2. An exception of a callback comes out of ``spin``
+    None: the number of CPUs that this process may use, or 2. ``spin`` raises an exception of a callback
     only when a later callback is handed to the pool.
     """
 
@@ -101,14 +101,14 @@ class MultiThreadedExecutor(Executor):
 
     @property
     def _executor(self) -> WorkerPool:
-        """The pool, by the name that rclpy has for it."""
+        """The pool, by rclpy's name."""
         return self._pool
 
     def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool | None = None) -> bool:
-        """Yield nothing more; in releases that know of workers, wait for these to end, unless told not to.
+        """Stop yielding work; in some releases also wait until the workers end, unless told not to.
 
         Raises:
-            TypeError: the release has no ``wait_for_threads``.
+            TypeError: the release does not have ``wait_for_threads``.
         """
         ends_workers = self._profile.ends_workers
         if wait_for_threads is not None and not ends_workers:
@@ -136,8 +136,8 @@ class MultiThreadedExecutor(Executor):
 
     @contextmanager
     def _spin_on(self, until: Callable[[], bool] = never) -> Generator[None, None, None]:
-        """Meanwhile workers may look for their next callback themselves, ``until`` a condition holds."""
-        outer = self._spinning_on, self._pool.enough
+        """In this context workers may find their next callback themselves, ``until`` a condition holds."""
+        outer = self._spinning_on, self._pool.should_stop
         self._set_spinning_on(True, until)
         try:
             yield
@@ -147,18 +147,18 @@ class MultiThreadedExecutor(Executor):
     def _set_spinning_on(self, spinning_on: bool, enough: Callable[[], bool]) -> None:
         with self._lock:
             self._spinning_on = spinning_on
-            self._pool.enough = enough
+            self._pool.should_stop = enough
             self._waitables_changed()
 
     def _waitables_changed(self) -> None:
-        """Only the thread that spins can ask waitables, for it holds no lock then."""
+        """Let workers find callbacks unless waitables must be polled, which only the spinning thread does."""
         super()._waitables_changed()
-        self._pool.dispatches_itself = self._spinning_on and not self._asks_waitables
+        self._pool.dispatches_itself = self._spinning_on and not self._polls_waitables
 
     def _spin_once_impl(
         self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
     ) -> None:
-        self._want(timeout_sec, None, wait_condition)
+        self._set_wanted(timeout_sec, None, wait_condition)
         with suppress(
             ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException
         ):
@@ -176,13 +176,13 @@ class MultiThreadedExecutor(Executor):
         self._cycle.woken()
         super()._wake()
 
-    def _work_came(self) -> None:
-        """An idle worker looks for it, which saves the way over the thread that spins."""
-        if not self._pool.looks_itself():
-            super()._work_came()
+    def _work_arrived(self) -> None:
+        """Call an idle worker, which finds the work without the spinning thread."""
+        if not self._pool.worker_looks():
+            super()._work_arrived()
 
-    def _look_again(self) -> None:
-        """Workers look for themselves while ``spin`` runs."""
+    def _recheck(self) -> None:
+        """Wake the executor, unless workers find their callbacks themselves."""
         if not self._pool.dispatches_itself:
             self._wake()
 

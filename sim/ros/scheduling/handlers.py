@@ -1,4 +1,4 @@
-"""What an executor that a program wrote is given to call: one callback, from group entered to group left."""
+"""Handlers: tasks that a program's own executor calls to run one callback within its group."""
 
 from __future__ import annotations
 
@@ -15,22 +15,23 @@ if TYPE_CHECKING:
 
 
 class Handler(Task[None]):
-    """Runs an entity's callback when it is called, on the calling thread.
+    """Runs an entity's callback on the calling thread when it is called.
 
-    Done once the callback has ended, or was refused by its group. What the callback raises is the handler's
-    exception. A coroutine is run up to its next await; when it can go on, the handler is yielded again.
+    It is done when the callback has ended, or when the group refused it. An exception of the callback is the
+    handler's exception. A coroutine runs up to its next await; when it can continue, the handler is yielded
+    again.
     """
 
     def __init__(self, entity: Entity, executor: Executor) -> None:
         self.entity = entity
         self._outer = 0
-        self._serving = executor  # which has to be there as long as its callback runs
+        self._serving = executor  # a reference, so that the executor lives as long as the callback runs
         self._runner = executor._runner
         self._begun = False
         super().__init__(_nothing, executor=executor)
 
     def _step(self) -> object | None:
-        # Begun no earlier, so that Python does not complain about a handler that is never called.
+        # Not created before, because Python warns about a coroutine that is never awaited.
         if not self._begun:
             self._begun = True
             self._handler = self._serve()
@@ -67,4 +68,4 @@ class Handler(Task[None]):
 
 
 def _nothing() -> None:
-    """Stand for what is done, until it is begun."""
+    """The placeholder until the callback is started."""

@@ -1,7 +1,8 @@
-"""The wait set as a program's own waitables see it: entities by kind and index, and which are ready."""
+"""The wait set of a program's own waitables: entities by kind and index, and which of them are ready."""
 
 from __future__ import annotations
 
+from functools import partialmethod
 from typing import Any, TypeAlias
 
 from sim.ros.exceptions import RCLError
@@ -17,9 +18,9 @@ Waited: TypeAlias = "Entity | BareEntity"
 
 
 class ProgramWaitSet:
-    """What the waitables of one executor wait for in one cycle.
+    """The entities that the waitables of one executor wait for in one cycle.
 
-    Entities are given as they are or by their handle. ``room`` is how many of each kind were announced.
+    An entity is given by itself or by its handle. ``room`` is the announced number of each kind.
     """
 
     def __init__(self, room: NumberOfEntities) -> None:
@@ -27,32 +28,27 @@ class ProgramWaitSet:
         self._waited: dict[str, list[Waited]] = {kind: [] for kind in _KINDS}
         self._ready: dict[str, list[bool]] = {kind: [] for kind in _KINDS}
 
-    def add_subscription(self, subscription: Any) -> int:
-        """Add a subscription; returns its index."""
-        return self._add("subscription", subscription)
+    def _add(self, kind: str, given: Any) -> int:
+        waited = given.owner if isinstance(given, Handle) else given
+        if not isinstance(waited, Entity | BareEntity):
+            raise TypeError(f"a wait set takes entities and their handles, got {type(given)}")
+        if len(self._waited[kind]) >= self._room[kind]:
+            raise RCLError(
+                f"Failed to add '{kind}' to wait set: {kind}s set is full; get_num_entities() must count it"
+            )
+        self._waited[kind].append(waited)
+        return len(self._waited[kind]) - 1
 
-    def add_guard_condition(self, guard_condition: Any) -> int:
-        """Add a guard condition; returns its index."""
-        return self._add("guard_condition", guard_condition)
-
-    def add_timer(self, timer: Any) -> int:
-        """Add a timer; returns its index."""
-        return self._add("timer", timer)
-
-    def add_client(self, client: Any) -> int:
-        """Add a client; returns its index."""
-        return self._add("client", client)
-
-    def add_service(self, service: Any) -> int:
-        """Add a service; returns its index."""
-        return self._add("service", service)
-
-    def add_event(self, event: Any) -> int:
-        """Add an event handler; returns its index."""
-        return self._add("event", event)
+    # Each adds an entity, or its handle, and returns the index of the entity.
+    add_subscription = partialmethod(_add, "subscription")
+    add_guard_condition = partialmethod(_add, "guard_condition")
+    add_timer = partialmethod(_add, "timer")
+    add_client = partialmethod(_add, "client")
+    add_service = partialmethod(_add, "service")
+    add_event = partialmethod(_add, "event")
 
     def is_ready(self, kind: str, index: int) -> bool:
-        """Whether the entity of that kind and index was ready when the wait set was looked at.
+        """Whether the entity of that kind and index was ready at the last ``look``.
 
         Raises:
             RuntimeError: there is no such kind.
@@ -66,33 +62,22 @@ class ProgramWaitSet:
         return ready[index]
 
     def get_ready_entities(self, kind: str) -> list[int]:
-        """The pointers of the ready entities of a kind, as their handles tell them."""
+        """The pointers of the handles of the ready entities of a kind."""
         if kind not in _KINDS:
             raise RuntimeError(f"'{kind}' is not a known entity")
         both = zip(self._waited[kind], self._ready[kind], strict=True)
         return [Handle(each).pointer for each, ready in both if ready]
 
     def look(self, watcher: Watcher, now: int) -> int | None:
-        """Note what is ready, and have ``watcher`` woken once more is; returns when the next timer falls due.
+        """Note which entities are ready, and wake ``watcher`` once more are. Return the next due time.
 
-        With the host's lock held.
+        Called with the host's lock held.
         """
         dues: list[int] = []
         for kind, waited in self._waited.items():
             self._ready[kind] = [self._is_ready(each, watcher, now) for each in waited]
             dues.extend(due for each in waited if (due := self._due(each)) is not None and due > now)
         return min(dues, default=None)
-
-    def _add(self, kind: str, given: Any) -> int:
-        waited = given.owner if isinstance(given, Handle) else given
-        if not isinstance(waited, Entity | BareEntity):
-            raise TypeError(f"a wait set takes entities and their handles, got {type(given)}")
-        if len(self._waited[kind]) >= self._room[kind]:
-            raise RCLError(
-                f"Failed to add '{kind}' to wait set: {kind}s set is full; get_num_entities() must count it"
-            )
-        self._waited[kind].append(waited)
-        return len(self._waited[kind]) - 1
 
     def _is_ready(self, waited: Waited, watcher: Watcher, now: int) -> bool:
         if isinstance(waited, BareEntity):
@@ -108,5 +93,5 @@ class ProgramWaitSet:
         return entity.ready_at(now)
 
     def _entity_due(self, _entity: Entity) -> int | None:
-        """None: the executor that serves it knows when it falls due."""
+        """None: the executor that serves the entity knows its due time."""
         return None

@@ -1,4 +1,4 @@
-"""Running what has become ready: entering its group, calling it, ending it; and telling why others wait."""
+"""Runs ready callbacks: enters the group, calls the callback, leaves the group. Explains why others wait."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from collections.abc import Coroutine
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from sim.interpreter.function_marks import calls_the_program
-from sim.ros.scheduling.entity import Entity, Taken
+from sim.ros.scheduling.entity import Entity, TakenData
 from sim.ros.scheduling.handlers import Handler
 from sim.ros.scheduling.task import Task
 from sim.trace.events import Reason
@@ -17,57 +17,57 @@ if TYPE_CHECKING:
     from sim.ros.scheduling.cycle import Cycle, Work
     from sim.ros.scheduling.executor import Executor
 
-Begun: TypeAlias = "tuple[Entity, Taken] | Task[Any]"
-"""A callback that its group has let in and that has what it needs to run."""
-Started: TypeAlias = "tuple[Entity, Taken, int] | Task[Any]"
-"""A callback that runs on this thread by its trace, and what ran here before (its id)."""
+AdmittedWork: TypeAlias = "tuple[Entity, TakenData] | Task[Any]"
+"""A callback that its group has admitted, with its data; or a task."""
+StartedWork: TypeAlias = "tuple[Entity, TakenData, int] | Task[Any]"
+"""A callback that the trace shows as running, with the id of what ran on this thread before; or a task."""
 
 
 class CallbackRunner:
-    """Runs the callbacks and tasks of an executor, and knows which run. Guarded by the host's lock."""
+    """Runs the callbacks and tasks of an executor. Guarded by the host's lock."""
 
     def __init__(self, executor: Executor) -> None:
-        # Weakly: who drops an executor without shutting it down is rid of it at once.
+        # A weak reference, so that an executor that is dropped without a shutdown is freed at once.
         self._executor = weakref.ref(executor)
         self.lock = executor.context.host.lock
         self.clock = executor.context.host.clock
         self.cycle: Cycle
-        """What the executor serves."""
+        """The executor's cycle."""
         self._probe = executor.context.probe
         self._coroutines: dict[Task[Any], Entity] = {}
         self._running: list[Entity] = []
         self.at_work = 0
-        """How many callbacks and tasks have begun and not ended."""
+        """How many callbacks and tasks have started and not ended."""
         self.refuses = False
-        """Whether nothing may begin any more."""
+        """Whether no callback may start any more."""
         self.asks_groups = True
-        """Whether groups have a say in what may run."""
+        """Whether callback groups are used."""
         self.asks_in_next_cycle = True
-        """Whether what has just begun to await is asked in the next cycle, even if nothing wakes it."""
+        """Whether a task that has just started to await is resumed in the next cycle in any case."""
 
     @property
     def executor(self) -> Executor:
-        """The executor, which is there as long as something runs."""
+        """The executor, which exists as long as a callback runs."""
         executor = self._executor()
         assert executor is not None
         return executor
 
     def entity_of(self, task: Task[Any]) -> Entity | None:
-        """The entity whose callback a task goes on with; None: it is no callback's."""
+        """The entity whose callback a task continues; None for other tasks."""
         return task.entity if isinstance(task, Handler) else self._coroutines.get(task)
 
     # From group entered to group left
 
-    def begin(self, work: Work, now: int) -> Begun | None:
-        """Enter the group and take what is there; None: refused, or nothing there. With the lock held."""
+    def begin(self, work: Work, now: int) -> AdmittedWork | None:
+        """Enter the group and take the data; None: refused, or no data. Called with the lock held."""
         if isinstance(work, Task):
             self.at_work += 1
             return work
         taken = self.enter(work, now)
         return None if taken is None else (work, taken)
 
-    def enter(self, entity: Entity, now: int) -> Taken | None:
-        """Do as ``begin`` for an entity."""
+    def enter(self, entity: Entity, now: int) -> TakenData | None:
+        """Enter the group of an entity, and take the data; otherwise as ``begin``."""
         entity.handed_out = False
         cycle = self.cycle
         if cycle.may_serve is not None:
@@ -85,8 +85,8 @@ class CallbackRunner:
         self.executor._ask_awaiting()
         return taken
 
-    def take(self, entity: Entity, now: int) -> Taken | None:
-        """Take what is there, for a callback that needs to ask no group; None: nothing is."""
+    def take(self, entity: Entity, now: int) -> TakenData | None:
+        """Take the data for a callback without entering its group; None: there is none."""
         taken = entity.take(now)
         if taken is not None:
             self._running.append(entity)
@@ -95,10 +95,10 @@ class CallbackRunner:
                 self._probe.wait_ended(entity)
         return taken
 
-    def start(self, begun: Begun) -> Started:
-        """Tell the trace that it runs on this thread. With the lock held since it was taken.
+    def start(self, begun: AdmittedWork) -> StartedWork:
+        """Record that the work runs on this thread. Called with the lock held since the data were taken.
 
-        Else what another thread takes next, or what its queue loses, could come before it on the trace.
+        Otherwise the trace could have the next take of another thread, or a drop, before this event.
         """
         if isinstance(begun, Task):
             return begun
@@ -106,30 +106,30 @@ class CallbackRunner:
         return entity, taken, self._probe.callback_started(entity, taken.message, taken.age, taken.left)
 
     @calls_the_program
-    def run(self, started: Started) -> None:
-        """Run what has started on this thread; what it raises is raised."""
+    def run(self, started: StartedWork) -> None:
+        """Run started work on this thread, and raise its exception."""
         if isinstance(started, Task):
             self._run_task(started)
         else:
             self._run_callback(*started)
 
-    def _run_callback(self, entity: Entity, taken: Taken, outer: int) -> None:
+    def _run_callback(self, entity: Entity, taken: TakenData, outer: int) -> None:
         try:
             outcome = entity.invoke(taken)
         except BaseException as error:
             self.fail(entity, error, outer)
             raise
         if outcome is not None and inspect.iscoroutine(outcome):
-            self.executor._coroutine_came(entity, outcome, outer)
+            self.executor._coroutine_returned(entity, outcome, outer)
         else:
             self.end(entity, outer)
 
     def drive(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
-        """Run a callback's coroutine as far as it gets; it goes on as a task."""
+        """Run a callback's coroutine up to its next await; it continues as a task."""
         self._step(self._task_of(entity, coroutine), entity, outer)
 
     def postpone(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
-        """Have a callback's coroutine begin as a task."""
+        """Start a callback's coroutine as a task."""
         self.suspend(entity, outer)
         self.executor._resume(self._task_of(entity, coroutine))
 
@@ -139,7 +139,7 @@ class CallbackRunner:
         return task
 
     def _run_task(self, task: Task[Any]) -> None:
-        """Run a task as far as it gets."""
+        """Run a task up to its next await."""
         entity = self._coroutines.get(task)
         if task._waits_still:
             task._arm(task._awaited)
@@ -161,12 +161,12 @@ class CallbackRunner:
             self._step(task, entity, outer)
 
     def go_on(self, task: Task[Any]) -> None:
-        """Run a task on, on this thread and inside another task, which does not raise what it raises."""
+        """Continue a task on this thread, inside another task, which does not raise its exception."""
         with self.lock:
             self.at_work += 1
         try:
             self._run_task(task)
-        except Exception as error:  # noqa: BLE001 -- kept for the thread that spins, or lost
+        except Exception as error:  # noqa: BLE001 -- kept for the spinning thread, or lost
             self.executor._failed_after_await(task, error)
 
     def _step(self, task: Task[Any], entity: Entity, outer: int) -> None:
@@ -189,16 +189,16 @@ class CallbackRunner:
         self.end(entity, outer)
 
     def fail(self, entity: Entity, error: BaseException, outer: int) -> None:
-        """A callback raised, and so has ended."""
+        """A callback has raised an exception, and so has ended."""
         if not isinstance(error, KeyboardInterrupt):
             with self.lock:
                 self._probe.callback_failed(entity, error)
         self.end(entity, outer)
 
     def end(self, entity: Entity, outer: int) -> None:
-        """A callback has ended: free its group, and have its executor look again.
+        """A callback has ended: leave its group, and wake its executor.
 
-        Another executor that serves members of the group is not told, in rclpy neither.
+        As in rclpy, another executor that serves members of the group is not woken.
         """
         with self.lock:
             self._running.remove(entity)
@@ -210,13 +210,13 @@ class CallbackRunner:
     def _free_group_of(self, entity: Entity) -> None:
         cycle = self.cycle
         if cycle.may_serve is not None:
-            cycle.leaves(entity)
+            cycle.leaving(entity)
         entity.callback_group.ending_execution(entity)
         executor = self._executor()
         if executor is not None:
             executor._ask_awaiting()
             if executor._waiting:
-                executor._look_again()
+                executor._recheck()
 
     def suspend(self, entity: Entity, outer: int) -> None:
         """A coroutine callback awaits something and leaves this thread."""
@@ -226,17 +226,17 @@ class CallbackRunner:
             self._leave()
 
     def resume(self, entity: Entity) -> int:
-        """A coroutine callback goes on on this thread; returns what ran here until now (its id)."""
+        """A coroutine callback continues on this thread; return the id of what ran here before."""
         with self.lock:
             self._running.append(entity)
             self.at_work += 1
             return self._probe.callback_resumed(entity)
 
     def _leave(self) -> None:
-        """A thread is done with its work. With the lock held."""
+        """A thread has finished its work. Called with the lock held."""
         self.at_work -= 1
 
-    # What is shown as running though it runs inside a task
+    # Callbacks that run inside a task
 
     def show(self, entity: Entity) -> None:
         """An entity's callback runs on this thread, inside a task."""
@@ -244,14 +244,14 @@ class CallbackRunner:
             self._running.append(entity)
 
     def hide(self, entity: Entity) -> None:
-        """It runs no more."""
+        """The entity's callback no longer runs on this thread."""
         with self.lock:
             self._running.remove(entity)
 
     # Questions
 
     def explain_wait(self, entity: Entity) -> None:
-        """Record why a ready callback of this executor does not run; nothing if it is about to."""
+        """Record why a ready callback of this executor waits; record nothing if it is about to run."""
         executor = self.executor
         busy = executor._workers_busy()
         if not executor._spinning and not entity.handed_out:
@@ -264,7 +264,7 @@ class CallbackRunner:
             self._probe.waits(entity, Reason.GROUP_HELD, holder, workers_busy=busy)
         elif busy:
             self._probe.waits(entity, Reason.NO_FREE_WORKER, self._first_running(), workers_busy=True)
-        elif entity.wait_shown is not None:  # another executor has freed its group, and woken nobody
+        elif entity.wait_shown is not None:  # another executor freed the group without waking this one
             self._probe.wait_ended(entity)
 
     def _first_running(self) -> Entity | None:

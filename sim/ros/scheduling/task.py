@@ -1,4 +1,4 @@
-"""Futures, and tasks: functions and coroutines that an executor runs."""
+"""Futures and tasks; a task is a function or coroutine that an executor runs."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ _allocate_lock = threading.Lock
 
 
 class Future(Generic[T]):
-    """A result that will be there later. Thread-safe.
+    """A result that is available later. Thread-safe.
 
-    Done-callbacks run as tasks of the executor that the future belongs to, or at once on the thread that
-    gives the result when it belongs to none.
+    Done-callbacks run as tasks of the future's executor. Without an executor they run at once, on the thread
+    that sets the result.
     """
 
     def __init__(self, *, executor: Executor | None = None) -> None:
@@ -54,7 +54,7 @@ class Future(Generic[T]):
         return self.result()
 
     def cancel(self) -> None:
-        """Give it up, unless it is done."""
+        """Cancel the future, unless it is done."""
         with self._lock:
             if self._done or self._cancelled:
                 return
@@ -62,31 +62,31 @@ class Future(Generic[T]):
         self._finish()
 
     def cancelled(self) -> bool:
-        """Whether it was given up."""
+        """Whether the future was cancelled."""
         return self._cancelled
 
     def done(self) -> bool:
-        """Whether there is a result or an exception; one that was given up has neither."""
+        """Whether there is a result or an exception; a cancelled future has neither."""
         return self._done
 
     def _settled(self) -> bool:
-        """Whether there is nothing more to wait for: it is done, or was given up."""
+        """Whether the future is done or cancelled."""
         return self._done or self._cancelled
 
     def result(self) -> T | None:
-        """The result, None while there is none; raises what was given as exception."""
+        """Return the result, or None if there is none yet; raise the exception if one was set."""
         if self._exception is not None:
             self._exception_fetched = True
             raise self._exception
         return self._result
 
     def exception(self) -> BaseException | None:
-        """The exception given, if any."""
+        """The exception that was set, or None."""
         self._exception_fetched = True
         return self._exception
 
     def set_result(self, result: T) -> None:
-        """Give the result."""
+        """Set the result, and run the done-callbacks."""
         with self._lock:
             self._result = result
             self._done = True
@@ -94,7 +94,7 @@ class Future(Generic[T]):
         self._finish()
 
     def set_exception(self, exception: BaseException) -> None:
-        """Give an exception in place of a result."""
+        """Set an exception instead of a result, and run the done-callbacks."""
         with self._lock:
             self._exception = exception
             self._exception_fetched = False
@@ -103,11 +103,11 @@ class Future(Generic[T]):
         self._finish()
 
     def add_done_callback(self, callback: Callable[[Future[T]], None]) -> None:
-        """Have ``callback(future)`` run when it is done; at once if it is."""
+        """Run ``callback(future)`` when the future is done; at once if it is done already."""
         self._wake_when_done(callback)
 
     def remove_done_callback(self, callback: Callable[[Future[T]], None]) -> bool:
-        """Forget every registration of ``callback``; whether there was one."""
+        """Remove every registration of ``callback``; return whether there was one."""
         with self._lock:
             kept = [each for each in self._callbacks if each != callback]
             found = len(kept) < len(self._callbacks)
@@ -136,7 +136,7 @@ class Future(Generic[T]):
 
     def _finish(self) -> None:
         if not self._callbacks:
-            return  # nobody listens, and from now on nobody can begin to
+            return  # there are no callbacks, and none can be added from now on
         with self._lock:
             callbacks, self._callbacks = self._callbacks, []
         self._run_callbacks(callbacks)
@@ -154,12 +154,12 @@ class Future(Generic[T]):
     def _run_here(self, callback: Callable[[Future[T]], None]) -> None:
         try:
             callback(self)
-        except Exception as error:  # noqa: BLE001 -- the giver of the result must not suffer for a listener
+        except Exception as error:  # noqa: BLE001 -- an error of a callback must not reach set_result()
             warnings.warn(f"Unhandled exception in done callback: {error}", RuntimeWarning, stacklevel=3)
 
 
 class Task(Future[T]):
-    """A function or coroutine that its executor runs; calling the task runs it as far as it gets."""
+    """A function or coroutine that its executor runs; a call of the task runs it up to its next await."""
 
     def __init__(
         self,
@@ -170,7 +170,7 @@ class Task(Future[T]):
     ) -> None:
         super().__init__(executor=executor)
         self.number = next(_numbers)
-        """Its place in the order in which tasks are made."""
+        """The number of the task in the order of creation."""
         arguments, named = args or (), kwargs or {}
         if _makes_coroutines(handler):
             handler = handler(*arguments, **named)
@@ -184,11 +184,11 @@ class Task(Future[T]):
         self._step_lock = _allocate_lock()
 
     def __call__(self) -> None:
-        """Run the function, or the coroutine up to its next await; nothing if done or running elsewhere."""
+        """Run the function, or the coroutine up to its next await, unless it is done or running elsewhere."""
         self._arm(self._advance())
 
     def _advance(self) -> object | None:
-        """Run as far as it gets; what a coroutine awaits now, None when there is nothing to wait for."""
+        """Run up to the next await; return what the coroutine awaits, or None."""
         if self._settled() or not self._step_lock.acquire(blocking=False):
             return None
         try:
@@ -199,14 +199,14 @@ class Task(Future[T]):
             self._step_lock.release()
 
     def _arm(self, awaited: object | None) -> None:
-        """Have the task go on once ``awaited`` is done.
+        """Resume the task once ``awaited`` is done.
 
-        Releases that do not resume it ask it in the next cycle, and then at each wake-up of the executor; an
-        EventsExecutor asks after each callback.
+        Some releases instead resume it in the next cycle, and then at each wake-up of the executor; an
+        EventsExecutor resumes it after each callback.
 
         Raises:
             RuntimeError: the future belongs to another executor.
-            TypeError: it is something that an executor cannot wait for.
+            TypeError: an executor cannot wait for an object of that type.
         """
         was_suspended, self._was_suspended = self._was_suspended, True
         self._awaited = awaited
@@ -226,22 +226,22 @@ class Task(Future[T]):
             raise TypeError(f"Expected coroutine to yield a Future or None, got: {type(awaited)}")
 
     def _go_on(self, _: Future[Any]) -> None:
-        """Run on, here and now, as a done-callback of what was awaited."""
+        """Continue at once, as a done-callback of the awaited future."""
         executor = self._live_executor()
         if executor is not None:
             executor._runner.go_on(self)
 
     @property
     def _waits_still(self) -> bool:
-        """Whether there is no use in asking it again: the future that it awaits is not done."""
+        """Whether the awaited future is not done, so that the task cannot continue."""
         return isinstance(self._awaited, Future) and not self._awaited._settled()
 
     def executing(self) -> bool:
-        """Whether it runs right now."""
+        """Whether the task is running."""
         return self._executing
 
     def cancel(self) -> None:
-        """Give it up; a coroutine is closed, unless it runs right now."""
+        """Cancel the task; a coroutine is closed, unless it is running."""
         super().cancel()
         if inspect.iscoroutine(self._handler) and not self._executing:
             self._handler.close()
@@ -254,7 +254,7 @@ class Task(Future[T]):
             awaited = self._handler.send(None)
         except StopIteration as end:
             self.set_result(end.value)
-        except Exception as error:  # noqa: BLE001 -- whoever asks for the task's result gets it
+        except Exception as error:  # noqa: BLE001 -- result() raises it
             self.set_exception(error)
         else:
             return _NOTHING_NAMED if awaited is None else awaited
@@ -267,11 +267,11 @@ class Task(Future[T]):
 
 
 _Listener: TypeAlias = Callable[[Future[T]], None] | Task[Any] | AsyncioWaiter
-"""What hears of a future's end: a callback, or what awaits it."""
+"""What is notified when a future is done: a callback, or an awaiting task."""
 
 
 def _makes_coroutines(handler: object) -> TypeGuard[Callable[..., Coroutine[Any, Any, Any]]]:
-    """Answer as ``inspect.iscoroutinefunction`` does, for functions and methods a lot quicker."""
+    """As ``inspect.iscoroutinefunction``, but much faster for functions and methods."""
     code = getattr(handler, "__code__", None)
     if isinstance(code, CodeType):
         return code.co_flags & inspect.CO_COROUTINE != 0
@@ -279,4 +279,4 @@ def _makes_coroutines(handler: object) -> TypeGuard[Callable[..., Coroutine[Any,
 
 
 _NOTHING_NAMED = object()
-"""Stands for an await that does not say what it waits for (a bare ``yield``)."""
+"""The result of an await that names no future (a bare ``yield``)."""

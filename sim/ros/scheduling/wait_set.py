@@ -1,4 +1,4 @@
-"""Which callbacks are ready, and in which order they are served: rclpy's rules, without threads."""
+"""Which callbacks are ready, and the order in which they are served: rclpy's rules, without threads."""
 
 from __future__ import annotations
 
@@ -15,11 +15,10 @@ def _serving_order(entity: Entity) -> tuple[int, int]:
 
 
 def snapshot(nodes: Iterable[OwnerNode], now: int) -> deque[Entity]:
-    """The entities that are ready at ``now`` and whose group lets them in, in the order of service.
+    """The entities that are ready at ``now`` and that their groups admit, in the order of service.
 
     Waitables of all nodes, then node by node timers, subscriptions, guard conditions, clients, services;
-    within a kind, in creation order. Entities that are handed out already are left out, and so are those of
-    a busy group.
+    within a kind, in creation order. Entities that are handed out, or whose group is busy, are left out.
     """
     ready: deque[Entity] = deque()
     waitables: list[Entity] = []

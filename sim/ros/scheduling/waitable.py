@@ -1,4 +1,4 @@
-"""Waitables: things that a program writes itself to be served by an executor before everything else."""
+"""Waitables: a program's own entities, which an executor serves before all others."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ T = TypeVar("T")
 
 @dataclass
 class NumberOfEntities:
-    """How many entities of each kind a waitable waits for; two can be added."""
+    """How many entities of each kind a waitable waits for; two objects can be added."""
 
     num_subscriptions: int = 0
     num_guard_conditions: int = 0
@@ -31,11 +31,11 @@ class NumberOfEntities:
 
 
 class Waitable(Generic[T]):
-    """Base of the waitables that a program writes; ``Node.add_waitable`` has one served.
+    """Base of the waitables that a program writes; ``Node.add_waitable`` adds one to a node.
 
-    In every cycle of its executor in which its group lets it in, a waitable adds what it waits for to a wait
-    set, and is then asked whether it is ready. If so, it takes its data when its turn comes, and executes
-    with them. No lock of the model's is held meanwhile, so that a waitable may have one of its own.
+    In every cycle of its executor in which its group admits it, a waitable adds its entities to a wait
+    set, and is then asked whether it is ready. If so, it takes its data at its turn, and executes
+    with them. The model holds no lock meanwhile, so that a waitable may have a lock of its own.
     """
 
     def __init__(self, callback_group: CallbackGroup) -> None:
@@ -44,35 +44,35 @@ class Waitable(Generic[T]):
         self._futures: list[Future[Any]] = []
 
     def __enter__(self) -> None:
-        """Hold what it waits for while it is waited for; InvalidHandle leaves it out of this cycle."""
+        """Keep its entities alive during a wait; an InvalidHandle leaves the waitable out of this cycle."""
 
     def __exit__(self, *_error: object) -> None:
-        """Hold it no more."""
+        """Release its entities."""
 
     def add_future(self, future: Future[Any]) -> None:
-        """Have a future belong to the executor that serves this."""
+        """Assign a future to the executor that serves the waitable."""
         self._futures.append(future)
 
     def remove_future(self, future: Future[Any]) -> None:
-        """Let a future go; ValueError if it was not added."""
+        """Remove a future; ValueError if it was not added."""
         self._futures.remove(future)
 
     def is_ready(self, wait_set: ProgramWaitSet) -> bool:
-        """Whether it has something to take."""
+        """Whether the waitable has data to take."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def take_data(self) -> T:
-        """Take what ``execute`` gets, so that it is not ready for it again."""
+        """Take the data for ``execute``, so that the waitable is not ready for them again."""
         raise NotImplementedError("Must be implemented by subclass")
 
     async def execute(self, taken_data: T) -> None:
-        """Work on what was taken."""
+        """Process the data."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def get_num_entities(self) -> NumberOfEntities:
-        """How many entities of each kind ``add_to_wait_set`` adds at most."""
+        """The largest number of entities of each kind that ``add_to_wait_set`` adds."""
         raise NotImplementedError("Must be implemented by subclass")
 
     def add_to_wait_set(self, wait_set: ProgramWaitSet) -> None:
-        """Add what it waits for, and keep the indices to ask by."""
+        """Add its entities, and keep their indices for ``is_ready``."""
         raise NotImplementedError("Must be implemented by subclass")

@@ -1,4 +1,4 @@
-"""How an executor serves the waitables of a program: each stands on its node's agenda by an entity."""
+"""Serves the waitables of a program: each has an entity on its node's agenda."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 from sim.ros.exceptions import InvalidHandle
-from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
+from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
 from sim.ros.scheduling.program_wait_set import ProgramWaitSet
 from sim.ros.scheduling.waitable import NumberOfEntities, Waitable
 from sim.trace.events import EntityKind
@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
 
 class WaitableEntity(Entity):
-    """A program's waitable on its node's agenda.
+    """The entity of a program's waitable.
 
-    ``taking`` from the moment its handler begins until the waitable has taken its data; meanwhile it is not
-    asked whether it is ready, for it would still say yes.
+    ``taking``: its handler has started, and the waitable has not taken its data yet; meanwhile it is not
+    polled, because it would still be ready.
     """
 
     kind = EntityKind.WAITABLE
@@ -32,24 +32,24 @@ class WaitableEntity(Entity):
         self.taking = False
 
     def shown_callback(self) -> Any:
-        """What the program wrote to be executed."""
+        """The waitable's ``execute``."""
         return self.waitable.execute
 
-    def may_be_asked(self) -> bool:
-        """Whether it is waited on in this cycle. With the host's lock held."""
+    def may_be_polled(self) -> bool:
+        """Whether the executor polls it in this cycle. Called with the host's lock held."""
         return not (self.handed_out or self.taking) and self.callback_group.can_execute(self)
 
-    def take(self, now: int) -> Taken | None:
-        """Begin; the waitable takes its data when the callback runs, without the lock."""
+    def take(self, now: int) -> TakenData | None:
+        """Start; the waitable takes its data later, without the lock, when the callback runs."""
         if not self.pending:
             return None
         late = now - self.ready_since
-        self.nothing_left()
+        self.become_idle()
         self.taking = True
-        return Taken(None, 0, late, 0)
+        return TakenData(None, 0, late, 0)
 
-    def invoke(self, taken: Taken) -> Any:
-        """Have the waitable take its data; returns the coroutine that executes."""
+    def invoke(self, taken: TakenData) -> Any:
+        """Let the waitable take its data; return the coroutine that executes."""
         try:
             data = self.waitable.take_data()
         finally:
@@ -67,18 +67,18 @@ class WaitableEntity(Entity):
 
     def destroy(self) -> None:
         """Remove it from its node."""
-        self.node._agenda.remove_asked(self)
+        self.node._agenda.remove_polled(self)
 
 
-def ask_waitables(executor: Executor, nodes: Iterable[OwnerNode]) -> int | None:
-    """Ask the waitables of nodes whether they are ready, for a cycle that is about to begin.
+def poll_waitables(executor: Executor, nodes: Iterable[OwnerNode]) -> int | None:
+    """Poll whether the waitables of nodes are ready, for a cycle that is about to begin.
 
-    Returns when the next of the timers that they wait for falls due. Without the host's lock held: what a
-    program wrote may take locks of its own.
+    Return when the next of their timers is due. Called without the host's lock, because a program's
+    code may take locks of its own.
     """
     lock, now = executor._lock, executor._clock.now()
     with lock:
-        asked = [each for node in nodes for each in node._agenda.asked if each.may_be_asked()]
+        asked = [each for node in nodes for each in node._agenda.polled if each.may_be_polled()]
     with ExitStack() as held:
         asked = [each for each in asked if _enter(held, each.waitable)]
         room = sum((each.waitable.get_num_entities() for each in asked), NumberOfEntities())

@@ -1,4 +1,4 @@
-"""How an executor's waiting for work can end without any, and how long it may last."""
+"""The exceptions that end an executor's wait without work, and timeouts."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ class ExternalShutdownException(Exception):
 
 
 class ShutdownException(Exception):
-    """The executor was shut down while something waited for its work."""
+    """The executor was shut down during the wait."""
 
     __module__ = "rclpy.executors"
 
@@ -24,27 +24,27 @@ class TimeoutException(Exception):
 
 
 class ConditionReachedException(Exception):
-    """The condition that ends the waiting holds."""
+    """The condition that ends the wait holds."""
 
     __module__ = "rclpy.executors"
 
 
 def never() -> bool:
-    """The condition that ends no waiting."""
+    """The condition that never ends a wait."""
     return False
 
 
 class TimeoutObject:
-    """Seconds that are left of a timeout; changing them does not make it another one."""
+    """The remaining seconds of a timeout; a change of the seconds does not start a new wait."""
 
     def __init__(self, timeout: float) -> None:
         self.timeout = timeout
 
 
 Timeout: TypeAlias = "float | TimeoutObject | None"
-"""Seconds; None or negative ones stand for ever."""
+"""Seconds; None or a negative number means for ever."""
 
 
 def seconds_of(timeout: Timeout) -> float | None:
-    """What a timeout holds now, in seconds."""
+    """The seconds of a timeout."""
     return timeout.timeout if isinstance(timeout, TimeoutObject) else timeout

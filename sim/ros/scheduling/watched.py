@@ -1,4 +1,4 @@
-"""What a wait set waits for although no executor serves it: it wakes whoever watches it."""
+"""Entities that no executor serves; they wake the wait sets that watch them."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from sim.ros.handle import DESTROYED
 
 
 class Watcher(Protocol):
-    """Who wants to look again once there is something."""
+    """An executor or wait set that checks again once an entity is ready."""
 
     def wake(self) -> None:
-        """Have it look again. With the host's lock held."""
+        """Make the watcher check again. Called with the host's lock held."""
 
 
 class BareEntity:
-    """Base of the entities without a callback; ``pending`` tells that there is something to take.
+    """Base of the entities without a callback; ``pending``: the entity has something to take.
 
-    As a context manager it demands that it is alive: InvalidHandle if it was destroyed.
+    As a context manager it raises InvalidHandle if it was destroyed.
     """
 
     traced = False
@@ -27,36 +27,36 @@ class BareEntity:
 
     @property
     def pointer(self) -> int:
-        """A number that no other living entity has."""
+        """A number that identifies the entity among all living objects."""
         return id(self)
 
     def look(self, watcher: Watcher, now: int) -> bool:
-        """Whether it is ready; ``watcher`` is woken when it is so next. With the host's lock held."""
+        """Whether the entity is ready; ``watcher`` is woken at the next time. Called with the host's lock."""
         self._watchers[watcher] = None
         return self.pending
 
     def next_due(self) -> int | None:
-        """When it becomes ready by the mere passing of time; None: by that it never does."""
+        """When the entity becomes ready by time alone; None: never."""
         return None
 
     def become_ready(self, since: int) -> None:
-        """There is something to take from now on. With the host's lock held."""
+        """There is something to take from now on. Called with the host's lock held."""
         self.pending = True
         watchers = tuple(self._watchers)
         self._watchers.clear()
         for each in watchers:
             each.wake()
 
-    def nothing_left(self) -> None:
-        """There is nothing more to take. With the host's lock held."""
+    def become_idle(self) -> None:
+        """There is nothing more to take. Called with the host's lock held."""
         self.pending = False
 
     def destroy(self) -> None:
-        """Take it off the network."""
+        """Mark the entity as destroyed."""
         self.destroyed = True
 
     def destroy_when_not_in_use(self) -> None:
-        """Destroy it."""
+        """Destroy the entity."""
         self.destroy()
 
     def __enter__(self) -> Self:
@@ -65,7 +65,7 @@ class BareEntity:
         return self
 
     def __exit__(self, *_error: object) -> None:
-        """Leave it as it is."""
+        """Do nothing."""
 
     @property
     def _watchers(self) -> dict[Watcher, None]:

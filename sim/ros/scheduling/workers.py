@@ -1,4 +1,4 @@
-"""The worker threads of a MultiThreadedExecutor, and the queue of callbacks that wait for one.
+"""The worker threads of a MultiThreadedExecutor, and the queue of callbacks that wait for a worker.
 
 Whatever is yielded goes into one queue and is begun in the order of yielding; if its group has let another
 one in by then, it is not taken. For each a free worker is called, the one that has been idle longest first; a
@@ -17,7 +17,7 @@ from weakref import WeakMethod
 
 from sim.clock import AutoResetEvent
 from sim.ros.scheduling.cycle import Work
-from sim.ros.scheduling.running import Begun, Started
+from sim.ros.scheduling.running import AdmittedWork, StartedWork
 from sim.ros.scheduling.waiting_ends import never
 
 if TYPE_CHECKING:
@@ -29,7 +29,7 @@ _join = threading.Thread.join
 
 
 class Worker:
-    """A thread of the pool; ``called`` while it is on its way to begin something."""
+    """A thread of the pool; ``called``: it was woken to start queued work."""
 
     __slots__ = ("began_in", "called", "signal", "thread")
 
@@ -37,20 +37,20 @@ class Worker:
         self.signal = signal
         self.called = False
         self.began_in = -1
-        """The clock's turn in which it began its first callback, while that runs."""
+        """The clock's turn in which the worker started its first callback, while that callback runs."""
         self.thread: threading.Thread | None = None
 
 
 class WorkerPool:
-    """At most ``executor.threads`` workers, started when needed. Its state is guarded by the host's lock."""
+    """At most ``executor.threads`` workers, started when needed. The host's lock guards the state."""
 
     def __init__(self, executor: MultiThreadedExecutor) -> None:
         self.dispatches_itself = False
-        """Whether workers may look for their next callback themselves."""
-        self.enough: Callable[[], bool] = never
-        """Whether they may look no longer."""
+        """Whether workers may find their next callback themselves."""
+        self.should_stop: Callable[[], bool] = never
+        """Whether workers have to stop looking for callbacks."""
         self.error_surfaces = False
-        """Whether a callback's exception is due to come out of ``spin``."""
+        """Whether ``spin`` has to raise the exception of a callback."""
         self._executor = executor
         self._runner = executor._runner
         self._lock = executor._lock
@@ -59,48 +59,48 @@ class WorkerPool:
         self._workers: list[Worker] = []
         self._idle: deque[Worker] = deque()
         self._queue: deque[Work] = deque()
-        self._coming = 0
-        self._look_owed = False
+        self._called_workers = 0
+        self._spinner_waits = False
         self._starting: Worker | None = None
         self._started = self._clock.auto_reset_event()
         self._errors: list[BaseException] = []
         self._dismissed = False
-        self._living = 0
+        self._alive_workers = 0
         self._end_signals: list[AutoResetEvent] = []
         executor._context.process.finish_pools.append(WeakMethod(self._finish))
 
     @property
     def _max_workers(self) -> int:
-        """How many workers there can be, as Python's own pools tell it."""
+        """The largest number of workers, by the name of Python's own pools."""
         return self._executor.threads
 
     def all_busy(self) -> bool:
-        """Whether no worker is free and none can be started."""
-        if self._idle or self._coming > len(self._queue):
+        """Whether no worker is free, and none can be started."""
+        if self._idle or self._called_workers > len(self._queue):
             return False
         return len(self._workers) >= self._executor.threads
 
     def all_begun(self) -> bool:
-        """Whether all that workers were called for has begun; if not, the executor is woken when it has."""
-        self._look_owed = self._starting is not None or self._claimed()
-        return not self._look_owed
+        """Whether all work that workers were called for has started; if not, it wakes the executor later."""
+        self._spinner_waits = self._starting is not None or self._claimed()
+        return not self._spinner_waits
 
     def _claimed(self) -> bool:
-        return self._coming > 0 and len(self._queue) > 0
+        return self._called_workers > 0 and len(self._queue) > 0
 
     def submit(self, work: Work, _now: int) -> None:
         """Have yielded work wait for a worker, and call one if one is free. With the lock held."""
         self._queue.append(work)
-        if len(self._queue) > self._coming:
+        if len(self._queue) > self._called_workers:
             self._call_worker()
         self._surface_errors()
 
-    def looks_itself(self) -> bool:
-        """Whether a worker is on its way that will look for what is ready; an idle one is called."""
+    def worker_looks(self) -> bool:
+        """Whether a called worker will look for ready work; an idle one is called for that."""
         if not self.dispatches_itself:
             return False
-        if self._coming <= len(self._queue):
-            if not self._idle or self.enough():
+        if self._called_workers <= len(self._queue):
+            if not self._idle or self.should_stop():
                 return False
             self._call_worker()
         return True
@@ -114,23 +114,23 @@ class WorkerPool:
         elif len(self._workers) < self._executor.threads:
             worker = Worker(self._clock.auto_reset_event())
             self._workers.append(worker)
-            self._living += 1
+            self._alive_workers += 1
             self._starting = worker
             self._executor._cycle.hold()
             self._expect(worker)
             self._clock.start_thread(lambda: self._work(worker), f"{self._name}_{len(self._workers) - 1}")
 
     def await_start(self) -> None:
-        """If a worker was just started, let it go first: it begins, and works until it has to wait."""
+        """If a worker was just started, wait until it has started its work."""
         while self._starting is not None:
             self._started.wait(None)
 
     def _expect(self, worker: Worker) -> None:
         worker.called = True
-        self._coming += 1
+        self._called_workers += 1
 
     def keep(self, error: BaseException) -> None:
-        """Keep a callback's exception until the next callback is handed over. With the lock held."""
+        """Keep a callback's exception until the next callback is submitted. Called with the lock held."""
         self._errors.append(error)
 
     def _surface_errors(self) -> None:
@@ -146,14 +146,14 @@ class WorkerPool:
         finally:
             self._leave()
 
-    def _next(self, worker: Worker) -> Started | None:
-        """Wait for the worker's next callback and start it; None once the pool is dismissed."""
+    def _next(self, worker: Worker) -> StartedWork | None:
+        """Wait for the worker's next callback, and start it; None once the pool is dismissed."""
         may_find = False
         while True:
             with self._lock:
                 now = self._clock.now()
                 begun = self._begin_queued(worker, now)
-                others_go_first = begun is None and not may_find and self._clock.able > self._coming
+                others_go_first = begun is None and not may_find and self._clock.runnable > self._called_workers
                 if begun is None and not others_go_first:
                     begun = self._begin_found(now)
                 if begun is not None:
@@ -163,7 +163,7 @@ class WorkerPool:
                 elif self._dismissed:
                     return None
                 else:
-                    others_go_first = len(self._queue) > self._coming
+                    others_go_first = len(self._queue) > self._called_workers
                     if not others_go_first:
                         self._idle.append(worker)
             if others_go_first:
@@ -171,81 +171,81 @@ class WorkerPool:
             else:
                 worker.signal.wait(None)
             if self.error_surfaces:
-                self._clock.sleep(0)  # the thread that spins raises before the next callback begins
+                self._clock.sleep(0)  # the spinning thread raises before the next callback starts
             may_find = True
 
-    def _begin_queued(self, worker: Worker, now: int) -> Begun | None:
+    def _begin_queued(self, worker: Worker, now: int) -> AdmittedWork | None:
         """Begin the next in the queue, whoever was called for it."""
         if worker.called:
             worker.called = False
-            self._coming -= 1
+            self._called_workers -= 1
         begun = None
         while begun is None and self._queue:
             begun = self._runner.begin(self._queue.popleft(), now)
-        if self._starting is not None or self._look_owed:
+        if self._starting is not None or self._spinner_waits:
             self._tell_begun(worker)
-        if begun is not None and self._coming == 0 and self._executor._cycle.would_find(now):
-            self._executor._rouse()
+        if begun is not None and self._called_workers == 0 and self._executor._cycle.would_find(now):
+            self._executor._wake_spinner()
         return begun
 
     def _tell_begun(self, worker: Worker) -> None:
-        """Have the executor serve what it has found meanwhile, if it waits for workers to begin."""
+        """Let the executor serve what it has found, if it waits until workers have started."""
         if self._starting is worker:
             worker.began_in = self._clock.turn
         if self._starting is worker or not self._claimed():
             self._starting = None
             self._started.set()
-        if self._look_owed and self._starting is None and not self._claimed():
-            self._executor._rouse()
+        if self._spinner_waits and self._starting is None and not self._claimed():
+            self._executor._wake_spinner()
 
-    def _begin_found(self, now: int) -> Begun | None:
+    def _begin_found(self, now: int) -> AdmittedWork | None:
         """Begin the first of what is ready, and give the rest of its cycle to others."""
-        if len(self._queue) > self._coming or not self._may_look():
+        if len(self._queue) > self._called_workers or not self._may_look():
             return None
         cycle = self._executor._cycle
         own = cycle.next(now)
         if own is None:
             return None
-        if self._errors:  # they come out of what hands it over, before it begins
+        if self._errors:  # submitting work raises them before the work starts
             self._queue.append(own)
             self._surface_errors()
-            self._executor._rouse()
+            self._executor._wake_spinner()
             return None
         finds = True
         while finds and not (self._starting or cycle.held):
-            while not self._starting and (work := cycle.rest(now)) is not None:
+            while not self._starting and (work := cycle.next_found(now)) is not None:
                 self.submit(work, now)
             finds = cycle.gather(now)
         if finds:
-            self._executor._rouse()
+            self._executor._wake_spinner()
         return self._runner.begin(own, now)
 
     def _may_look(self) -> bool:
-        """Whether a worker may look for what is ready; else the thread that spins is told to."""
+        """Whether a worker may look for ready work; otherwise the spinning thread is woken."""
         if not self.dispatches_itself:
             return False
         executor = self._executor
-        if self.enough() or self.error_surfaces or executor._is_shutdown or not executor._context.ok():
-            executor._rouse()
+        if self.should_stop() or self.error_surfaces or executor._is_shutdown or not executor._context.ok():
+            executor._wake_spinner()
             return False
         return True
 
-    def _run(self, started: Started, worker: Worker) -> None:
+    def _run(self, started: StartedWork, worker: Worker) -> None:
         try:
             self._runner.run(started)
-        except Exception as error:  # noqa: BLE001 -- kept for the thread that spins
+        except Exception as error:  # noqa: BLE001 -- kept for the spinning thread
             with self._lock:
                 self.keep(error)
-                # Who started the worker has been waiting for it, and only now looks for errors, unless the
-                # worker has taken over what others were called for before.
+                # The spinning thread waited for the worker that it started, and checks errors, unless that
+                # worker has taken over work that others were called for before.
                 self.error_surfaces |= worker.began_in == self._clock.turn and not self._claimed()
         except (KeyboardInterrupt, SystemExit):
-            return  # lost, as in rclpy: a pool's thread has nobody to tell
+            return  # lost, as in rclpy: a thread of a pool ends silently
         finally:
             worker.began_in = -1
 
     def raise_surfacing(self) -> None:
-        """Raise the oldest exception of a callback, if one is due to surface."""
+        """Raise the oldest exception of a callback, if one is due."""
         with self._lock:
             if not self.error_surfaces:
                 return
@@ -254,35 +254,35 @@ class WorkerPool:
         raise error
 
     def dismiss(self) -> None:
-        """Let every worker end once it has nothing to do."""
+        """Let every worker end once it is idle."""
         with self._lock:
             self._dismissed = True
             for worker in self._workers:
                 worker.signal.set()
 
     def _finish(self) -> None:
-        """Wait for what is begun or queued, as Python does for a pool once the main thread has ended."""
+        """Wait for started and queued work, as Python does for a pool once the main thread has ended."""
         if self._queue or len(self._idle) < len(self._workers):
             self.dismiss()
             self.wait_for_end()
 
     def _leave(self) -> None:
-        """A worker has nothing more to do; whoever waits for the end of the last goes on."""
+        """A worker ends; the last one wakes the threads that wait for the end of the pool."""
         self._clock.end_thread()
         with self._lock:
-            self._living -= 1
-            if self._living == 0:
+            self._alive_workers -= 1
+            if self._alive_workers == 0:
                 for signal in self._end_signals:
                     signal.set()
 
     def wait_for_end(self) -> None:
-        """Wait until every worker's thread is gone, after ``dismiss``; a worker itself waits for nobody."""
+        """Wait until all worker threads have ended, after ``dismiss``. On a worker itself, return at once."""
         if any(worker.thread is threading.current_thread() for worker in self._workers):
             return
         ended = self._clock.auto_reset_event()
         with self._lock:
             self._end_signals.append(ended)
-            if self._living == 0:
+            if self._alive_workers == 0:
                 ended.set()
         if ended.wait(None):
             for worker in self._workers:

@@ -1,1 +1,1 @@
-"""Durations, points in time and the types of clocks."""
+"""Durations, times and the types of clocks."""

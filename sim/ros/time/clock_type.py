@@ -1,10 +1,10 @@
-"""The kinds of clock that ROS 2 knows."""
+"""The types of clocks."""
 
 from enum import IntEnum
 
 
 class ClockType(IntEnum):
-    """Which clock a time belongs to."""
+    """The type of a clock, or of the clock of a time."""
 
     UNINITIALIZED = 0
     ROS_TIME = 1

@@ -1,23 +1,25 @@
-"""Lengths of time, as rclpy writes them."""
+"""rclpy's ``Duration``."""
 
 from __future__ import annotations
 
+from functools import total_ordering
 from typing import Any
 
 _NANOSECONDS = 1_000_000_000
 _LIMIT = 2**63
 
 
+@total_ordering
 class Duration:
     """A length of time in whole nanoseconds; may be negative. Immutable, ordered, hashable.
 
-    It equals nothing but durations.
+    A duration equals only durations.
     """
 
     __slots__ = ("_nanoseconds",)
 
     def __init__(self, *, seconds: int | float = 0, nanoseconds: int = 0) -> None:
-        # Not cut to nothing if positive: a loop that sleeps for what is left would never end on virtual time.
+        # A positive length is at least 1 ns: a loop that sleeps for the rest would never end on virtual time.
         total = (int(seconds * _NANOSECONDS) or int(seconds > 0)) + int(nanoseconds)
         if not -_LIMIT <= total < _LIMIT:
             raise OverflowError("Total nanoseconds value is too large to store in C duration.")
@@ -49,23 +51,8 @@ class Duration:
             return self._nanoseconds < other._nanoseconds
         return NotImplemented
 
-    def __le__(self, other: Duration) -> bool:
-        if isinstance(other, Duration):
-            return self._nanoseconds <= other._nanoseconds
-        return NotImplemented
-
-    def __gt__(self, other: Duration) -> bool:
-        if isinstance(other, Duration):
-            return self._nanoseconds > other._nanoseconds
-        return NotImplemented
-
-    def __ge__(self, other: Duration) -> bool:
-        if isinstance(other, Duration):
-            return self._nanoseconds >= other._nanoseconds
-        return NotImplemented
-
     def to_msg(self) -> Any:
-        """The same as a builtin_interfaces/msg/Duration."""
+        """Convert it to a builtin_interfaces/msg/Duration."""
         from sim.interfaces import message
 
         seconds, nanoseconds = divmod(self._nanoseconds, _NANOSECONDS)
@@ -73,7 +60,7 @@ class Duration:
 
     @classmethod
     def from_msg(cls, msg: Any) -> Duration:
-        """From a builtin_interfaces/msg/Duration; TypeError for anything else."""
+        """Make a duration from a builtin_interfaces/msg/Duration; TypeError for anything else."""
         from sim.interfaces import message
 
         if not isinstance(msg, message("builtin_interfaces", "Duration")):

@@ -1,7 +1,8 @@
-"""Points in time, as rclpy writes them."""
+"""rclpy's ``Time``."""
 
 from __future__ import annotations
 
+from functools import total_ordering
 from typing import Any, overload
 
 from sim.ros.time.clock_type import ClockType
@@ -11,10 +12,11 @@ _NANOSECONDS = 1_000_000_000
 _LIMIT = 2**63
 
 
+@total_ordering
 class Time:
     """A point in time on one kind of clock, in whole nanoseconds. Immutable, ordered, hashable.
 
-    Comparing it with a time of another kind of clock is a TypeError; it equals nothing but times.
+    Comparing times of two kinds of clock raises TypeError. A time equals only times.
     """
 
     __slots__ = ("_clock_type", "_nanoseconds")
@@ -46,11 +48,11 @@ class Time:
 
     @property
     def _time_handle(self) -> Time:
-        """What ClockEvent wants of it: the time itself."""
+        """The time itself, by the name that programs hand to ClockEvent."""
         return self
 
     def seconds_nanoseconds(self) -> tuple[int, int]:
-        """Whole seconds, and the nanoseconds beyond them."""
+        """Whole seconds, and the remaining nanoseconds."""
         return divmod(self._nanoseconds, _NANOSECONDS)
 
     def __repr__(self) -> str:
@@ -82,9 +84,9 @@ class Time:
             return Time(nanoseconds=self._nanoseconds - other.nanoseconds, clock_type=self._clock_type)
         return NotImplemented
 
-    def _same_clock(self, other: Time, deed: str) -> int:
+    def _same_clock(self, other: Time, action: str) -> int:
         if self._clock_type != other._clock_type:
-            raise TypeError(f"Can't {deed} with different clock types")
+            raise TypeError(f"Can't {action} with different clock types")
         return other._nanoseconds
 
     def __eq__(self, other: object) -> bool:
@@ -97,23 +99,8 @@ class Time:
             return self._nanoseconds < self._same_clock(other, "compare times")
         return NotImplemented
 
-    def __le__(self, other: Time) -> bool:
-        if isinstance(other, Time):
-            return self._nanoseconds <= self._same_clock(other, "compare times")
-        return NotImplemented
-
-    def __gt__(self, other: Time) -> bool:
-        if isinstance(other, Time):
-            return self._nanoseconds > self._same_clock(other, "compare times")
-        return NotImplemented
-
-    def __ge__(self, other: Time) -> bool:
-        if isinstance(other, Time):
-            return self._nanoseconds >= self._same_clock(other, "compare times")
-        return NotImplemented
-
     def to_msg(self) -> Any:
-        """The same as a builtin_interfaces/msg/Time."""
+        """Convert it to a builtin_interfaces/msg/Time."""
         from sim.interfaces import message
 
         seconds, nanoseconds = self.seconds_nanoseconds()
@@ -121,7 +108,7 @@ class Time:
 
     @classmethod
     def from_msg(cls, msg: Any, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """From a builtin_interfaces/msg/Time; TypeError for anything else."""
+        """Make a time from a builtin_interfaces/msg/Time; TypeError for anything else."""
         from sim.interfaces import message
 
         if not isinstance(msg, message("builtin_interfaces", "Time")):

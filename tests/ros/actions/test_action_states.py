@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from sim.interfaces import message, service
-from sim.ros.actions.cancelling import ReturnCode, goals_meant
+from sim.ros.actions.cancelling import CancelReturnCode, goals_to_cancel
 from sim.ros.actions.goal_states import TERMINAL, GoalEvent, GoalState, next_state
 from sim.ros.exceptions import RCLError
 
@@ -23,7 +23,7 @@ def test_states_are_numbered_as_in_the_message() -> None:
 
 def test_return_codes_are_those_of_the_service() -> None:
     codes = service("action_msgs", "CancelGoal").Response
-    assert [int(code) for code in ReturnCode] == [
+    assert [int(code) for code in CancelReturnCode] == [
         codes.ERROR_NONE,
         codes.ERROR_REJECTED,
         codes.ERROR_UNKNOWN_GOAL_ID,
@@ -78,19 +78,19 @@ GOALS = [
 @pytest.mark.parametrize(
     ("number", "second", "found", "code"),
     [
-        (0, 0, [1, 2, 3], ReturnCode.NONE),
-        (2, 0, [2], ReturnCode.NONE),
-        (0, 20, [1, 2], ReturnCode.NONE),
-        (3, 10, [1, 3], ReturnCode.NONE),
-        (9, 0, [], ReturnCode.UNKNOWN_GOAL_ID),
-        (4, 0, [], ReturnCode.GOAL_TERMINATED),
-        (5, 0, [], ReturnCode.GOAL_TERMINATED),
-        (0, 5, [], ReturnCode.NONE),
+        (0, 0, [1, 2, 3], CancelReturnCode.NONE),
+        (2, 0, [2], CancelReturnCode.NONE),
+        (0, 20, [1, 2], CancelReturnCode.NONE),
+        (3, 10, [1, 3], CancelReturnCode.NONE),
+        (9, 0, [], CancelReturnCode.UNKNOWN_GOAL_ID),
+        (4, 0, [], CancelReturnCode.GOAL_TERMINATED),
+        (5, 0, [], CancelReturnCode.GOAL_TERMINATED),
+        (0, 5, [], CancelReturnCode.NONE),
     ],
 )
 def test_a_cancel_request_means_a_goal_a_time_both_or_all(
-    number: int, second: int, found: list[int], code: ReturnCode
+    number: int, second: int, found: list[int], code: CancelReturnCode
 ) -> None:
-    goals, answer = goals_meant(_info(number, second), GOALS)
+    goals, answer = goals_to_cancel(_info(number, second), GOALS)
     assert [int(goal.info.goal_id.uuid[-1]) for goal in goals] == found
     assert answer is code

@@ -14,10 +14,12 @@ from sim.ros.exceptions import (
     NameValidationException,
 )
 from sim.ros.naming.expand_topic_name import expand_topic_name
-from sim.ros.naming.validate_full_topic_name import validate_full_topic_name
-from sim.ros.naming.validate_namespace import validate_namespace
-from sim.ros.naming.validate_node_name import validate_node_name
-from sim.ros.naming.validate_topic_name import validate_topic_name
+from sim.ros.naming.validation import (
+    validate_full_topic_name,
+    validate_namespace,
+    validate_node_name,
+    validate_topic_name,
+)
 from sim.ros.node.node import Node
 from sim.ros.rclpy._naming.topic_or_service_is_hidden import topic_or_service_is_hidden
 from tests.support.simulation import simulate

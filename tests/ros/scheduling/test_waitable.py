@@ -232,13 +232,13 @@ def test_a_node_without_waitables_is_not_asked() -> None:
         flag = Flag(node.default_callback_group, [])
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        assert not executor._asks_waitables
+        assert not executor._polls_waitables
         asks = []
         changes = (node.add_waitable, node.remove_waitable, node.add_waitable)
         for change in changes:
             change(flag)
-            asks.append(executor._asks_waitables)
+            asks.append(executor._polls_waitables)
         executor.remove_node(node)
-        assert [*asks, executor._asks_waitables] == [True, False, True, False]
+        assert [*asks, executor._polls_waitables] == [True, False, True, False]
 
     simulate(program)

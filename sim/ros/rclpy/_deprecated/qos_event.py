@@ -20,24 +20,6 @@ from sim.ros.entities.event_handler import (
     UnsupportedEventTypeError,
 )
 
-__all__ = [
-    "PublisherEventCallbacks",
-    "QoSEventHandler",
-    "QoSLivelinessChangedInfo",
-    "QoSLivelinessLostInfo",
-    "QoSMessageLostInfo",
-    "QoSOfferedDeadlineMissedInfo",
-    "QoSRequestedDeadlineMissedInfo",
-    "QoSOfferedIncompatibleQoSInfo",
-    "QoSPublisherEventType",
-    "QoSPublisherMatchedInfo",
-    "QoSRequestedIncompatibleQoSInfo",
-    "QoSSubscriptionEventType",
-    "QoSSubscriptionMatchedInfo",
-    "SubscriptionEventCallbacks",
-    "UnsupportedEventTypeError",
-]
-
 QoSEventHandler = EventHandler
 
 warnings.warn(

@@ -10,7 +10,7 @@ del TimerInfo  # noqa: F821 -- it came with the star
 
 
 def __getattr__(name: str) -> Any:
-    """``TimerInfo``, in releases that have it."""
+    """Return ``TimerInfo`` in releases that have it."""
     if name == "TimerInfo" and current_host().profile.gives_timer_info:
         return timer.TimerInfo
     raise AttributeError(f"module 'rclpy.timer' has no attribute {name!r}")

@@ -1,4 +1,4 @@
-"""Waiting for one message of a topic."""
+"""Waits for one message of a topic."""
 
 from __future__ import annotations
 
@@ -9,30 +9,31 @@ from sim.ros.entities.subscription import Subscription
 from sim.ros.entities.type_support import check_is_valid_msg_type
 from sim.ros.middleware.delivery import Delivery
 from sim.ros.qos.qos import QoSProfile, as_profile
+from sim.ros.scheduling.entity import never_called
 
 if TYPE_CHECKING:
     from sim.ros.node.node import Node
 
 
 class _AwaitedMessage(Subscription):
-    """A subscription that no executor serves: whoever waits takes the message."""
+    """A subscription that no executor serves: the waiting thread takes the message."""
 
     traced = False
 
     def __init__(self, node: Node, msg_type: type, topic: str, qos_profile: QoSProfile) -> None:
         name = node.resolve_topic_name(topic)
         group = node.default_callback_group
-        super().__init__(node, msg_type, name, _ignore, group, qos_profile, topic=topic)
+        super().__init__(node, msg_type, name, never_called, group, qos_profile, topic=topic)
         self.handed_out = True
         self.arrived = node.context.host.clock.auto_reset_event()
 
     def deliver(self, delivery: Delivery) -> None:
-        """A message arrived: whoever waits goes on."""
+        """Queue a message, and wake the waiting thread."""
         super().deliver(delivery)
         self.wake()
 
     def wake(self) -> None:
-        """Let whoever waits look."""
+        """Wake the waiting thread."""
         self.arrived.set()
 
 
@@ -44,13 +45,13 @@ def wait_for_message(
     qos_profile: QoSProfile | int = 1,
     time_to_wait: int | float = -1,
 ) -> tuple[bool, Any]:
-    """Wait for a message of a topic: True and the message; False and None after ``time_to_wait`` seconds.
+    """Wait for a message: return True and the message, or False and None after ``time_to_wait`` seconds.
 
-    Nobody needs to spin the node. A negative time waits until a message comes or the context ends.
+    The node need not be spun. A negative time waits until a message arrives or the context ends.
 
     Raises:
         InvalidTopicNameException: the topic's name breaks the rules.
-        AttributeError, RuntimeError: ``msg_type`` is no message class.
+        AttributeError, RuntimeError: ``msg_type`` is not a message class.
     """
     check_is_valid_msg_type(msg_type)
     host = node.context.host
@@ -67,7 +68,3 @@ def wait_for_message(
     finally:
         awaited.destroy()
     return (False, None) if taken is None else (True, taken.data)
-
-
-def _ignore(_message: object) -> None:
-    """Stands where a callback is wanted; it is never called."""

@@ -1,3 +1,4 @@
 """``rclpy.validate_namespace``, as programs import it."""
 
-from sim.ros.naming.validate_namespace import *
+from sim.ros.exceptions import InvalidNamespaceException
+from sim.ros.naming.validation import validate_namespace

@@ -1,3 +1,4 @@
 """``rclpy.validate_node_name``, as programs import it."""
 
-from sim.ros.naming.validate_node_name import *
+from sim.ros.exceptions import InvalidNodeNameException
+from sim.ros.naming.validation import validate_node_name

@@ -1,3 +1,4 @@
 """``rclpy.validate_parameter_name``, as programs import it."""
 
-from sim.ros.naming.validate_parameter_name import *
+from sim.ros.exceptions import InvalidParameterException
+from sim.ros.naming.validation import validate_parameter_name

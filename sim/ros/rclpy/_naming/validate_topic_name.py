@@ -1,3 +1,4 @@
 """``rclpy.validate_topic_name``, as programs import it."""
 
-from sim.ros.naming.validate_topic_name import *
+from sim.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException
+from sim.ros.naming.validation import validate_topic_name

@@ -1,1 +1,1 @@
-"""Names that programs import from rclpy's inside."""
+"""``rclpy.impl``, as programs import it."""

@@ -1,4 +1,4 @@
-"""rclpy's compiled part, under the name by which rclpy's own modules know it."""
+"""``rclpy.impl.implementation_singleton``, as programs import it."""
 
 from sim.ros.internals import compiled as rclpy_implementation
 

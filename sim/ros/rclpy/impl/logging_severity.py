@@ -1,4 +1,4 @@
-"""The severities of lines, where rclpy keeps them."""
+"""``rclpy.impl.logging_severity``, as programs import it."""
 
 from sim.ros.logging.logger import LoggingSeverity
 

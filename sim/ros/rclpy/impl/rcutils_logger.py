@@ -1,4 +1,4 @@
-"""The class of loggers and what holds back their lines, where rclpy keeps them."""
+"""``rclpy.impl.rcutils_logger``, as programs import it."""
 
 from sim.ros.logging.filters import (
     LoggingFilter,

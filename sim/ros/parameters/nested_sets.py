@@ -1,4 +1,4 @@
-"""Notices what an on-set callback sets in vain: a parameter that is being set on the same thread."""
+"""Detects on-set callbacks that set a parameter which is being set on the same thread: that has no effect."""
 
 from __future__ import annotations
 
@@ -8,25 +8,25 @@ from contextlib import contextmanager
 
 
 class _Thread(threading.local):
-    """The names of what a thread is setting, while callbacks are asked about it."""
+    """The names of the parameters that a thread is setting, during its on-set callbacks."""
 
     names: frozenset[str] = frozenset()
 
 
-class Overruled:
-    """Calls ``tell`` once for each name that is set while it is being set. Thread-safe."""
+class NestedSetDetector:
+    """Calls ``tell`` once for each parameter that is set while it is being set. Thread-safe."""
 
     def __init__(self, tell: Callable[[str], None]) -> None:
         self._tell = tell
         self._thread = _Thread()
-        self._told: set[str] = set()
+        self._listeners: set[str] = set()
 
     @contextmanager
     def setting(self, names: Iterable[str]) -> Iterator[None]:
-        """While callbacks are asked whether these may be set."""
+        """The context in which the on-set callbacks for these parameters run."""
         outer, inner = self._thread.names, frozenset(names)
-        for name in sorted((inner & outer) - self._told):
-            self._told.add(name)
+        for name in sorted((inner & outer) - self._listeners):
+            self._listeners.add(name)
             self._tell(name)
         self._thread.names = outer | inner
         try:
