@@ -12,8 +12,8 @@ class Inbox:
     """A queue of actions for the thread with the baton. Any thread may call ``put`` and ``ring``."""
 
     def __init__(self) -> None:
-        self.waiting: deque[Callable[[], None]] = deque()
-        """The queued actions."""
+        self.waiting: deque[tuple[Callable[[], None], bool]] = deque()
+        """The queued actions, each with whether it steers."""
         self._bell = _allocate_lock()
         self._bell.acquire()
         self.rests = False
@@ -21,7 +21,7 @@ class Inbox:
 
     def put(self, action: Callable[[], None], *, steers: bool = False) -> None:
         """Queue an action; an action that ``steers`` also runs while time is stopped within a moment."""
-        self.waiting.append(_Steering(action) if steers else action)
+        self.waiting.append((action, steers))
         self.ring()
 
     def ring(self) -> None:
@@ -41,17 +41,18 @@ class Inbox:
     def run_all(self) -> None:
         """Run all queued actions."""
         while self.waiting:
-            self.waiting.popleft()()
+            action, _ = self.waiting.popleft()
+            action()
 
     def run_steering(self, still: Callable[[], bool]) -> None:
         """Run the steering actions while ``still`` holds; the others keep their order."""
         others = []
         while self.waiting and still():
-            action = self.waiting.popleft()
-            if isinstance(action, _Steering):
+            action, steers = self.waiting.popleft()
+            if steers:
                 action()
             else:
-                others.append(action)
+                others.append((action, steers))
         self.waiting.extendleft(reversed(others))
 
 
@@ -72,13 +73,3 @@ class Inputs:
                 self.scheduled.popleft()
                 return action
         return self.given.popleft() if self.given else None
-
-
-class _Steering:
-    """An action that does not wait for the end of a moment."""
-
-    def __init__(self, action: Callable[[], None]) -> None:
-        self._action = action
-
-    def __call__(self) -> None:
-        self._action()

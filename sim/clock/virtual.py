@@ -10,7 +10,7 @@ and the running thread may be preempted at a switch point, before or after it us
 
 import threading
 from collections import deque
-from collections.abc import Callable, Generator, Hashable, Set
+from collections.abc import Callable, Generator, Hashable
 from contextlib import contextmanager
 
 from sim.clock.schedule import NO_ACCESSES, Accesses, Schedule
@@ -50,7 +50,8 @@ class VirtualClock:
         self.time = VirtualTime(speed, self._ready.append)
         self._deadlines = self.time.deadlines
         self._recesses = self.time.recesses
-        self._threads: set[VirtualThread] = set()
+        self.threads: set[VirtualThread] = set()
+        """The threads that live on the clock. Only the thread that has the baton may use the set."""
         self.on_lock_wait: Callable[[VirtualThread], None] = lambda _thread: None
         """Called when a thread starts to wait without a timeout for a lock or for the end of a thread.
 
@@ -61,7 +62,7 @@ class VirtualClock:
         self.current = VirtualThread("MainThread")
         self.current.is_main = True
         self.current.ident = _get_ident()
-        self._threads.add(self.current)
+        self.threads.add(self.current)
         if explored_from:
             self._schedule = Schedule()
             self.call_at(explored_from, self._explore)
@@ -74,11 +75,6 @@ class VirtualClock:
     def runnable(self) -> int:
         """How many threads can run as soon as the running thread waits."""
         return len(self._ready)
-
-    @property
-    def threads(self) -> Set[VirtualThread]:
-        """The threads that live on the clock. Only the thread that has the baton may read them."""
-        return self._threads
 
     def sleep(self, duration: int) -> None:
         """Let ``duration`` virtual nanoseconds pass; 0 lets every other thread that can run go first."""
@@ -102,7 +98,7 @@ class VirtualClock:
     def adopt(self, target: Callable[[], None], name: str) -> Callable[[], None]:
         """Register one more thread, and return the function that this thread has to run."""
         virtual = VirtualThread(name)
-        self._threads.add(virtual)
+        self.threads.add(virtual)
         self._ready.append(virtual)
         self.record_use(virtual)
 
@@ -200,7 +196,7 @@ class VirtualClock:
         """Raise KeyboardInterrupt in a thread's present or next wait. Thread-safe."""
 
         def interrupt() -> None:
-            for each in self._threads:
+            for each in self.threads:
                 if each.ident == thread:
                     each.interrupted = True
                     self.unpark(each)
@@ -226,9 +222,9 @@ class VirtualClock:
         raise KeyboardInterrupt
 
     def _retire(self, thread: VirtualThread) -> None:
-        self._threads.discard(thread)
+        self.threads.discard(thread)
         self._schedule.forget(thread)
-        if self._threads:
+        if self.threads:
             self._pass_baton(self._next_thread())
 
     def _hand_on(self, me: VirtualThread) -> None:

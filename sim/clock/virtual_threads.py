@@ -1,7 +1,5 @@
 """Threads that live on virtual time, what they wait for, and how a thread is started beside that time."""
 
-from __future__ import annotations
-
 import threading
 from types import CodeType
 from typing import Any, Protocol

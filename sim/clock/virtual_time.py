@@ -34,6 +34,7 @@ class VirtualTime:
         """Virtual nanoseconds since the run began."""
         self.deadlines = Deadlines()
         self.recesses = Recesses()
+        """Its ``steps`` count the waits: a run that neither takes steps nor ``rests`` is stuck."""
         self.pace = Pace(speed)
         self._resume_thread = resume_thread
         self._inbox = Inbox()
@@ -49,21 +50,6 @@ class VirtualTime:
         """Whether outside work is going on, so that time passes as real time; it must not wait."""
         self.in_moment = False
         """Whether time is stopped within a moment; then only ``steer`` reaches the run."""
-
-    @property
-    def idles(self) -> bool:
-        """Whether most waits in this moment, up to its last recess, had a length of 0."""
-        return self.recesses.idles
-
-    @property
-    def recess(self) -> int:
-        """The number of the recess that the run is in; 0 outside of a recess."""
-        return self.recesses.current
-
-    @property
-    def steps(self) -> int:
-        """How often a thread waited. A run that neither takes steps nor rests is stuck."""
-        return self.recesses.steps
 
     @property
     def rests(self) -> bool:
@@ -189,7 +175,7 @@ class VirtualTime:
         inputs = self._inputs
         if not (inputs.given or inputs.scheduled):
             return False
-        action = inputs.take(self.now, self.recess)
+        action = inputs.take(self.now, self.recesses.current)
         if action is not None:
             action()
         return action is not None

@@ -99,7 +99,7 @@ class CommandLoop:
 
     def _carry_out(self, command: commands.WorldCommand) -> None:
         if not isinstance(command, commands.CompleteLine):
-            recess = 0 if self._virtual is None else self._virtual.time.recess
+            recess = 0 if self._virtual is None else self._virtual.time.recesses.current
             self._record(InputGiven(self._clock.now(), commands.input_text(command), recess))
         match command:
             case commands.CallService(name=name, data=data):

@@ -1,16 +1,12 @@
 """The structures that rosidl makes from an action's goal, result and feedback."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 from attrs import frozen
 from rosbags.interfaces import Nodetype
+from rosbags.interfaces.typing import Fielddefs, FieldDesc
 
 from sim.interfaces.interface_definition import Definition
-
-if TYPE_CHECKING:
-    from rosbags.interfaces.typing import Fielddefs, FieldDesc
 
 _GOAL_ID: Final[tuple[str, FieldDesc]] = ("goal_id", (Nodetype.NAME, "unique_identifier_msgs/msg/UUID"))
 _STAMP: Final[tuple[str, FieldDesc]] = ("stamp", (Nodetype.NAME, "builtin_interfaces/msg/Time"))

@@ -1,7 +1,5 @@
 """Builds a message class from its definition."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from operator import attrgetter
 from typing import Any

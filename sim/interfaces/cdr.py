@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 import numpy as np
 from rosbags.interfaces import Nodetype
+from rosbags.interfaces.typing import Fielddefs, FieldDesc
 
 from sim.interfaces.base import Interface, Message, assemble
 from sim.interfaces.cdr_writing import Encode, encoder_of
@@ -17,7 +18,6 @@ from sim.interfaces.interface_definition import FILLER_FIELD
 from sim.interfaces.sequences import typecode
 
 if TYPE_CHECKING:
-    from rosbags.interfaces.typing import Fielddefs, FieldDesc
     from rosbags.typesys.store import Typestore
 
 MessageT = TypeVar("MessageT", bound=Message)

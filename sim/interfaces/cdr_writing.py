@@ -5,17 +5,16 @@ texts and sequences before them, so every such run of numbers has a format for e
 offsets. Source: OMG's CDR with alignments up to 8, as Fast CDR writes it for ROS 2.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from operator import attrgetter
 from struct import Struct, calcsize
-from typing import TYPE_CHECKING, Any, TypeAlias, cast
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 from attrs import frozen
 
+from sim.interfaces.base import Interface, Message
 from sim.interfaces.field_types import (
     AbstractWString,
     Array,
@@ -26,9 +25,6 @@ from sim.interfaces.field_types import (
     SequenceType,
 )
 from sim.interfaces.sequences import TYPECODES, typecode
-
-if TYPE_CHECKING:
-    from sim.interfaces.base import Interface, Message
 
 Encode: TypeAlias = Callable[[Any], bytes]
 _Write: TypeAlias = Callable[[Any, bytearray], None]

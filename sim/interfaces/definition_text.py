@@ -1,17 +1,13 @@
 """Writes definitions in the ``.msg`` notation."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 from rosbags.interfaces import Nodetype
+from rosbags.interfaces.typing import FieldDesc
 
 from sim.interfaces.base import Message
 from sim.interfaces.interface_definition import Definition
-
-if TYPE_CHECKING:
-    from rosbags.interfaces.typing import FieldDesc
 
 
 def definition(cls: type[Message]) -> str:

@@ -1,7 +1,5 @@
 """Rules for a single value of a field: checking, default and copy. The error texts are rosidl's."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Collection
 from functools import cache
 from math import inf

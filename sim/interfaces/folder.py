@@ -1,7 +1,5 @@
 """Reads ``.msg``, ``.srv`` and ``.action`` files from a folder of interface packages."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path

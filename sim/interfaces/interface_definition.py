@@ -1,13 +1,12 @@
 """The content of a ``.msg`` file, or of a part of a ``.srv`` or ``.action`` file."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
+from typing import Literal, Protocol, TypeAlias
 
 from attrs import field, frozen
 from rosbags.interfaces import Nodetype
+from rosbags.interfaces.typing import BaseDesc, Constdefs, Fielddefs, FieldDesc, NameDesc
 
 from sim.interfaces.field_types import (
     Array,
@@ -22,9 +21,6 @@ from sim.interfaces.field_types import (
     UnboundedString,
     UnboundedWString,
 )
-
-if TYPE_CHECKING:
-    from rosbags.interfaces.typing import BaseDesc, Constdefs, Fielddefs, FieldDesc, NameDesc
 
 Kind: TypeAlias = Literal["msg", "srv", "action"]
 

@@ -1,7 +1,5 @@
 """The messages of ROS 2 Jazzy's standard packages, as defined by the rosbags library."""
 
-from __future__ import annotations
-
 import builtins
 from collections.abc import Mapping, Sequence
 from functools import cache
@@ -9,13 +7,12 @@ from importlib.machinery import SourceFileLoader
 from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType, SimpleNamespace
-from typing import TYPE_CHECKING, cast
+from typing import cast
+
+from rosbags.interfaces.typing import Typesdict
 
 from sim.interfaces.definition_text import message_text
 from sim.interfaces.interface_definition import FILLER_FIELD, Definition, Kind
-
-if TYPE_CHECKING:
-    from rosbags.interfaces.typing import Typesdict
 
 DEFAULTS: Mapping[str, Mapping[str, object]] = {
     "geometry_msgs/msg/Quaternion": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},

@@ -8,8 +8,6 @@ Raises:
     DefinitionError: the definition file cannot be read.
 """
 
-from __future__ import annotations
-
 import re
 from functools import cache
 from pathlib import Path

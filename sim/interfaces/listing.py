@@ -1,7 +1,5 @@
 """Interfaces as text, as the ``ros2 interface`` commands print them."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from typing import get_args
 

@@ -1,7 +1,5 @@
 """Parses the constants and default values of a definition, as rosidl_adapter does."""
 
-from __future__ import annotations
-
 import re
 from typing import Final
 

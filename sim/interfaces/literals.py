@@ -1,7 +1,5 @@
 """Converts the constants and default values of a definition to Python values."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from rosbags.interfaces import Nodetype

@@ -1,20 +1,16 @@
 """Parses the ``.msg`` notation line by line, by the rules of ROS 2's rosidl_adapter."""
 
-from __future__ import annotations
-
 import keyword
 import re
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any, Final, NamedTuple, TypeAlias, cast
+from typing import Any, Final, NamedTuple, TypeAlias, cast
 
 from rosbags.interfaces import Nodetype
+from rosbags.interfaces.typing import BaseDesc, Constdefs, Fielddefs, FieldDesc, NameDesc
 
 from sim.interfaces.field_types import INTEGER_LIMITS
 from sim.interfaces.interface_definition import Definition, DefinitionError, Kind
 from sim.interfaces.literal_text import literal_of
-
-if TYPE_CHECKING:
-    from rosbags.interfaces.typing import BaseDesc, Constdefs, Fielddefs, FieldDesc, NameDesc
 
 _PRIMITIVES: Final = frozenset(
     ("bool", "byte", "char", "float32", "float64", "string", "wstring", *INTEGER_LIMITS)

@@ -1,7 +1,5 @@
 """Builds the classes of services and actions, which contain the classes of their parts."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from sim.interfaces.action_parts import ActionDefinition

@@ -1,7 +1,5 @@
 """Finds message, service and action classes by name, and builds each class at its first use."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from difflib import get_close_matches
 from threading import RLock
@@ -75,7 +73,9 @@ class Registry:
 
     def message(self, package: str, name: str) -> type[Message]:
         """Return a message class; the first call builds it and the classes that it contains."""
-        return self._built(self._messages, f"{package}/msg/{name}", lambda: self._new_message(package, name))
+        return self._built(
+            self._messages, f"{package}/msg/{name}", lambda: self._build(*self._parts(package, "msg", name))
+        )
 
     def service(self, package: str, name: str) -> ServiceType:
         """Return a service class; the first call builds it with request and response."""
@@ -106,7 +106,11 @@ class Registry:
     def _build_event(self, owner: ServiceType | ActionType, type_name: str) -> None:
         services = {
             f"{service.__type_name__}_Event": service
-            for service in ((owner,) if isinstance(owner, ServiceType) else _services_of(owner))
+            for service in (
+                (owner,)
+                if isinstance(owner, ServiceType)
+                else (owner.Impl.SendGoalService, owner.Impl.GetResultService)
+            )
         }
         if type_name in services:
             self._built(self._messages, type_name, lambda: self._build(event_definition(services[type_name])))
@@ -119,9 +123,6 @@ class Registry:
             if type_name not in classes:
                 classes[type_name] = build()
             return classes[type_name]
-
-    def _new_message(self, package: str, name: str) -> type[Message]:
-        return self._build(*self._parts(package, "msg", name))
 
     def _new_service(self, package: str, name: str) -> ServiceType:
         request, response = self._parts(package, "srv", name)
@@ -186,10 +187,6 @@ def _owner(cls: type[Message]) -> str:
     definition = cls.__interface__.definition
     name = definition.name if definition.kind == "msg" else owner_of(definition.name)
     return f"{definition.package}/{definition.kind}/{name}"
-
-
-def _services_of(action: ActionType) -> tuple[ServiceType, ...]:
-    return action.Impl.SendGoalService, action.Impl.GetResultService
 
 
 def _a(noun: str) -> str:

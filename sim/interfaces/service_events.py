@@ -1,16 +1,10 @@
 """The message that reports one step of a service call: ``std_srvs/srv/SetBool_Event`` for SetBool."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from rosbags.interfaces import Nodetype
+from rosbags.interfaces.typing import FieldDesc
 
 from sim.interfaces.base import Message, ServiceType
 from sim.interfaces.interface_definition import Definition
-
-if TYPE_CHECKING:
-    from rosbags.interfaces.typing import FieldDesc
 
 
 def event_definition(service: ServiceType) -> Definition:

@@ -1,7 +1,5 @@
 """Finds the interface packages around a learner's file."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Iterator
 from pathlib import Path

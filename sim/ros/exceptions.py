@@ -1,7 +1,5 @@
 """rclpy's exceptions, with its names and messages."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Handles, by which rclpy programs keep an entity alive while they use it."""
 
-from __future__ import annotations
-
 from typing import Any, Self
 
 from sim.ros.exceptions import InvalidHandle
@@ -21,38 +19,34 @@ class Handle:
     """
 
     def __init__(self, owner: Any) -> None:
-        self._owner = owner
-
-    @property
-    def owner(self) -> Any:
-        """The entity, node or context of this handle."""
-        return self._owner
+        self.owner = owner
+        """The entity, node, context or clock of this handle."""
 
     @property
     def pointer(self) -> int:
         """A number that identifies the owner among all living objects."""
-        return id(self._owner)
+        return id(self.owner)
 
     def destroy_when_not_in_use(self) -> None:
         """Destroy the owner."""
-        self._owner.destroy()
+        self.owner.destroy()
 
     def __enter__(self) -> Self:
         uses = self._uses()
-        if self._owner.destroyed and uses == 0:
+        if self.owner.destroyed and uses == 0:
             raise InvalidHandle(DESTROYED)
-        vars(self._owner)["_handle_uses"] = uses + 1
+        vars(self.owner)["_handle_uses"] = uses + 1
         return self
 
     def __exit__(self, *_error: object) -> None:
-        vars(self._owner)["_handle_uses"] = self._uses() - 1
+        vars(self.owner)["_handle_uses"] = self._uses() - 1
 
     def _uses(self) -> int:
-        uses: int = vars(self._owner).get("_handle_uses", 0)
+        uses: int = vars(self.owner).get("_handle_uses", 0)
         return uses
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Handle) and self._owner is other._owner
+        return isinstance(other, Handle) and self.owner is other.owner
 
     def __hash__(self) -> int:
-        return id(self._owner)
+        return id(self.owner)

@@ -33,7 +33,7 @@ def test_an_input_reaches_a_loop_that_sleeps_no_time() -> None:
     done: list[int] = []
 
     def program(clock: VirtualClock) -> None:
-        clock.time.give(lambda: done.append(clock.time.recess))
+        clock.time.give(lambda: done.append(clock.time.recesses.current))
         assert dawdle(clock, lambda: done) == WAITS_TO_RECESS
         assert clock.now() == RECESS
 
@@ -46,7 +46,7 @@ def test_every_recess_takes_one_input_so_that_its_effects_come_first() -> None:
 
     def program(clock: VirtualClock) -> None:
         for _ in range(3):
-            clock.time.give(lambda: done.append(clock.time.recess))
+            clock.time.give(lambda: done.append(clock.time.recesses.current))
         dawdle(clock, lambda: len(done) == 3)
 
     on_virtual_time(program)
@@ -59,7 +59,7 @@ def test_an_input_is_repeated_in_its_recess_and_one_of_the_end_comes_at_the_end(
 
     def program(clock: VirtualClock) -> None:
         def note(name: str) -> Callable[[], None]:
-            return lambda: done.append((name, clock.now(), clock.time.recess))
+            return lambda: done.append((name, clock.now(), clock.time.recesses.current))
 
         clock.time.schedule_input(5 + 2 * RECESS, note("third"), 3)
         clock.time.schedule_input(end, note("end"))
@@ -86,7 +86,7 @@ def test_threads_that_wake_each_other_for_ever_have_recesses_too() -> None:
                 signals[1].set()
 
         clock.start_thread(answer, "answer")
-        clock.time.give(lambda: done.append(clock.time.recess))
+        clock.time.give(lambda: done.append(clock.time.recesses.current))
         while not done:
             signals[0].set()
             signals[1].wait(None)
@@ -144,7 +144,7 @@ def test_what_waits_is_explained_in_a_recess() -> None:
     looks: list[int] = []
 
     def program(clock: VirtualClock) -> None:
-        clock.time.before_jump = lambda: looks.append(clock.time.recess)
+        clock.time.before_jump = lambda: looks.append(clock.time.recesses.current)
         for _ in range(WAITS_TO_RECESS):
             clock.sleep(0)
 
@@ -188,7 +188,7 @@ def test_a_step_in_a_moment_without_decisions_ends_in_its_recess() -> None:
 
     def program(clock: VirtualClock) -> None:
         def halted() -> None:
-            halts.append(clock.time.recess)
+            halts.append(clock.time.recesses.current)
             if len(halts) == 2:
                 over.append(True)
                 clock.time.resume()

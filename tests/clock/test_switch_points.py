@@ -54,7 +54,7 @@ def test_a_recess_is_no_place_to_switch(seed: int, monkeypatch: pytest.MonkeyPat
         def busy() -> None:
             for _ in range(60):
                 clock.sleep(0)
-                found.append(clock.time.recess)
+                found.append(clock.time.recesses.current)
 
         clock.time.before_jump = clock.switch_point
         clock.time.on_recess = lambda _: clock.switch_point()
@@ -126,10 +126,10 @@ def test_a_thread_that_ends_is_not_left_so_that_it_can_be_joined() -> None:
     def program(clock: VirtualClock) -> None:
         def end() -> None:
             clock.end_thread()
-            steps = clock.time.steps
+            steps = clock.time.recesses.steps
             for _ in range(50):
                 clock.switch_point()
-            left.append(clock.time.steps != steps)
+            left.append(clock.time.recesses.steps != steps)
 
         start_busy(clock, 2)
         for _ in range(5):

@@ -226,9 +226,9 @@ def test_only_the_thread_that_has_the_baton_lives_on_the_clock() -> None:
 
 def test_every_wait_counts_as_a_step() -> None:
     def program(clock: VirtualClock) -> None:
-        before = clock.time.steps
+        before = clock.time.recesses.steps
         clock.sleep(SECOND)
         clock.sleep(SECOND)
-        assert clock.time.steps == before + 2
+        assert clock.time.recesses.steps == before + 2
 
     on_virtual_time(program)

@@ -52,12 +52,14 @@ class Watchdog:
         _RealThread(target=self._watch, name="watchdog", daemon=True).start()
 
     def _watch(self) -> None:
-        steps, still, sentence = self._clock.time.steps, 0, ""
+        steps, still, sentence = self._clock.time.recesses.steps, 0, ""
         while True:
             self._be_back_in(_PATIENCE_WITH_C_CODE)
             _real_sleep(_LOOK)
-            still = still + 1 if self._clock.time.steps == steps and not self._clock.time.rests else 0
-            steps = self._clock.time.steps
+            still = (
+                still + 1 if self._clock.time.recesses.steps == steps and not self._clock.time.rests else 0
+            )
+            steps = self._clock.time.recesses.steps
             if still == _PATIENCE:
                 sentence = self._sentence()
                 entity = self._callback_on(self._clock.current.ident)

@@ -38,7 +38,7 @@ class StandstillDetector:
         """Take a recess; the clock calls this on the waiting thread."""
         if recess == _PATIENCE:
             self._began, self._said = _monotonic(), self._sentence()
-            if not self._told and self._clock.time.idles:
+            if not self._told and self._clock.time.recesses.idles:
                 self._told = True
                 now, kind = self._clock.now(), NoticeKind.NO_PROGRESS
                 self._record(Notice(now, Severity.WARN, self._said, kind=kind))

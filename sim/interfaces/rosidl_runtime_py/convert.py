@@ -3,8 +3,6 @@
 Only what rosidl's messages have is used, so that these can be converted, too.
 """
 
-from __future__ import annotations
-
 from array import array
 from collections import OrderedDict
 from functools import partial

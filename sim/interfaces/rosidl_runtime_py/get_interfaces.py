@@ -1,7 +1,5 @@
 """Lists interfaces; mirrors ``rosidl_runtime_py.get_interfaces``."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from typing import NoReturn, get_args
 

@@ -1,7 +1,5 @@
 """Fills a message from a dictionary; mirrors ``rosidl_runtime_py.set_message``."""
 
-from __future__ import annotations
-
 from array import array
 from collections.abc import Callable, Mapping
 from functools import partial

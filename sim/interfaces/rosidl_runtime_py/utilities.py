@@ -1,7 +1,5 @@
 """Interface classes by full name; mirrors ``rosidl_runtime_py.utilities``."""
 
-from __future__ import annotations
-
 import importlib
 from typing import Any, TypeGuard
 
@@ -24,11 +22,7 @@ def get_namespaced_type(interface_identifier: str) -> NamespacedType:
 
 
 def import_message_from_namespaced_type(message_type: NamespacedType) -> Any:
-    """Return the class of a type.
-
-    Raises:
-        ModuleNotFoundError, AttributeError: there is no such class.
-    """
+    """Return the class of a type; ModuleNotFoundError or AttributeError if there is no such class."""
     return getattr(importlib.import_module(".".join(message_type.namespaces)), message_type.name)
 
 

@@ -1,7 +1,5 @@
 """``sensor_msgs_py.point_cloud2``: point clouds as numpy arrays, and numpy arrays as point clouds."""
 
-from __future__ import annotations
-
 import array
 import sys
 from collections import namedtuple

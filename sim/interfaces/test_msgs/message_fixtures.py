@@ -1,7 +1,5 @@
 """Test messages of test_msgs: for each type an empty message and one with a value in every field."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from sim.interfaces import Message, message, names
@@ -21,11 +19,7 @@ _SEVERAL = 3
 
 
 def get_test_msg(message_name: str) -> list[Message]:
-    """Test messages of a type.
-
-    Raises:
-        NotImplementedError: test_msgs has no such message.
-    """
+    """Test messages of a type; NotImplementedError if test_msgs has no such message."""
     if message_name not in names(_PACKAGE, "msg"):
         raise NotImplementedError(f"{_PACKAGE} has no message {message_name}")
     kind = message(_PACKAGE, message_name)

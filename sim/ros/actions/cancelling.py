@@ -3,8 +3,6 @@
 Source: the comments of ``action_msgs/srv/CancelGoal``, and rcl_action.
 """
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from enum import IntEnum
 from typing import Any, Protocol, TypeVar

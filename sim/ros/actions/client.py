@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from weakref import ref
 
 from sim.ros.actions.cancelling import uuid_of
@@ -12,12 +12,10 @@ from sim.ros.actions.goal_states import TERMINAL, GoalState
 from sim.ros.actions.parts import ClientPart, SubscriptionPart
 from sim.ros.actions.waitable import ActionWaitable, await_or_execute
 from sim.ros.entities.client import Reply, wait_until_ready
+from sim.ros.node.node import Node
 from sim.ros.qos.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
-
-if TYPE_CHECKING:
-    from sim.ros.node.node import Node
-    from sim.ros.scheduling.callback_groups import CallbackGroup
-    from sim.ros.scheduling.task import Future
+from sim.ros.scheduling.callback_groups import CallbackGroup
+from sim.ros.scheduling.task import Future
 
 __all__ = ["ActionClient", "ClientGoalHandle"]
 
@@ -164,11 +162,8 @@ class ActionClient(ActionWaitable):
                 self._feedback_callbacks[uuid_of(goal_id)] = feedback_callback
             call, future = self._goal_client._send(request)
             self._goal_ids[call] = goal_id
-        future.add_done_callback(lambda _: self._answered(call))
+        future.add_done_callback(lambda _: self._goal_ids.pop(call, None))
         return future
-
-    def _answered(self, call: int) -> None:
-        self._goal_ids.pop(call, None)
 
     def _cancel_goal(self, goal_handle: ClientGoalHandle) -> Any:
         return self._cancel_client.wait_for(self._cancel_goal_async(goal_handle))
@@ -186,11 +181,9 @@ class ActionClient(ActionWaitable):
         _check_is_goal_handle(goal_handle)
         request = self._action_type.Impl.GetResultService.Request(goal_id=goal_handle.goal_id)
         future = self._result_client.call_async(request)
-        future.add_done_callback(lambda _: self._no_more_feedback(goal_handle.goal_id))
+        key = uuid_of(goal_handle.goal_id)
+        future.add_done_callback(lambda _: self._feedback_callbacks.pop(key, None))
         return future
-
-    def _no_more_feedback(self, goal_id: Any) -> None:
-        self._feedback_callbacks.pop(uuid_of(goal_id), None)
 
     # Receiving
 

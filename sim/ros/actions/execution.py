@@ -5,20 +5,16 @@ shows the callback, each action server has one more entity, in a reentrant group
 everything, as if there were none.
 """
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Coroutine, Generator
 from types import coroutine
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.ros.scheduling.entity import Entity, TakenData
+from sim.ros.scheduling.executors import Executor
 from sim.trace.events import EntityKind
-
-if TYPE_CHECKING:
-    from sim.ros.node.node import Node
-    from sim.ros.scheduling.executors import Executor
 
 
 class GoalExecution(Entity):

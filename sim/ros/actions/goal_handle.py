@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from sim.ros.actions.goal_states import TERMINAL, GoalEvent, GoalState, next_state
 from sim.ros.scheduling.task import Future
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from sim.ros.actions.server import ActionServer
 
 
@@ -77,11 +76,7 @@ class ServerGoalHandle:
         self._action_server.notify_execute(self, execute_callback)
 
     def publish_feedback(self, feedback: Any) -> None:
-        """Send feedback to the clients.
-
-        Raises:
-            TypeError: the feedback does not have the action's type.
-        """
+        """Send feedback to the clients; TypeError if the feedback does not have the action's type."""
         kind = self._action_server.action_type.Feedback
         if not isinstance(feedback, kind):
             raise TypeError(f"Expected {kind}, got {type(feedback)}")

@@ -1,7 +1,5 @@
 """The ids of goals: all different, and the same in every run on virtual time."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from itertools import count
 from typing import Any

@@ -3,8 +3,6 @@
 Source: the goal state machine of ROS 2's design documents ("Actions"), and rcl_action.
 """
 
-from __future__ import annotations
-
 from enum import Enum, IntEnum
 from types import MappingProxyType
 
@@ -51,11 +49,7 @@ _TRANSITIONS = MappingProxyType(
 
 
 def next_state(state: GoalState, event: GoalEvent) -> GoalState:
-    """The state after an event.
-
-    Raises:
-        RCLError: the state does not allow the event.
-    """
+    """The state after an event; RCLError if the state does not allow the event."""
     following = _TRANSITIONS.get((state, event))
     if following is None:
         raise RCLError(

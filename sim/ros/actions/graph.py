@@ -1,12 +1,7 @@
 """Queries of the actions on the graph; an action is identified by its feedback topic."""
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from sim.ros.node.graph import NamesAndTypes
-    from sim.ros.node.node import Node
+from sim.ros.node.graph import NamesAndTypes
+from sim.ros.node.node import Node
 
 _TOPIC = "/_action/feedback"
 _TYPE = "_FeedbackMessage"

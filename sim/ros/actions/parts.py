@@ -7,6 +7,7 @@ itself, and the trace shows its queue as the waitable's.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from sim.probes.probe import Probe, SilentProbe
@@ -17,12 +18,10 @@ from sim.ros.entities.service import Service
 from sim.ros.entities.subscription import Subscription
 from sim.ros.qos.qos import QoSProfile
 from sim.ros.scheduling.entity import Entity, never_called
+from sim.ros.scheduling.task import Future
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from sim.ros.actions.waitable import ActionWaitable
-    from sim.ros.scheduling.task import Future
 
 
 _CALLS = (

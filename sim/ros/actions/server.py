@@ -1,12 +1,10 @@
 """Action servers: they accept, execute and cancel goals, and keep their results."""
 
-from __future__ import annotations
-
 import traceback
 from collections.abc import Callable
 from enum import Enum
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sim.interfaces import message
 from sim.ros.actions.cancelling import goals_to_cancel, uuid_of
@@ -15,16 +13,14 @@ from sim.ros.actions.goal_handle import ServerGoalHandle
 from sim.ros.actions.goal_states import GoalEvent, GoalState
 from sim.ros.actions.waitable import ActionWaitable, PartData, await_or_execute
 from sim.ros.exceptions import RCLError
+from sim.ros.middleware.delivery import Request
+from sim.ros.node.node import Node
 from sim.ros.qos.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
+from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import TakenData
+from sim.ros.scheduling.executors import Executor
+from sim.ros.scheduling.task import Future
 from sim.ros.scheduling.waitable import NumberOfEntities
-
-if TYPE_CHECKING:
-    from sim.ros.middleware.delivery import Request
-    from sim.ros.node.node import Node
-    from sim.ros.scheduling.callback_groups import CallbackGroup
-    from sim.ros.scheduling.executors import Executor
-    from sim.ros.scheduling.task import Future
 
 __all__ = [
     "ActionServer",

@@ -6,8 +6,6 @@ parts were added: rclpy's ``is_ready`` keeps which these are for ``take_data``. 
 from one part for each arrival (``HandleWaitableReady``).
 """
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Container
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -17,15 +15,12 @@ from sim.ros.actions.parts import ClientPart, Part, ServicePart, SubscriptionPar
 from sim.ros.entities.event_handler import PublisherEventCallbacks
 from sim.ros.entities.publisher import Publisher
 from sim.ros.exceptions import NameValidationException
+from sim.ros.node.node import Node
 from sim.ros.qos.qos import QoSProfile
-from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.callback_groups import CallbackGroup, ReentrantCallbackGroup
 from sim.ros.scheduling.entity import Entity, TakenData
 from sim.ros.scheduling.waitable import NumberOfEntities
 from sim.trace.events import EntityKind
-
-if TYPE_CHECKING:
-    from sim.ros.node.node import Node
-    from sim.ros.scheduling.callback_groups import CallbackGroup
 
 Handler = Callable[[Any], Any]
 """Handles the data of one part; may return a coroutine."""

@@ -1,23 +1,19 @@
 """rclpy's clocks: views of the run's clock, unless a program sets ROS time itself."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Protocol, Self, cast
+from typing import Any, Protocol, Self, cast
 from weakref import WeakValueDictionary
 
+from sim.clock import AutoResetEvent
 from sim.ros.clocks.jumps import SOURCE_CHANGES, ClockChange, JumpHandle, JumpThreshold, TimeJump
 from sim.ros.exceptions import NotInitializedException
 from sim.ros.handle import Handle
+from sim.ros.middleware.endpoints import ContextLifetime
 from sim.ros.middleware.host import Host, current_host
 from sim.ros.middleware.process import current_process
 from sim.ros.time.clock_type import ClockType
 from sim.ros.time.duration import Duration
 from sim.ros.time.time import Time
-
-if TYPE_CHECKING:
-    from sim.clock import AutoResetEvent
-    from sim.ros.middleware.endpoints import ContextLifetime
 
 __all__ = [
     "Clock",
@@ -190,11 +186,7 @@ class ROSClock(Clock):
         return self._override if self._active else super().now()
 
     def set_ros_time_override(self, time: Time) -> None:
-        """Set the time that the clock shows while ROS time is active.
-
-        Raises:
-            TypeError: ``time`` is not a Time.
-        """
+        """Set the time that the clock shows while ROS time is active; TypeError if ``time`` is not a Time."""
         if not isinstance(time, Time):
             raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
         override = Time(nanoseconds=time.nanoseconds, clock_type=ClockType.ROS_TIME)

@@ -3,8 +3,6 @@
 The rules are those of rcl's timers, in nanoseconds of the timer's clock.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, replace
 
 

@@ -3,8 +3,6 @@
 Source of the grammar: the ROS 2 design article "ROS command line arguments", and rcl.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field

@@ -78,7 +78,8 @@ class Context:
             self._domain_id = domain
             self._network = self.host.network_of(domain)
             active = self.process.local(_ActiveContexts)
-            active.contexts = [*_living(active), ref(self)]
+            alive = (each for each in active.contexts if (other := each()) is not None and other.ok())
+            active.contexts = [*alive, ref(self)]
         arguments.configure_logging()
 
     def _domain_of_environment(self) -> int:
@@ -100,11 +101,7 @@ class Context:
         self.try_shutdown()
 
     def get_domain_id(self) -> int:
-        """The id of the context's domain.
-
-        Raises:
-            RuntimeError: the context is not initialised.
-        """
+        """The id of the context's domain; RuntimeError if the context is not initialised."""
         if not self._initialized:
             raise RuntimeError("Context must be initialized before it can have a domain id")
         return self._domain_id
@@ -176,7 +173,7 @@ class Context:
     def _call_at_end(self, callback: Callable[[], None], *, by_signal: bool) -> None:
         with self.host.lock:
             if self._valid or not self._initialized:
-                get = WeakMethod(callback, self._forget) if ismethod(callback) else _always(callback)
+                get = WeakMethod(callback, self._forget) if ismethod(callback) else lambda: callback
                 self._end_callbacks.append(_EndCallback(get, by_signal))
                 return
         callback()
@@ -213,14 +210,6 @@ def end_contexts_by_signal(process: Process) -> None:
         context = reference()
         if context is not None:
             context._end_by_signal()
-
-
-def _living(active: _ActiveContexts) -> list[ref[Context]]:
-    return [each for each in active.contexts if (context := each()) is not None and context.ok()]
-
-
-def _always(callback: Callable[[], None]) -> Callable[[], Callable[[], None]]:
-    return lambda: callback
 
 
 def _call(end_callback: _EndCallback) -> None:

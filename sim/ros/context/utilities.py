@@ -25,11 +25,7 @@ def ok(*, context: Context | None = None) -> bool:
 
 
 def shutdown(*, context: Context | None = None) -> None:
-    """End the context.
-
-    Raises:
-        RuntimeError: the context is not initialised.
-    """
+    """End the context; RuntimeError if the context is not initialised."""
     (get_default_context(shutting_down=True) if context is None else context).shutdown()
 
 

@@ -1,27 +1,22 @@
 """Clients: they call a service; an executor takes the replies."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import msgspec
 
 from sim.interfaces import copy_message
 from sim.quantities.nanoseconds import wait_ns
-from sim.ros.context.context import NODE_ENDED
+from sim.ros.context.context import NODE_ENDED, Context
 from sim.ros.entities.client_or_service import ClientOrService
 from sim.ros.entities.entity_handles import ClientHandle
 from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
 from sim.ros.scheduling.task import Future
 from sim.trace.events import EntityKind
-
-if TYPE_CHECKING:
-    from sim.ros.context.context import Context
-    from sim.ros.scheduling.callback_groups import CallbackGroup
 
 SrvType = TypeVar("SrvType")
 SrvTypeRequest = TypeVar("SrvTypeRequest")

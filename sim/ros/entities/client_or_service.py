@@ -1,18 +1,14 @@
 """The common part of clients and services: service name and type, profile, queue and introspection."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sim.interfaces import type_name
+from sim.ros.clocks.clock import Clock
 from sim.ros.entities.service_introspection import ServiceIntrospection, ServiceIntrospectionState
-
-if TYPE_CHECKING:
-    from sim.ros.clocks.clock import Clock
-    from sim.ros.qos.qos import QoSProfile
-    from sim.ros.scheduling.entity import OwnerNode
+from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.entity import OwnerNode
 
 
 class ClientOrService:

@@ -9,14 +9,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from sim.interfaces import from_cdr, to_cdr
+from sim.ros.entities.message_info import MessageInfo
 from sim.ros.handle import Handle
+from sim.ros.middleware.delivery import Request
 
 if TYPE_CHECKING:
     from sim.ros.entities.client import Client
-    from sim.ros.entities.message_info import MessageInfo
     from sim.ros.entities.service import Service
     from sim.ros.entities.subscription import Subscription
-    from sim.ros.middleware.delivery import Request
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,11 +115,7 @@ class ServiceHandle(Handle):
 
 
 def answered(header: object) -> Request:
-    """The request of a header or request id.
-
-    Raises:
-        TypeError: the object is not the header or id of a request.
-    """
+    """The request of a header or request id; TypeError if the object is not the header or id of a request."""
     identity = header.request_id if isinstance(header, ServiceInfo) else header
     if not isinstance(identity, RequestId) or identity.request is None:
         raise TypeError(f"a response needs the header or the id of a request, got {type(header)}")

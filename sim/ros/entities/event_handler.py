@@ -4,22 +4,18 @@ The simulated network never loses a message, so the "message lost" event never o
 message that a full queue drops, or whose lifespan is over.
 """
 
-from __future__ import annotations
-
 import inspect
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from enum import Enum, IntEnum
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
 from sim.ros.logging.logger import get_logger
 from sim.ros.qos.policies import QoSPolicyKind
+from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import NEVER, Entity, OwnerNode, TakenData
 from sim.trace.events import EntityKind
-
-if TYPE_CHECKING:
-    from sim.ros.scheduling.callback_groups import CallbackGroup
 
 EventCallback = Callable[[Any], Any]
 

@@ -1,19 +1,15 @@
 """Guard conditions: callbacks that a program triggers itself."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
+from sim.ros.context.context import Context
 from sim.ros.context.utilities import get_default_context
 from sim.ros.handle import Handle
+from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
 from sim.ros.scheduling.watched import BareEntity, Watcher
 from sim.trace.events import EntityKind
-
-if TYPE_CHECKING:
-    from sim.ros.context.context import Context
-    from sim.ros.scheduling.callback_groups import CallbackGroup
 
 
 class BareGuardCondition(BareEntity):

@@ -1,16 +1,12 @@
 """Services that every node offers by itself; the trace does not show them."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sim.ros.entities.service import Service
-
-if TYPE_CHECKING:
-    from sim.ros.qos.qos import QoSProfile
-    from sim.ros.scheduling.callback_groups import CallbackGroup
-    from sim.ros.scheduling.entity import OwnerNode
+from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.callback_groups import CallbackGroup
+from sim.ros.scheduling.entity import OwnerNode
 
 
 def offer_hidden(

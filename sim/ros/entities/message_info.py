@@ -1,7 +1,5 @@
 """The info of a received message."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
 from typing import Any, TypedDict

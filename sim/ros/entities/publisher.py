@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from types import GenericAlias
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from sim.interfaces import Message, copy_message, from_cdr
 from sim.ros.entities.event_handler import EndpointEvents, EventCallbacks, EventHandler
@@ -16,16 +16,14 @@ from sim.ros.entities.qos_timing import (
     limit,
     publisher_timing,
 )
+from sim.ros.entities.subscription import Subscription
 from sim.ros.exceptions import InvalidHandle
 from sim.ros.handle import DESTROYED, Handle
 from sim.ros.middleware.delivery import Delivery, ExpiringDelivery
 from sim.ros.qos.qos import DurabilityPolicy, QoSProfile
+from sim.ros.scheduling.callback_groups import CallbackGroup
+from sim.ros.scheduling.entity import OwnerNode
 from sim.ros.time.duration import Duration
-
-if TYPE_CHECKING:
-    from sim.ros.entities.subscription import Subscription
-    from sim.ros.scheduling.callback_groups import CallbackGroup
-    from sim.ros.scheduling.entity import OwnerNode
 
 MsgType = TypeVar("MsgType")
 """A type variable that programs import for their type hints."""

@@ -6,6 +6,7 @@ to then. Use everything here with the host's lock held.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Protocol
 
 from sim.ros.entities.event_handler import (
@@ -17,15 +18,14 @@ from sim.ros.entities.event_handler import (
 )
 from sim.ros.middleware.delivery import Delivery, ExpiringDelivery
 from sim.ros.qos.policies import LivelinessPolicy
-from sim.ros.scheduling.entity import NEVER
+from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.callback_groups import CallbackGroup
+from sim.ros.scheduling.entity import NEVER, OwnerNode
 from sim.ros.time.duration import Duration, Infinite
 
 if TYPE_CHECKING:
     from sim.ros.entities.publisher import Publisher
     from sim.ros.entities.subscription import Subscription
-    from sim.ros.qos.qos import QoSProfile
-    from sim.ros.scheduling.callback_groups import CallbackGroup
-    from sim.ros.scheduling.entity import OwnerNode
 
 FOR_EVER = Infinite.nanoseconds
 """The period if no deadline is set."""
@@ -213,13 +213,13 @@ class LivelinessChangedHandler(EventHandler):
         self._leases.clear()
 
 
+@dataclass(eq=False)
 class PublisherTiming:
     """Applies a publisher's lifespan, lease and deadline to each message."""
 
-    def __init__(self, lifespan: int | None, lease: Lease | None, deadline: DeadlineHandler | None) -> None:
-        self.lifespan = lifespan
-        self._lease = lease
-        self._deadline = deadline
+    lifespan: int | None
+    _lease: Lease | None
+    _deadline: DeadlineHandler | None
 
     def sent(self, delivery: Delivery) -> Delivery:
         """A message is about to be sent; return it with its expiry."""

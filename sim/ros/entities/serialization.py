@@ -1,7 +1,5 @@
 """Serialization of messages as CDR."""
 
-from __future__ import annotations
-
 from typing import TypeVar
 
 from sim.interfaces import Message, from_cdr, to_cdr

@@ -1,10 +1,8 @@
 """Services: a queue of requests, and a callback that answers them one at a time."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from sim.interfaces import copy_message
 from sim.interpreter.function_marks import sends_responses
@@ -12,11 +10,9 @@ from sim.ros.entities.client_or_service import ClientOrService
 from sim.ros.entities.entity_handles import RequestId, ServiceHandle, ServiceInfo, answered
 from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
 from sim.trace.events import EntityKind
-
-if TYPE_CHECKING:
-    from sim.ros.scheduling.callback_groups import CallbackGroup
 
 SrvType = TypeVar("SrvType")
 SrvTypeRequest = TypeVar("SrvTypeRequest")

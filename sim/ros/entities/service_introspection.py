@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from sim.interfaces import message
+from sim.ros.clocks.clock import Clock
+from sim.ros.qos.qos import QoSProfile
 
 if TYPE_CHECKING:
-    from sim.ros.clocks.clock import Clock
     from sim.ros.entities.client_or_service import ClientOrService
-    from sim.ros.qos.qos import QoSProfile
 
 _TOPIC_SUFFIX = "/_service_event"
 

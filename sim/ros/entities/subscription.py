@@ -26,12 +26,12 @@ from sim.ros.entities.qos_timing import (
 )
 from sim.ros.middleware.delivery import Delivery
 from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
     from sim.ros.entities.publisher import Publisher
-    from sim.ros.scheduling.callback_groups import CallbackGroup
 
 MsgType = TypeVar("MsgType")
 """A type variable that programs import for their type hints."""

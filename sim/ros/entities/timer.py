@@ -4,24 +4,20 @@ The next due time follows rcl: one period after the last due time; if that is pa
 whole periods. Missed ticks are dropped.
 """
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from sim.clock import AutoResetEvent
 from sim.ros.clocks.clock import Clock, ROSClock
 from sim.ros.clocks.ros_time_schedule import RosTimeSchedule, after_change, next_due
+from sim.ros.context.context import Context
 from sim.ros.exceptions import RCLError, ROSInterruptException
+from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import NEVER, Entity, OwnerNode, TakenData
 from sim.ros.time.clock_type import ClockType
 from sim.ros.time.time import Time
 from sim.trace.events import EntityKind
-
-if TYPE_CHECKING:
-    from sim.clock import AutoResetEvent
-    from sim.ros.context.context import Context
-    from sim.ros.scheduling.callback_groups import CallbackGroup
 
 
 class TimerInfo:

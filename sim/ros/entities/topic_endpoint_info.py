@@ -1,7 +1,5 @@
 """The graph's information on one publisher or subscription."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from enum import IntEnum
 from typing import Any

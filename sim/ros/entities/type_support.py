@@ -1,7 +1,5 @@
 """Checks that a class is a ROS 2 message or service type."""
 
-from __future__ import annotations
-
 from typing import Any, TypeVar
 
 from sim.interfaces import Message, ServiceType

@@ -4,26 +4,22 @@ They have the names of rclpy's compiled part. No executor serves them; when one 
 the executors that wait for it.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sim.ros.clocks.ros_time_schedule import next_due
+from sim.ros.context.context import Context
 from sim.ros.entities.client import Client
+from sim.ros.entities.entity_handles import RequestId, ServiceInfo
 from sim.ros.entities.event_handler import SubscriptionEventCallbacks
+from sim.ros.entities.message_info import MessageInfo
 from sim.ros.entities.service import Service
 from sim.ros.entities.subscription import Subscription
+from sim.ros.handle import Handle
+from sim.ros.node.node import Node
 from sim.ros.qos.qos import QoSProfile, RmwQoSProfile
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.ros.scheduling.entity import never_called
 from sim.ros.scheduling.watched import BareEntity, Watcher
-
-if TYPE_CHECKING:
-    from sim.ros.context.context import Context
-    from sim.ros.entities.entity_handles import RequestId, ServiceInfo
-    from sim.ros.entities.message_info import MessageInfo
-    from sim.ros.handle import Handle
-    from sim.ros.node.node import Node
 
 
 class BareSubscription(BareEntity, Subscription):

@@ -1,7 +1,5 @@
 """Events of publishers and subscriptions without a callback: the program takes their state itself."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from sim.ros.entities.event_handler import (
@@ -58,7 +56,7 @@ class BareEvent(BareEntity, EventHandler):
             self._endpoint = endpoint
             endpoint.events.add_listener(self)
             if isinstance(info, MatchedInfo):
-                self._count_matches(_number_of_matches(endpoint))
+                self._count_matches(endpoint)
             self._alive = None
             if isinstance(info, LivelinessChangedInfo) and isinstance(endpoint, Subscription):
                 self._alive = _AliveCount(self, endpoint)
@@ -73,7 +71,11 @@ class BareEvent(BareEntity, EventHandler):
         with self, self.node.context.host.lock:
             return self.take_info()
 
-    def _count_matches(self, made: int) -> None:
+    def _count_matches(self, endpoint: Publisher | Subscription) -> None:
+        if isinstance(endpoint, Publisher):
+            made = endpoint.get_subscription_count()
+        else:
+            made = len(_publishers_of(endpoint))
         if made:
             self.info = MatchedInfo(made, made, made, made)
             self.changed()
@@ -139,12 +141,6 @@ def event_handle(
 def _publishers_of(subscription: Subscription) -> list[Any]:
     publishers = subscription.node.context.network.publishers(subscription.name)
     return [each for each in publishers if each.reaches(subscription)]
-
-
-def _number_of_matches(endpoint: Publisher | Subscription) -> int:
-    if isinstance(endpoint, Publisher):
-        return endpoint.get_subscription_count()
-    return len(_publishers_of(endpoint))
 
 
 def _demand_no_limit(endpoint: Publisher | Subscription, info: Any) -> None:

@@ -1,19 +1,15 @@
 """A wait set that a program fills and waits on itself, without an executor."""
 
-from __future__ import annotations
+from typing import cast
 
-from typing import TYPE_CHECKING, cast
-
+from sim.ros.context.context import Context
 from sim.ros.entities.guard_condition import NodeGuardCondition
 from sim.ros.exceptions import RCLError
+from sim.ros.handle import Handle
+from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.program_wait_set import ProgramWaitSet
 from sim.ros.scheduling.waitable import NumberOfEntities
-
-if TYPE_CHECKING:
-    from sim.ros.context.context import Context
-    from sim.ros.handle import Handle
-    from sim.ros.scheduling.entity import Entity
-    from sim.ros.scheduling.watched import Watcher
+from sim.ros.scheduling.watched import Watcher
 
 
 class BareWaitSet(ProgramWaitSet):

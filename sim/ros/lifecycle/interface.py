@@ -1,9 +1,7 @@
 """The services and the topic with which other nodes observe and control a node's life cycle."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sim.interfaces import message, service
 from sim.ros.entities.hidden_service import offer_hidden
@@ -14,11 +12,9 @@ from sim.ros.lifecycle.state_machine import (
     Transition,
     TransitionCallbackReturn,
 )
+from sim.ros.node.node import Node
 from sim.ros.qos.qos import QoSProfile
-
-if TYPE_CHECKING:
-    from sim.ros.node.node import Node
-    from sim.ros.scheduling.callback_groups import CallbackGroup
+from sim.ros.scheduling.callback_groups import CallbackGroup
 
 _PACKAGE = "lifecycle_msgs"
 _QOS = QoSProfile(depth=10)

@@ -1,7 +1,5 @@
 """Managed entities, which take part in the life cycle of a node."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import wraps
 from typing import Any, overload

@@ -1,7 +1,5 @@
 """Publishers that send only while their node is active."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from sim.ros.entities.publisher import Publisher

@@ -3,8 +3,6 @@
 Source: the ROS 2 design article "Managed nodes"; numbers and labels are those of lifecycle_msgs and rcl.
 """
 
-from __future__ import annotations
-
 from enum import Enum
 from typing import NamedTuple
 

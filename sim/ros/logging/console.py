@@ -1,12 +1,9 @@
 """Log lines on a terminal, in rcutils' format and with its environment variables."""
 
-from __future__ import annotations
-
 import re
 import sys
 from collections.abc import Callable, Mapping
 from datetime import datetime
-from typing import TextIO
 
 from sim.ros.logging.record import LogRecord
 from sim.ros.logging.severity import LoggingSeverity
@@ -70,7 +67,7 @@ class LogConsole:
         """Write a line."""
         stream = sys.stdout if self._to_stdout else sys.stderr
         line = self.line(record)
-        if self._wants_colours(stream):
+        if stream.isatty() if self._coloured is None else self._coloured:
             line = f"{_COLOUR_OF[record.severity]}{line}{_PLAIN}"
         print(line, file=stream, flush=True)
 
@@ -87,9 +84,6 @@ class LogConsole:
             return found[0] if token is None else token(record)
 
         return _TOKEN.sub(value, self._format)
-
-    def _wants_colours(self, stream: TextIO) -> bool:
-        return stream.isatty() if self._coloured is None else self._coloured
 
 
 def _switch(environment: Mapping[str, str], name: str) -> bool | None:

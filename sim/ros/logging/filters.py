@@ -4,8 +4,6 @@ The rules are rclpy's: filters are applied in the order throttle, skip_first, on
 refuses a line; those before it count the line as logged. A call site must always have the same filters.
 """
 
-from __future__ import annotations
-
 import sys
 from collections import OrderedDict
 from collections.abc import Mapping

@@ -64,11 +64,7 @@ class RcutilsLogger:
         self._places: dict[CallSite, CallSiteFilters] = {}
 
     def get_child(self, name: str) -> RcutilsLogger:
-        """A logger called ``self.name``.``name``.
-
-        Raises:
-            ValueError: the name is empty.
-        """
+        """A logger called ``self.name``.``name``; ValueError if the name is empty."""
         if not name:
             raise ValueError("Child logger name must not be empty.")
         return RcutilsLogger(
@@ -170,11 +166,7 @@ def _text_of(message: object) -> str:
 
 
 def get_logger(name: str) -> RcutilsLogger:
-    """A logger of that name.
-
-    Raises:
-        ValueError: the name is empty.
-    """
+    """A logger of that name; ValueError if the name is empty."""
     if not name:
         raise ValueError("Logger name must not be empty.")
     return _root_logger.get_child(name)
@@ -201,11 +193,7 @@ def get_logger_effective_level(name: str) -> LoggingSeverity:
 
 
 def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
-    """The severity of a name, in upper or lower case.
-
-    Raises:
-        RuntimeError: there is no such severity.
-    """
+    """The severity of a name, in upper or lower case; RuntimeError if there is no such severity."""
     try:
         return LoggingSeverity[log_severity.upper()]
     except KeyError:

@@ -1,7 +1,5 @@
 """A log line before it is written anywhere."""
 
-from __future__ import annotations
-
 from typing import NamedTuple
 
 from sim.ros.logging.filters import CallSite

@@ -1,7 +1,5 @@
 """Changes to a program without editing it: callback groups and timer periods."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum

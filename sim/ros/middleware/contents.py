@@ -1,6 +1,7 @@
 """The contents of published messages, on their way to the trace."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, cast
 
 import msgspec
@@ -24,24 +25,20 @@ _MOST_WAITING = 32_000_000
 """Estimated bytes of messages that may wait to be encoded."""
 
 
+@dataclass(slots=True)
 class _ContentTopic:
     """A topic's number, and the encoded size of its last message in bytes."""
 
-    __slots__ = ("number", "size")
-
-    def __init__(self, number: TopicId) -> None:
-        self.number = number
-        self.size = 0
+    number: TopicId
+    size: int = 0
 
 
+@dataclass(slots=True)
 class _Content:
     """A message that no longer changes, and its topic."""
 
-    __slots__ = ("message", "topic")
-
-    def __init__(self, message: Message, topic: _ContentTopic) -> None:
-        self.message = message
-        self.topic = topic
+    message: Message
+    topic: _ContentTopic
 
 
 class _MessageWaiting(TraceEvent, frozen=True, tag="message"):

@@ -1,7 +1,5 @@
 """Messages and requests in transit."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

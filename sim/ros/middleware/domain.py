@@ -1,7 +1,5 @@
 """Domains: nodes of different domains on one machine do not see each other."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Mapping
 

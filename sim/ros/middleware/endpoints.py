@@ -3,12 +3,10 @@
 Call everything with the host's lock held.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from sim.ros.middleware.delivery import Delivery, Request
+from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
 
 
@@ -22,18 +20,8 @@ class ContextLifetime(Protocol):
         """Call ``callback`` when the context ends."""
 
 
-class MatchListener(Protocol):
-    """The listener for matches of a publisher or subscription."""
-
-    def type_refused(self, warning: str) -> None:
-        """A match failed because of the message type; ``warning`` is to be logged."""
-
-    def qos_refused(self, policy: str, warning: str) -> None:
-        """A match failed because of a policy; ``warning`` is to be logged."""
-
-
 class TopicEndpoint(Protocol):
-    """A publisher or a subscription."""
+    """A subscription; also what a publisher has in common with it."""
 
     gid: bytes
     msg_type: type
@@ -42,23 +30,6 @@ class TopicEndpoint(Protocol):
     @property
     def topic_name(self) -> str:
         """The topic's full name."""
-
-    @property
-    def events(self) -> MatchListener:
-        """The listener for matches of this endpoint."""
-
-
-class SubscriptionEndpoint(TopicEndpoint, Protocol):
-    """A subscription."""
-
-    def deliver(self, delivery: Delivery) -> None:
-        """Queue a message."""
-
-    def publisher_matched(self, publisher: Any) -> None:
-        """A publisher was matched."""
-
-    def publisher_lost(self, publisher: Any) -> None:
-        """A matched publisher is gone."""
 
 
 class PublisherEndpoint(TopicEndpoint, Protocol):

@@ -3,8 +3,6 @@
 Delivery takes no time. Everything here is called with the host's lock held.
 """
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 
@@ -12,7 +10,7 @@ import msgspec
 
 from sim.interfaces import copy_message
 from sim.ros.middleware.delivery import Request
-from sim.ros.middleware.endpoints import NetworkNode, PublisherEndpoint, ServiceEndpoint, SubscriptionEndpoint
+from sim.ros.middleware.endpoints import NetworkNode, PublisherEndpoint, ServiceEndpoint, TopicEndpoint
 from sim.ros.qos.qos import mismatches
 
 
@@ -22,7 +20,7 @@ class Network:
     def __init__(self) -> None:
         self._nodes: list[NetworkNode] = []
         self._publishers: defaultdict[str, list[PublisherEndpoint]] = defaultdict(list)
-        self._subscriptions: defaultdict[str, list[SubscriptionEndpoint]] = defaultdict(list)
+        self._subscriptions: defaultdict[str, list[TopicEndpoint]] = defaultdict(list)
         self._services: defaultdict[str, list[ServiceEndpoint]] = defaultdict(list)
         self._demand_actions: dict[str, Callable[[], None]] = {}
 
@@ -54,7 +52,7 @@ class Network:
         self.announce_use(topic)
         return tuple(self._publishers.get(topic, ()))
 
-    def subscriptions(self, topic: str) -> tuple[SubscriptionEndpoint, ...]:
+    def subscriptions(self, topic: str) -> tuple[TopicEndpoint, ...]:
         """The subscriptions to a topic."""
         self.announce_use(topic)
         return tuple(self._subscriptions.get(topic, ()))
@@ -74,7 +72,7 @@ class Network:
         for subscription in self._subscriptions.get(publisher.topic_name, ()):
             self._match(publisher, subscription)
 
-    def join_subscription(self, subscription: SubscriptionEndpoint) -> None:
+    def join_subscription(self, subscription: TopicEndpoint) -> None:
         """Add a subscription, match it, and send it the messages that transient-local publishers kept."""
         self.announce_use(subscription.topic_name)
         self._subscriptions[subscription.topic_name].append(subscription)
@@ -90,7 +88,7 @@ class Network:
         """Remove a publisher."""
         self._publishers[publisher.topic_name].remove(publisher)
 
-    def leave_subscription(self, subscription: SubscriptionEndpoint) -> None:
+    def leave_subscription(self, subscription: TopicEndpoint) -> None:
         """Remove a subscription from the network and from its publishers."""
         self._subscriptions[subscription.topic_name].remove(subscription)
         for publisher in self._publishers.get(subscription.topic_name, ()):
@@ -112,7 +110,7 @@ class Network:
         self.announce_use(name)
         return [each for each in self._services.get(name, ()) if each.srv_type is srv_type]
 
-    def _match(self, publisher: PublisherEndpoint, subscription: SubscriptionEndpoint) -> bool:
+    def _match(self, publisher: PublisherEndpoint, subscription: TopicEndpoint) -> bool:
         if publisher.msg_type is not subscription.msg_type:
             publisher.type_differs_from(subscription)
             return False

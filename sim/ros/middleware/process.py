@@ -5,8 +5,6 @@ default context, global executor, loggers and arguments: ``process_local`` keeps
 process. A thread belongs to the process of the thread that started it.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import threading

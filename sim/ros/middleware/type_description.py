@@ -3,8 +3,6 @@
 Source: REP 2016 and rosidl's generator of type descriptions (RIHS01: the SHA-256 of the description as JSON).
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator
 from functools import cache

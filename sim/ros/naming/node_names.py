@@ -1,7 +1,5 @@
 """The name of a node, and the full names of the topics and services that it uses."""
 
-from __future__ import annotations
-
 from sim.ros.naming.names import expand
 from sim.ros.naming.remapping import Remapping
 from sim.ros.naming.validation import validate_namespace, validate_node_name

@@ -3,8 +3,6 @@
 Source of the rules: the ROS 2 design article "Remapping names", and rcl.
 """
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -4,8 +4,6 @@ Source: the ROS 2 design article "Topic and service names"; order and wording of
 and rmw. Topics and services share them, wording included.
 """
 
-from __future__ import annotations
-
 import re
 from typing import NamedTuple
 

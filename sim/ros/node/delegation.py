@@ -1,7 +1,5 @@
 """Delegation: makes methods and properties of a node's parts available on the node, as in rclpy."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from functools import wraps
 from typing import Any, Concatenate, Generic, ParamSpec, TypeVar

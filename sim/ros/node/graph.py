@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from sim.interfaces import type_name
 from sim.ros.context.context import NODE_ENDED
+from sim.ros.entities.publisher import Publisher
+from sim.ros.entities.subscription import Subscription
 from sim.ros.entities.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from sim.ros.exceptions import NodeNameNonExistentError
+from sim.ros.middleware.network import Network
 from sim.ros.middleware.type_description import type_hash
 from sim.ros.naming.expand_topic_name import expand_topic_name
 from sim.ros.naming.validation import validate_full_topic_name
 from sim.ros.qos.offered import as_discovered
 
 if TYPE_CHECKING:
-    from sim.ros.entities.publisher import Publisher
-    from sim.ros.entities.subscription import Subscription
-    from sim.ros.middleware.network import Network
     from sim.ros.node.node import Node
 
 NamesAndTypes: TypeAlias = list[tuple[str, list[str]]]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sim.ros.clocks.clock import Clock, ROSClock
 from sim.ros.context.arguments import arguments_of_node, parameters_for
@@ -29,9 +29,7 @@ from sim.ros.parameters.parameter import Parameter
 from sim.ros.parameters.store import ParameterChange, ParameterStore
 from sim.ros.scheduling.agenda import Agenda
 from sim.ros.scheduling.callback_groups import CallbackGroup
-
-if TYPE_CHECKING:
-    from sim.ros.scheduling.executors import Executor
+from sim.ros.scheduling.executors import Executor
 
 HIDDEN_NODE_PREFIX = "_"
 

@@ -91,11 +91,7 @@ class NodeEntities:
             self._agenda.add_polled(WaitableEntity(self._node, waitable))
 
     def remove_waitable(self, waitable: Waitable[Any]) -> None:
-        """Remove a waitable.
-
-        Raises:
-            ValueError: the waitable was not added.
-        """
+        """Remove a waitable; ValueError if the waitable was not added."""
         with self._agenda.host.lock:
             for each in self._agenda.polled:
                 if each.waitable is waitable:

@@ -1,7 +1,5 @@
 """Applies the run's overrides to one node: the groups of its callbacks and the periods of its timers."""
 
-from __future__ import annotations
-
 from sim.ros.middleware.callback_overrides import CallbackOverrides, GroupChoice
 from sim.ros.scheduling.callback_groups import (
     CallbackGroup,

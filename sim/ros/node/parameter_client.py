@@ -1,21 +1,17 @@
 """Reads and sets the parameters of another node by its services."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from sim.interfaces import rcl_interfaces
 from sim.quantities.nanoseconds import wait_ns
+from sim.ros.entities.client import Client
+from sim.ros.node.node import Node
 from sim.ros.parameters.parameter import Parameter, parameter_dict_from_yaml_file
 from sim.ros.qos.qos import QoSProfile, qos_profile_services_default
+from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.task import Future
-
-if TYPE_CHECKING:
-    from sim.ros.entities.client import Client
-    from sim.ros.node.node import Node
-    from sim.ros.scheduling.callback_groups import CallbackGroup
 
 FutureCallback: TypeAlias = Callable[[Future[Any]], None]
 

@@ -1,35 +1,32 @@
 """Callbacks for changes of parameters, of this or another node, from ``/parameter_events``."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager
+from dataclasses import dataclass
 from itertools import chain
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 from sim.interfaces import rcl_interfaces
+from sim.ros.node.node import Node
 from sim.ros.qos.qos import QoSProfile, qos_profile_parameter_events
-
-if TYPE_CHECKING:
-    from sim.ros.node.node import Node
 
 MessageCallback: TypeAlias = Callable[[Any], Any]
 
 
+@dataclass(eq=False)
 class ParameterCallbackHandle:
     """A callback for one parameter of one node."""
 
-    def __init__(self, parameter_name: str, node_name: str, callback: MessageCallback) -> None:
-        self.parameter_name = parameter_name
-        self.node_name = node_name
-        self.callback = callback
+    parameter_name: str
+    node_name: str
+    callback: MessageCallback
 
 
+@dataclass(eq=False)
 class ParameterEventCallbackHandle:
     """A callback for every event."""
 
-    def __init__(self, callback: MessageCallback) -> None:
-        self.callback = callback
+    callback: MessageCallback
 
 
 class ParameterEventHandler:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from sim.interfaces import rcl_interfaces
+from sim.ros.entities.publisher import Publisher
+from sim.ros.parameters.store import ParameterChange
 from sim.ros.qos.qos import qos_profile_parameter_events
 
 if TYPE_CHECKING:
-    from sim.ros.entities.publisher import Publisher
     from sim.ros.node.node import Node
-    from sim.ros.parameters.store import ParameterChange
 
 
 def parameter_event_publisher(node: Node) -> Publisher:

@@ -7,14 +7,14 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from sim.interfaces import rcl_interfaces
+from sim.ros.entities.publisher import Publisher
+from sim.ros.entities.subscription import Subscription
 from sim.ros.exceptions import ParameterAlreadyDeclaredException
 from sim.ros.qos.policies import QoSPolicyEnum
 from sim.ros.qos.qos import QoSPolicyKind, QoSProfile
 from sim.ros.time.duration import Duration
 
 if TYPE_CHECKING:
-    from sim.ros.entities.publisher import Publisher
-    from sim.ros.entities.subscription import Subscription
     from sim.ros.node.node import Node
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from sim.interfaces import rcl_interfaces
 from sim.ros.entities.event_handler import PublisherEventCallbacks
 from sim.ros.entities.publisher import Publisher
+from sim.ros.entities.subscription import Subscription
 from sim.ros.logging.logger import Loggers, get_logger
 from sim.ros.logging.record import LogRecord
 from sim.ros.middleware.delivery import ExpiringDelivery
@@ -20,7 +21,6 @@ from sim.ros.time.duration import Duration
 from sim.ros.time.time import Time
 
 if TYPE_CHECKING:
-    from sim.ros.entities.subscription import Subscription
     from sim.ros.node.node import Node
 
 ROSOUT_TOPIC = "/rosout"

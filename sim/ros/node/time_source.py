@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from sim.interfaces import message, rcl_interfaces
 from sim.ros.clocks.clock import Clock, ROSClock
+from sim.ros.entities.subscription import Subscription
 from sim.ros.parameters.parameter import Parameter
 from sim.ros.qos.qos import QoSProfile, ReliabilityPolicy
 from sim.ros.scheduling.entity import OwnerNode
@@ -14,7 +15,6 @@ from sim.ros.time.clock_type import ClockType
 from sim.ros.time.time import Time
 
 if TYPE_CHECKING:
-    from sim.ros.entities.subscription import Subscription
     from sim.ros.node.node import Node
 
 CLOCK_TOPIC = "/clock"
@@ -80,11 +80,7 @@ class TimeSource:
         node.add_on_set_parameters_callback(self._on_set)
 
     def detach_node(self) -> None:
-        """Unsubscribe from ``/clock``.
-
-        Raises:
-            RuntimeError: the node with the subscription is gone.
-        """
+        """Unsubscribe from ``/clock``; RuntimeError if the node with the subscription is gone."""
         if self._clock_sub is not None and self._get_node() is None:
             raise RuntimeError("Unable to destroy previously created clock subscription")
         self._unsubscribe()

@@ -1,7 +1,5 @@
 """Checks of a value against a parameter's descriptor: type, range and step. Pure functions."""
 
-from __future__ import annotations
-
 import math
 from typing import Any
 

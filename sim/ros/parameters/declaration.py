@@ -1,7 +1,5 @@
 """Reads one entry of ``declare_parameters``."""
 
-from __future__ import annotations
-
 import warnings
 from typing import Any, NamedTuple
 

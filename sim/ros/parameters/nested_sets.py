@@ -1,7 +1,5 @@
 """Detects on-set callbacks that set a parameter which is being set on the same thread: that has no effect."""
 
-from __future__ import annotations
-
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager

@@ -1,7 +1,5 @@
 """A node's parameters: declares, sets, describes and removes them, and calls the callbacks."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, TypeAlias

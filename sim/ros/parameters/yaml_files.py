@@ -4,8 +4,6 @@ A value gets the type of ROS's parameter parser, which differs from YAML 1.2: ``
 and ``Y`` are also truth values, and numbers follow C. Source: rcl_yaml_param_parser's README and tests.
 """
 
-from __future__ import annotations
-
 import math
 import re
 from pathlib import Path
@@ -52,11 +50,7 @@ def read_value(text: str) -> PlainValue:
 
 
 def read_file(path: str) -> NodeParameters:
-    """Read a parameter file.
-
-    Raises:
-        ParameterYamlError: the file cannot be read, or is not a parameter file.
-    """
+    """Read a parameter file; ParameterYamlError if the file cannot be read, or is not a parameter file."""
     try:
         text = untrusted.read_text(Path(path))
     except OSError as error:
@@ -69,11 +63,7 @@ def read_file(path: str) -> NodeParameters:
 
 
 def read_nodes(text: str) -> NodeParameters:
-    """Parse the text of a parameter file.
-
-    Raises:
-        ParameterYamlError: it is not a parameter file.
-    """
+    """Parse the text of a parameter file; ParameterYamlError if it is not a parameter file."""
     root = _compose(text)
     found: NodeParameters = {}
     if root is not None:

@@ -1,7 +1,5 @@
 """The profile of a publisher as other nodes see it, and as rosbag2 stores it."""
 
-from __future__ import annotations
-
 from copy import copy
 
 from sim.ros.qos.qos import LivelinessPolicy, QoSProfile

@@ -1,7 +1,5 @@
 """The QoS policies, with the values of ROS 2."""
 
-from __future__ import annotations
-
 from enum import IntEnum
 
 

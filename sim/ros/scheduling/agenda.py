@@ -4,21 +4,17 @@ It is an object of its own, so that a program's node, which inherits from ``Node
 with attributes of the same names.
 """
 
-from __future__ import annotations
-
 import weakref
 from heapq import heappop, heappush
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
 
+from sim.probes.probe import Probe
 from sim.ros.middleware.host import Host
+from sim.ros.scheduling.entity import Entity
+from sim.ros.scheduling.executors import Executor
+from sim.ros.scheduling.waitable_entity import WaitableEntity
+from sim.ros.scheduling.watched import Watcher
 from sim.trace.events import Reason
-
-if TYPE_CHECKING:
-    from sim.probes.probe import Probe
-    from sim.ros.scheduling.entity import Entity
-    from sim.ros.scheduling.executors import Executor
-    from sim.ros.scheduling.waitable_entity import WaitableEntity
-    from sim.ros.scheduling.watched import Watcher
 
 EntityT = TypeVar("EntityT", bound="Entity")
 

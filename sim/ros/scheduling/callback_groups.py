@@ -1,16 +1,12 @@
 """Callback groups: they decide which callbacks may run at the same time."""
 
-from __future__ import annotations
-
 import weakref
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
+from typing import Any, ClassVar, TypeAlias
 
 from sim.ros.scheduling.entity import Entity
+from sim.ros.scheduling.waitable import Waitable
 from sim.trace.events import GroupKind
-
-if TYPE_CHECKING:
-    from sim.ros.scheduling.waitable import Waitable
 
 Member: TypeAlias = "Entity | Waitable[Any]"
 

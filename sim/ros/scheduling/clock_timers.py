@@ -6,21 +6,16 @@ are queued already: after two checks before the first call, as when another time
 twice.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from functools import partial
-from typing import TYPE_CHECKING
 
+from sim.clock import RunClock
+from sim.ros.clocks.clock import Clock
 from sim.ros.clocks.jumps import JumpThreshold
 from sim.ros.scheduling.entity import NEVER, Entity
+from sim.ros.scheduling.event_queue import Appointment, EventQueue
 from sim.ros.time.duration import Duration
-
-if TYPE_CHECKING:
-    from sim.clock import RunClock
-    from sim.ros.clocks.clock import Clock
-    from sim.ros.scheduling.event_queue import Appointment, EventQueue
 
 _ANY_JUMP = JumpThreshold(min_forward=Duration(nanoseconds=1), min_backward=Duration(nanoseconds=-1))
 

@@ -12,17 +12,14 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from enum import Enum, auto
 from itertools import count
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
+from sim.clock import RunClock
 from sim.releases.profile import Profile
 from sim.ros.scheduling.callback_groups import CallbackGroup
-from sim.ros.scheduling.entity import Entity
+from sim.ros.scheduling.entity import Entity, OwnerNode
+from sim.ros.scheduling.task import Task
 from sim.ros.scheduling.wait_set import snapshot
-
-if TYPE_CHECKING:
-    from sim.clock import RunClock
-    from sim.ros.scheduling.entity import OwnerNode
-    from sim.ros.scheduling.task import Task
 
 Work: TypeAlias = "Entity | Task[Any]"
 """The work that a cycle yields."""

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, Self, runtime_checkab
 
 import msgspec
 
+from sim.ros.clocks.clock import Clock
+from sim.ros.context.context import Context
 from sim.ros.handle import Handle
+from sim.ros.logging.logger import RcutilsLogger
 from sim.trace.events import EntityKind, Reason
 
 if TYPE_CHECKING:
-    from sim.ros.clocks.clock import Clock
-    from sim.ros.context.context import Context
-    from sim.ros.logging.logger import RcutilsLogger
     from sim.ros.scheduling.agenda import Agenda
     from sim.ros.scheduling.callback_groups import CallbackGroup
 
@@ -61,9 +61,6 @@ class OwnerNode(Protocol):
 
     def create_publisher(self, msg_type: type, topic: str, qos_profile: Any, /) -> Any:
         """Create a publisher."""
-
-    def destroy_publisher(self, publisher: Any, /) -> bool:
-        """Remove a publisher; False if it is not this node's."""
 
 
 class TakenData(msgspec.Struct, frozen=True, gc=False):

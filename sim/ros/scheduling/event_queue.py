@@ -1,16 +1,13 @@
 """The queue of an EventsExecutor's events, in the order of their arrival."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Callable
 from contextlib import AbstractContextManager
 from heapq import heappop, heappush
 from itertools import count
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TypeAlias
 
-if TYPE_CHECKING:
-    from sim.clock import RunClock
+from sim.clock import RunClock
 
 Event: TypeAlias = Callable[[], None]
 """An action that runs without the host's lock."""

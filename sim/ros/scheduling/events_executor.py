@@ -8,33 +8,27 @@ Two orders that are random in rclpy are the order of creation here: of the entit
 added, and of timers that are due at the same moment.
 """
 
-from __future__ import annotations
-
 import traceback
 from collections.abc import Coroutine, Iterable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, cast
+from typing import Any, cast
 
+from sim.clock import AutoResetEvent
 from sim.interpreter.function_marks import sends_responses
 from sim.probes.own_code import is_own
 from sim.quantities.nanoseconds import wait_ns
+from sim.ros.clocks.clock import Clock
+from sim.ros.context.context import Context
 from sim.ros.context.utilities import get_default_context, timeout_sec_to_nsec
-from sim.ros.logging.logger import get_logger
+from sim.ros.logging.logger import RcutilsLogger, get_logger
 from sim.ros.scheduling.clock_timers import ClockTimers
 from sim.ros.scheduling.entity import NEVER, Entity
-from sim.ros.scheduling.event_queue import EventQueue
+from sim.ros.scheduling.event_queue import Appointment, EventQueue
 from sim.ros.scheduling.executor import Executor
 from sim.ros.scheduling.task import Future, Task
 from sim.ros.scheduling.waitable_entity import WaitableEntity, poll_waitables
 from sim.ros.scheduling.waiting_ends import ExternalShutdownException
 from sim.trace.events import EntityKind
-
-if TYPE_CHECKING:
-    from sim.clock import AutoResetEvent
-    from sim.ros.clocks.clock import Clock
-    from sim.ros.context.context import Context
-    from sim.ros.logging.logger import RcutilsLogger
-    from sim.ros.scheduling.event_queue import Appointment
 
 _PLURALS = {
     EntityKind.SUBSCRIPTION: "subscriptions",

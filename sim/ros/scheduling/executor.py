@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Coroutine, Generator, Iterable
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from sim.ros.context.context import Context
 from sim.ros.context.utilities import get_default_context, timeout_sec_to_nsec
 from sim.ros.scheduling.cycle import Cycle, Work
-from sim.ros.scheduling.entity import Entity
+from sim.ros.scheduling.entity import Entity, OwnerNode
 from sim.ros.scheduling.handlers import Handler
 from sim.ros.scheduling.running import CallbackRunner
 from sim.ros.scheduling.task import Future, Task
@@ -28,9 +28,6 @@ from sim.ros.scheduling.waiting_ends import (
     never,
     seconds_of,
 )
-
-if TYPE_CHECKING:
-    from sim.ros.scheduling.entity import OwnerNode
 
 FoundT = TypeVar("FoundT")
 

@@ -7,10 +7,10 @@ from collections.abc import Coroutine, Generator
 from types import coroutine
 from typing import TYPE_CHECKING, Any
 
+from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.task import Task
 
 if TYPE_CHECKING:
-    from sim.ros.scheduling.entity import Entity
     from sim.ros.scheduling.executor import Executor
 
 

@@ -1,7 +1,5 @@
 """The wait set of a program's own waitables: entities by kind and index, and which of them are ready."""
 
-from __future__ import annotations
-
 from functools import partialmethod
 from typing import Any, TypeAlias
 

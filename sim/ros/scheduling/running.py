@@ -8,13 +8,13 @@ from collections.abc import Coroutine
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from sim.interpreter.function_marks import calls_the_program
+from sim.ros.scheduling.cycle import Cycle, Work
 from sim.ros.scheduling.entity import Entity, TakenData
 from sim.ros.scheduling.handlers import Handler
 from sim.ros.scheduling.task import Task
 from sim.trace.events import Reason
 
 if TYPE_CHECKING:
-    from sim.ros.scheduling.cycle import Cycle, Work
     from sim.ros.scheduling.executor import Executor
 
 AdmittedWork: TypeAlias = "tuple[Entity, TakenData] | Task[Any]"

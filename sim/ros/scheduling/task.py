@@ -102,11 +102,11 @@ class Future(Generic[T]):
             self._cancelled = False
         self._finish()
 
-    def add_done_callback(self, callback: Callable[[Future[T]], None]) -> None:
+    def add_done_callback(self, callback: Callable[[Future[T]], object]) -> None:
         """Run ``callback(future)`` when the future is done; at once if it is done already."""
         self._wake_when_done(callback)
 
-    def remove_done_callback(self, callback: Callable[[Future[T]], None]) -> bool:
+    def remove_done_callback(self, callback: Callable[[Future[T]], object]) -> bool:
         """Remove every registration of ``callback``; return whether there was one."""
         with self._lock:
             kept = [each for each in self._callbacks if each != callback]
@@ -151,7 +151,7 @@ class Future(Generic[T]):
             else:
                 self._run_here(callback)
 
-    def _run_here(self, callback: Callable[[Future[T]], None]) -> None:
+    def _run_here(self, callback: Callable[[Future[T]], object]) -> None:
         try:
             callback(self)
         except Exception as error:  # noqa: BLE001 -- an error of a callback must not reach set_result()
@@ -266,7 +266,7 @@ class Task(Future[T]):
             executor._resume(self)
 
 
-_Listener: TypeAlias = Callable[[Future[T]], None] | Task[Any] | AsyncioWaiter
+_Listener: TypeAlias = Callable[[Future[T]], object] | Task[Any] | AsyncioWaiter
 """What is notified when a future is done: a callback, or an awaiting task."""
 
 

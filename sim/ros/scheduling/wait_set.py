@@ -1,17 +1,12 @@
 """Which callbacks are ready, and the order in which they are served: rclpy's rules, without threads."""
 
-from __future__ import annotations
-
 from collections import deque
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from operator import attrgetter
 
-if TYPE_CHECKING:
-    from sim.ros.scheduling.entity import Entity, OwnerNode
+from sim.ros.scheduling.entity import Entity, OwnerNode
 
-
-def _serving_order(entity: Entity) -> tuple[int, int]:
-    return entity.rank, entity.order
+_serving_order = attrgetter("rank", "order")
 
 
 def snapshot(nodes: Iterable[OwnerNode], now: int) -> deque[Entity]:

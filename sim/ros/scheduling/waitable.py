@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
+from sim.ros.scheduling.task import Future
+
 if TYPE_CHECKING:
     from sim.ros.scheduling.callback_groups import CallbackGroup
     from sim.ros.scheduling.program_wait_set import ProgramWaitSet
-    from sim.ros.scheduling.task import Future
 
 T = TypeVar("T")
 

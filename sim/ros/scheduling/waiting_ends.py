@@ -1,7 +1,5 @@
 """The exceptions that end an executor's wait without work, and timeouts."""
 
-from __future__ import annotations
-
 from typing import TypeAlias
 
 

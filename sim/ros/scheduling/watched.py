@@ -1,7 +1,5 @@
 """Entities that no executor serves; they wake the wait sets that watch them."""
 
-from __future__ import annotations
-
 from typing import Protocol, Self
 
 from sim.ros.exceptions import InvalidHandle

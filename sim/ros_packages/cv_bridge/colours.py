@@ -1,7 +1,5 @@
 """Conversion of images between colour encodings, with OpenCV's rounding."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

@@ -1,7 +1,5 @@
 """``cv_bridge.core``: converts ``sensor_msgs/Image`` messages to numpy arrays and back."""
 
-from __future__ import annotations
-
 import sys
 from typing import Any
 
@@ -41,11 +39,7 @@ class CvBridge:
         self.numpy_type_to_cvtype = {str(known): name for name, known in TYPES.items()}
 
     def encoding_to_dtype_with_channels(self, encoding: str) -> tuple[str, int]:
-        """The numpy type and number of channels of an encoding.
-
-        Raises:
-            CvBridgeError: the encoding is unknown.
-        """
+        """The numpy type and number of channels of an encoding; CvBridgeError if the encoding is unknown."""
         known = _known(encoding)
         return str(known.type), known.channels
 

@@ -1,7 +1,5 @@
 """The encodings of ``sensor_msgs/Image``: number, type and colours of the channels."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 from typing import Any

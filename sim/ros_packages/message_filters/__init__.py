@@ -1,7 +1,5 @@
 """``message_filters``: synchronises messages of several topics by their stamps. As in 4.11.15."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from itertools import product
 from threading import Lock
@@ -121,11 +119,7 @@ class Chain(SimpleFilter):
             self.connectInput(message_filter)
 
     def connectInput(self, message_filter: Any) -> None:
-        """Connect to a filter.
-
-        Raises:
-            RuntimeError: the chain is connected already.
-        """
+        """Connect to a filter; RuntimeError if the chain is connected already."""
         if self.incoming_connection is not None:
             raise RuntimeError("Already connected")
         self.incoming_connection = message_filter.registerCallback(self.add)
@@ -144,11 +138,7 @@ class Chain(SimpleFilter):
         self._filters.append((message_filter, message_filter.registerCallback(self.signalMessage)))
 
     def getFilter(self, index: int) -> Any:
-        """The filter at an index.
-
-        Raises:
-            KeyError: there is no such filter.
-        """
+        """The filter at an index; KeyError if there is no such filter."""
         if not 0 <= index < len(self._filters):
             raise KeyError(index)
         return self._filters[index][0]

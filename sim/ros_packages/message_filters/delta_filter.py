@@ -1,7 +1,5 @@
 """``message_filters.delta_filter``: passes on a message if it differs from the last one that passed."""
 
-from __future__ import annotations
-
 from abc import ABC
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -118,11 +116,7 @@ class PathDeltaFilter(DeltaFilter):
         return lambda message: self.get_field_by_path(message, path)
 
     def get_field_by_path(self, message: Any, field_path: str) -> Any:
-        """The value of a field.
-
-        Raises:
-            RuntimeError: the message has no such field.
-        """
+        """The value of a field; RuntimeError if the message has no such field."""
         found = message
         for name in field_path.split("."):
             owner, found = found, getattr(found, name, None)

@@ -1,7 +1,5 @@
 """``message_filters.simple_filter``: the base of filters."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Any
 

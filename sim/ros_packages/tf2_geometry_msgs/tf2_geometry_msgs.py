@@ -1,7 +1,5 @@
 """``tf2_geometry_msgs.tf2_geometry_msgs``: transforms points, vectors and poses."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import numpy as np

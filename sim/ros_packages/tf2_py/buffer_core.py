@@ -1,7 +1,5 @@
 """``tf2_py.BufferCore``: the tree of frames, and the transforms between them. It never waits."""
 
-from __future__ import annotations
-
 import math
 import sys
 from _thread import RLock

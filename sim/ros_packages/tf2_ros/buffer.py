@@ -1,7 +1,5 @@
 """``tf2_ros.buffer``: a buffer of transforms that can wait for them."""
 
-from __future__ import annotations
-
 import time as clock_of_the_run
 from collections.abc import Callable
 from functools import partial

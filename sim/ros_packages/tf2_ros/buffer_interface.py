@@ -1,7 +1,5 @@
 """``tf2_ros.buffer_interface``: transforms stamped data of all registered types."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from copy import deepcopy
 from typing import Any, ClassVar
@@ -98,11 +96,7 @@ class TransformRegistration:
         self._known[key] = callback
 
     def get(self, key: Any) -> Callable[[Any, Any], Any]:
-        """The function that transforms data of a type.
-
-        Raises:
-            TypeException: the type is not registered.
-        """
+        """The function that transforms data of a type; TypeException if the type is not registered."""
         return _get(self._known, key)
 
     def print_me(self) -> None:

@@ -1,7 +1,5 @@
 """``tf2_ros.static_transform_broadcaster``: sends static transforms."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from rclpy.qos import DurabilityPolicy, QoSProfile

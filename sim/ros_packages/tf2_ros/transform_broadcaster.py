@@ -1,7 +1,5 @@
 """``tf2_ros.transform_broadcaster``: sends transforms that are valid at their stamp."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from rclpy.qos import QoSProfile

@@ -1,7 +1,5 @@
 """``tf2_ros.transform_listener``: fills a buffer from ``/tf`` and ``/tf_static``."""
 
-from __future__ import annotations
-
 from contextlib import suppress
 from threading import Thread
 from typing import Any

@@ -1,7 +1,5 @@
 """``tf2_sensor_msgs.tf2_sensor_msgs``: transforms point clouds."""
 
-from __future__ import annotations
-
 from copy import deepcopy
 from typing import Any
 

@@ -4,8 +4,6 @@ Quaternions are ``x, y, z, w`` here, as in messages; transforms3d has ``w`` firs
 in radians, and ``axes`` names an order of rotations: ``sxyz`` about fixed axes, ``rzyx`` about turning ones.
 """
 
-from __future__ import annotations
-
 import math
 from functools import reduce
 from typing import Any
@@ -89,11 +87,7 @@ def rotation_matrix(angle: float, direction: Any, point: Any = None) -> Array:
 
 
 def rotation_from_matrix(matrix: Any) -> tuple[float, Array, Array]:
-    """Angle, axis and a point on the axis of a rotation.
-
-    Raises:
-        ValueError: the matrix is not a rotation.
-    """
+    """Angle, axis and a point on the axis of a rotation; ValueError if the matrix is not a rotation."""
     direction, angle, point = axangles.aff2axangle(np.asarray(matrix))
     return angle, direction, point
 

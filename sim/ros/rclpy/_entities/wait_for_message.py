@@ -8,11 +8,9 @@ from sim.quantities.nanoseconds import wait_ns
 from sim.ros.entities.subscription import Subscription
 from sim.ros.entities.type_support import check_is_valid_msg_type
 from sim.ros.middleware.delivery import Delivery
+from sim.ros.node.node import Node
 from sim.ros.qos.qos import QoSProfile, as_profile
 from sim.ros.scheduling.entity import never_called
-
-if TYPE_CHECKING:
-    from sim.ros.node.node import Node
 
 
 class _AwaitedMessage(Subscription):
