@@ -289,9 +289,9 @@ class ActionServer(ActionWaitable):
         if self._result_timeout >= 0:
             if self._node.executor is not None:
                 self._node.executor._expiry_set(self._node.get_clock())
-            self._host.clock.call_at(self._host.clock.now() + self._result_timeout, self._look_for_expired)
+            self._host.clock.call_at(self._host.clock.now() + self._result_timeout, self._check_expiry)
 
-    def _look_for_expired(self) -> None:
+    def _check_expiry(self) -> None:
         with self._host.lock:
             now = self._host.clock.now()
             if not self.destroyed and self._expired(now):

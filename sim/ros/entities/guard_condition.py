@@ -24,9 +24,9 @@ class BareGuardCondition(BareEntity):
         with self._host.lock:
             self.become_ready(self._host.clock.now())
 
-    def look(self, watcher: Watcher, now: int) -> bool:
+    def check(self, watcher: Watcher, now: int) -> bool:
         """Whether the flag is set; this clears it. Called with the host's lock held."""
-        ready = super().look(watcher, now)
+        ready = super().check(watcher, now)
         self.pending = False
         return ready
 

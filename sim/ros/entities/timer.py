@@ -119,7 +119,7 @@ class Timer(Entity):
             self.become_idle()
             if self._ros_schedule is not None:
                 self._ros_schedule.due = self.clock.now().nanoseconds + self.period
-                self._look_at_ros_time()
+                self._check_ros_time()
                 return
             self.due = self._host.clock.now() + self.period
             self.node._agenda.timer_set(self)
@@ -208,7 +208,7 @@ class Timer(Entity):
         epoch = self._host.clock.epoch
         before = RosTimeSchedule(epoch + self.due, epoch + self._last_call)
         self._ros_schedule = after_change(before, self.clock.now().nanoseconds, self.period, credit)
-        self._look_at_ros_time()
+        self._check_ros_time()
 
     def _follow_system_time(self, credit: int) -> None:
         """The clock follows the run's clock again."""
@@ -228,9 +228,9 @@ class Timer(Entity):
         """ROS time was set."""
         if self._ros_schedule is not None:
             self._ros_schedule.time_set(self.clock.now().nanoseconds, self.period)
-            self._look_at_ros_time()
+            self._check_ros_time()
 
-    def _look_at_ros_time(self) -> None:
+    def _check_ros_time(self) -> None:
         """Become ready or idle by the ROS time schedule."""
         schedule = self._ros_schedule
         if schedule is None or self._canceled or schedule.due > self.clock.now().nanoseconds:
@@ -249,7 +249,7 @@ class Timer(Entity):
             )
         schedule.called(now, self.period)
         self.become_idle()
-        self._look_at_ros_time()
+        self._check_ros_time()
         return info
 
     def invoke(self, taken: TakenData) -> Any:

@@ -113,9 +113,9 @@ class BareTimer(BareEntity):
         self._due = self._last_call + period_nsec
         self._canceled = not autostart
 
-    def look(self, watcher: Watcher, now: int) -> bool:
+    def check(self, watcher: Watcher, now: int) -> bool:
         """Whether the timer is due. Called with the host's lock held."""
-        super().look(watcher, now)
+        super().check(watcher, now)
         return not self._canceled and self._due <= now
 
     def next_due(self) -> int | None:

@@ -49,7 +49,7 @@ class BareWaitSet(ProgramWaitSet):
         while True:
             with self._host.lock:
                 now = clock.now()
-                due = self.look(self, now)
+                due = self.check(self, now)
             if any(map(any, self._ready.values())) or (deadline is not None and now >= deadline):
                 return
             self._more.wait(min((each for each in (due, deadline) if each is not None), default=None))

@@ -1,7 +1,6 @@
 """The contents of published messages, on their way to the trace."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, cast
 
 import msgspec
@@ -25,20 +24,24 @@ _MOST_WAITING = 32_000_000
 """Estimated bytes of messages that may wait to be encoded."""
 
 
-@dataclass(slots=True)
 class _ContentTopic:
     """A topic's number, and the encoded size of its last message in bytes."""
 
-    number: TopicId
-    size: int = 0
+    __slots__ = ("number", "size")
+
+    def __init__(self, number: TopicId) -> None:
+        self.number = number
+        self.size = 0
 
 
-@dataclass(slots=True)
 class _Content:
-    """A message that no longer changes, and its topic."""
+    """A message that no longer changes, and its topic. Not a dataclass: msgspec would encode it by itself."""
 
-    message: Message
-    topic: _ContentTopic
+    __slots__ = ("message", "topic")
+
+    def __init__(self, message: Message, topic: _ContentTopic) -> None:
+        self.message = message
+        self.topic = topic
 
 
 class _MessageWaiting(TraceEvent, frozen=True, tag="message"):

@@ -78,7 +78,7 @@ class Node:
         overrides = [Parameter(name, value=value) for name, value in given.items()]
         self._parameter_store = ParameterStore(
             [*overrides, *(parameter_overrides or ())],
-            self._tell_parameter_change,
+            self._publish_parameter_change,
             self._context.probe.parameter_overruled,
             allow_undeclared=allow_undeclared_parameters,
         )
@@ -270,7 +270,7 @@ class Node:
         with self._agenda.host.lock:
             if self.destroyed:
                 return
-            self._tell_of_own_end()
+            self._report_own_destruction()
             self.destroyed = True
             self.executor = None
             for publisher in self._node_entities.publishers:
@@ -280,7 +280,7 @@ class Node:
             withdraw_rosout(self, self._rosout_publisher)
             self._context.network.leave_node(self)
 
-    def _tell_of_own_end(self) -> None:
+    def _report_own_destruction(self) -> None:
         """Record it on the trace if one of the node's own callbacks destroys the node."""
         probe = self._context.probe
         here = probe.callback_here()
@@ -295,7 +295,7 @@ class Node:
             return None
         return NodeOverrides(self._node_names.full_name, overrides)
 
-    def _tell_parameter_change(self, change: ParameterChange) -> None:
+    def _publish_parameter_change(self, change: ParameterChange) -> None:
         publish_change(self._parameter_event_publisher, change)
 
     def __enter__(self) -> Node:

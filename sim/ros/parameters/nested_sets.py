@@ -12,20 +12,20 @@ class _Thread(threading.local):
 
 
 class NestedSetDetector:
-    """Calls ``tell`` once for each parameter that is set while it is being set. Thread-safe."""
+    """Calls ``report`` once for each parameter that is set while it is being set. Thread-safe."""
 
-    def __init__(self, tell: Callable[[str], None]) -> None:
-        self._tell = tell
+    def __init__(self, report: Callable[[str], None]) -> None:
+        self._report = report
         self._thread = _Thread()
-        self._listeners: set[str] = set()
+        self._reported: set[str] = set()
 
     @contextmanager
     def setting(self, names: Iterable[str]) -> Iterator[None]:
         """The context in which the on-set callbacks for these parameters run."""
         outer, inner = self._thread.names, frozenset(names)
-        for name in sorted((inner & outer) - self._listeners):
-            self._listeners.add(name)
-            self._tell(name)
+        for name in sorted((inner & outer) - self._reported):
+            self._reported.add(name)
+            self._report(name)
         self._thread.names = outer | inner
         try:
             yield

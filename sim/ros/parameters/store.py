@@ -45,19 +45,19 @@ class ParameterChange:
 class ParameterStore:
     """The parameters of a node by name. Callbacks run on the thread that sets parameters, the newest first.
 
-    ``tell`` is called with every change, ``overruled`` with each name that a callback sets without effect.
+    ``publish`` is called with every change, ``overruled`` with each name that a callback sets without effect.
     """
 
     def __init__(
         self,
         overrides: Iterable[AnyParameter],
-        tell: Callable[[ParameterChange], None],
+        publish: Callable[[ParameterChange], None],
         overruled: Callable[[str], None],
         *,
         allow_undeclared: bool,
     ) -> None:
-        self._tell = tell
-        self._overruled = NestedSetDetector(overruled)
+        self._publish = publish
+        self._nested_sets = NestedSetDetector(overruled)
         self._parameters: dict[str, AnyParameter] = {}
         self._descriptors: dict[str, Any] = {}
         self._parameter_overrides = {each.name: each for each in overrides}
@@ -270,7 +270,7 @@ class ParameterStore:
         return ""
 
     def _ask_callbacks(self, parameters: list[AnyParameter]) -> Any:
-        with self._overruled.setting(each.name for each in parameters):
+        with self._nested_sets.setting(each.name for each in parameters):
             for callback in tuple(self._on_set_parameters_callbacks):
                 result = callback(parameters)
                 if not result.successful:
@@ -291,7 +291,7 @@ class ParameterStore:
         self._descriptors.pop(parameter.name, None)
 
     def _finish_setting(self, parameters: list[AnyParameter], change: ParameterChange) -> None:
-        self._tell(change)
+        self._publish(change)
         for callback in tuple(self._post_set_parameters_callbacks):
             callback(parameters)
 

@@ -37,31 +37,31 @@ class ClockTimers:
         self._queue = queue
         self._call = call
         self._queued: set[Entity] = set()
-        self._next_look: Appointment | None = None
-        self._jumps = clock.create_jump_callback(_ANY_JUMP, post_callback=lambda _: self.look_soon())
+        self._next_check: Appointment | None = None
+        self._jumps = clock.create_jump_callback(_ANY_JUMP, post_callback=lambda _: self.check_soon())
 
     def add(self, timer: Entity) -> None:
         """Add a timer; this checks all timers at once."""
         self.timers[timer] = None
-        self._look()
+        self._check()
 
     def remove(self, timer: Entity) -> None:
         """Remove a timer; a queued call of it is skipped."""
         del self.timers[timer]
         if not self.timers:
             self._jumps.unregister()
-            self._call_off_look()
+            self._call_off_check()
 
-    def look_soon(self) -> None:
+    def check_soon(self) -> None:
         """Queue a check of which timers are due."""
         with self._lock:
-            self._queue.put(self._look_event)
+            self._queue.put(self._check_event)
 
-    def _look_event(self) -> None:
+    def _check_event(self) -> None:
         with self._lock:
-            self._look()
+            self._check()
 
-    def _look(self) -> None:
+    def _check(self) -> None:
         now = self._time.now()
         next_due = NEVER
         due = []
@@ -75,18 +75,18 @@ class ClockTimers:
             timer = due.pop(self._time.choose(len(due)))
             self._queued.add(timer)
             self._queue.put(partial(self._call_event, timer))
-        self._call_off_look()
+        self._call_off_check()
         if not self._queued and next_due < NEVER:
-            self._next_look = self._queue.at(next_due, self.look_soon)
+            self._next_check = self._queue.at(next_due, self.check_soon)
 
-    def _call_off_look(self) -> None:
-        if self._next_look is not None:
-            self._next_look.call_off()
+    def _call_off_check(self) -> None:
+        if self._next_check is not None:
+            self._next_check.call_off()
 
     def _call_event(self, timer: Entity) -> None:
         with self._lock:
             self._queued.discard(timer)
             if not self._queued:
-                self.look_soon()
+                self.check_soon()
         if timer in self.timers:
             self._call(timer)

@@ -66,7 +66,7 @@ class EventsExecutor(Executor):
         self._taken: Entity | None = None
         self._parked: list[Task[Any]] = []
         self._queued_waitables: set[Entity] = set()
-        self._next_asking: Appointment | None = None
+        self._next_poll: Appointment | None = None
         self._end_signals: list[AutoResetEvent] = []
 
     # Spinning
@@ -224,13 +224,13 @@ class EventsExecutor(Executor):
         if timer not in self._registered or timer is self._taken:
             return
         if timer.kind is EntityKind.TIMER:
-            self._timers[_clock_of(timer)].look_soon()
+            self._timers[_clock_of(timer)].check_soon()
         else:
-            self._queue.at(timer.due, partial(_come_due, timer, timer.due))
+            self._queue.at(timer.due, partial(_report_due, timer, timer.due))
 
     def _expiry_set(self, clock: Clock) -> None:
         if clock in self._timers:
-            self._timers[clock].look_soon()
+            self._timers[clock].check_soon()
 
     def _wake(self) -> None:
         """Do nothing: what is ready is in the queue."""
@@ -322,9 +322,9 @@ class EventsExecutor(Executor):
         """Poll the program's waitables, and queue those that are ready."""
         due = poll_waitables(self, self.get_nodes())
         with self._lock:
-            if self._next_asking is not None:
-                self._next_asking.call_off()
-            self._next_asking = None if due is None else self._queue.at(due, self.wake)
+            if self._next_poll is not None:
+                self._next_poll.call_off()
+            self._next_poll = None if due is None else self._queue.at(due, self.wake)
             for each in [each for node in self._nodes for each in node._agenda.polled]:
                 if each.pending and each not in self._queued_waitables:
                     self._queued_waitables.add(each)
@@ -335,7 +335,7 @@ def _clock_of(timer: Entity) -> Clock:
     return cast("Any", timer).clock  # type: ignore[no-any-return]
 
 
-def _come_due(entity: Entity, due: int) -> None:
+def _report_due(entity: Entity, due: int) -> None:
     if entity.falls_due(due):
         entity.become_ready(due)
 

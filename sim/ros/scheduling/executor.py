@@ -314,7 +314,7 @@ class Executor:
         if self._waiting:
             self._signal.set()
 
-    def _ask_awaiting(self) -> None:
+    def _callback_changed(self) -> None:
         """A callback has started or ended: resume the tasks that await something unknown."""
         if self._cycle.foreign_awaits:
             self._recall_awaiting()

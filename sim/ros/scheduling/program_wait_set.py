@@ -66,7 +66,7 @@ class ProgramWaitSet:
         both = zip(self._waited[kind], self._ready[kind], strict=True)
         return [Handle(each).pointer for each, ready in both if ready]
 
-    def look(self, watcher: Watcher, now: int) -> int | None:
+    def check(self, watcher: Watcher, now: int) -> int | None:
         """Note which entities are ready, and wake ``watcher`` once more are. Return the next due time.
 
         Called with the host's lock held.
@@ -79,7 +79,7 @@ class ProgramWaitSet:
 
     def _is_ready(self, waited: Waited, watcher: Watcher, now: int) -> bool:
         if isinstance(waited, BareEntity):
-            return waited.look(watcher, now)
+            return waited.check(watcher, now)
         return self._entity_is_ready(waited, watcher, now)
 
     def _due(self, waited: Waited) -> int | None:

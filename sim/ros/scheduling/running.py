@@ -82,7 +82,7 @@ class CallbackRunner:
             return None
         if entity.pending and entity.callback_group.can_execute(entity):
             self.executor._wake()
-        self.executor._ask_awaiting()
+        self.executor._callback_changed()
         return taken
 
     def take(self, entity: Entity, now: int) -> TakenData | None:
@@ -214,7 +214,7 @@ class CallbackRunner:
         entity.callback_group.ending_execution(entity)
         executor = self._executor()
         if executor is not None:
-            executor._ask_awaiting()
+            executor._callback_changed()
             if executor._waiting:
                 executor._recheck()
 

@@ -86,7 +86,7 @@ def poll_waitables(executor: Executor, nodes: Iterable[OwnerNode]) -> int | None
         for each in asked:
             each.waitable.add_to_wait_set(wait_set)
         with lock:
-            due = wait_set.look(executor, now)
+            due = wait_set.check(executor, now)
         for each in asked:
             ready = each.waitable.is_ready(wait_set)
             with lock:

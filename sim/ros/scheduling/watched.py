@@ -28,7 +28,7 @@ class BareEntity:
         """A number that identifies the entity among all living objects."""
         return id(self)
 
-    def look(self, watcher: Watcher, now: int) -> bool:
+    def check(self, watcher: Watcher, now: int) -> bool:
         """Whether the entity is ready; ``watcher`` is woken at the next time. Called with the host's lock."""
         self._watchers[watcher] = None
         return self.pending

@@ -188,7 +188,7 @@ class WorkerPool:
             self._executor._wake_spinner()
         return begun
 
-    def _tell_begun(self, worker: Worker) -> None:
+    def _report_begun(self, worker: Worker) -> None:
         """Let the executor serve what it has found, if it waits until workers have started."""
         if self._starting is worker:
             worker.began_in = self._clock.turn

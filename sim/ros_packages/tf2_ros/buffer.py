@@ -17,7 +17,7 @@ from sim.ros_packages.tf2_ros.buffer_interface import BufferInterface
 __all__ = ["Buffer"]
 
 _AT_ONCE = Duration()
-_LOOK_AGAIN = 0.02
+_POLL_PERIOD = 0.02
 """Seconds between two polls of a waiting thread."""
 _JUMPED = Duration(seconds=3.0)
 """If the clock goes back by more than this, it was set, and the wait ends."""
@@ -38,7 +38,7 @@ class Buffer(BufferCore, BufferInterface):
         BufferInterface.__init__(self)
         self._waiting: list[Callable[[], None]] = []
         if node is not None:
-            self.srv = node.create_service(FrameGraph, "tf2_frames", self._tell_frames)
+            self.srv = node.create_service(FrameGraph, "tf2_frames", self._answer_frames)
         self.clock = Clock() if node is None else node.get_clock()
         threshold = JumpThreshold(min_forward=None, min_backward=Duration(seconds=-1), on_clock_change=True)
         self.jump_handle = self.clock.create_jump_callback(threshold, post_callback=self.time_jump_callback)
@@ -48,23 +48,23 @@ class Buffer(BufferCore, BufferInterface):
         get_logger("tf2_buffer").warning("Detected jump back in time. Clearing tf buffer.")
         self.clear()
 
-    def _tell_frames(self, _request: Any, response: Any) -> Any:
+    def _answer_frames(self, _request: Any, response: Any) -> Any:
         response.frame_yaml = self.all_frames_as_yaml()
         return response
 
     def set_transform(self, transform: Any, authority: str) -> None:
         """Add a transform, and wake the waiting tasks."""
         super().set_transform(transform, authority)
-        self._look_again()
+        self._recheck()
 
     def set_transform_static(self, transform: Any, authority: str) -> None:
         """Add a static transform, and wake the waiting tasks."""
         super().set_transform_static(transform, authority)
-        self._look_again()
+        self._recheck()
 
-    def _look_again(self) -> None:
-        for look in tuple(self._waiting):
-            look()
+    def _recheck(self) -> None:
+        for check in tuple(self._waiting):
+            check()
 
     def lookup_transform(
         self, target_frame: str, source_frame: str, time: Any, timeout: Any = _AT_ONCE
@@ -155,7 +155,7 @@ class Buffer(BufferCore, BufferInterface):
     def _await(self, can: Callable[[], tuple[int, str]], look_up: Callable[[], Any]) -> Any:
         future = Future()
 
-        def look() -> None:
+        def check() -> None:
             if future.done():
                 return
             try:
@@ -164,14 +164,14 @@ class Buffer(BufferCore, BufferInterface):
             except Exception as error:  # noqa: BLE001 -- the awaiting task gets it
                 future.set_exception(error)
 
-        look()
+        check()
         if not future.done():
-            self._waiting.append(look)
-            future.add_done_callback(lambda _: self._waiting.remove(look))
+            self._waiting.append(check)
+            future.add_done_callback(lambda _: self._waiting.remove(check))
         return future
 
 
-def _wait_until(can: Callable[[], tuple[int, str]], timeout: Any, whole: bool) -> Any:
+def _wait_until(can: Callable[[], tuple[int, str]], timeout: Any, with_reason: bool) -> Any:
     clock = Clock()
     begun = clock.now()
     while (
@@ -180,6 +180,6 @@ def _wait_until(can: Callable[[], tuple[int, str]], timeout: Any, whole: bool) -
         and not can()[0]
         and clock.now() + _JUMPED >= begun
     ):
-        clock_of_the_run.sleep(_LOOK_AGAIN)
+        clock_of_the_run.sleep(_POLL_PERIOD)
     found = can()
-    return found if whole else found[0]
+    return found if with_reason else found[0]
