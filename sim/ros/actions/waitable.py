@@ -1,14 +1,14 @@
 """The base of action servers and clients: several services and topics, served as one callback.
 
-An executor sees one waitable. What arrives at its parts makes it ready; a call takes the oldest of each part
-that had something when the executor looked, and handles them one after another, in the order in which the
-parts were added: rclpy's ``is_ready`` keeps which these are for ``take_data``. An EventsExecutor has it take
-from one part for each arrival (``HandleWaitableReady``).
+An executor sees one waitable. An item for one of its parts makes it ready. A call takes the oldest item of
+each part that had one at the executor's snapshot, and handles the items in the order in
+which the parts were added: rclpy's ``is_ready`` remembers these parts for ``take_data``. On an
+EventsExecutor, each arrival takes from one part only (``HandleWaitableReady``).
 """
 
 import inspect
 from collections.abc import Callable, Container
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from sim.interfaces import ActionType
 from sim.ros.actions.parts import ClientPart, Part, ServicePart, SubscriptionPart
@@ -57,7 +57,7 @@ class ActionWaitable(Entity):
         self._probe = node.context.probe
         self._parts: list[tuple[Part, Handler]] = []
         self._to_take: Container[Entity | None] = ()
-        # The parts are never served by themselves, so they are no members of the program's group.
+        # No executor serves the parts by themselves, so they are not members of the program's group.
         self.parts_group = ReentrantCallbackGroup()
 
     @property
@@ -111,19 +111,19 @@ class ActionWaitable(Entity):
         return sum(part.queued for part, _ in self._parts)
 
     def on_snapshot(self) -> None:
-        """A snapshot names it: what comes to other parts from here on is left for the next one."""
+        """A snapshot contains the waitable: items that other parts get later wait for the next snapshot."""
         self._to_take = {part for part, _ in self._parts if part.pending}
 
     def arrivals(self) -> list[Part | None]:
-        """What waits, part by part."""
+        """The part of each queued item, part by part."""
         return [part for part, _ in self._parts for _ in range(part.queued)]
 
     def expect(self, arrived: Entity | None) -> None:
-        """Take from one part; None: from none, for a result was kept long enough."""
+        """Take from one part only; None: from no part, because a result has expired."""
         self._to_take = (arrived,)
 
     def take(self, now: int) -> TakenData | None:
-        """Take the oldest of each part that had something when the executor looked."""
+        """Take the oldest item of each part that had one at the snapshot."""
         found = [
             (taken, handler)
             for part, handler in self._parts

@@ -70,11 +70,11 @@ def init(
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
 ) -> Any:
-    """Begin; ``args`` None means the program's own arguments.
+    """Initialise the context; ``args`` None means the program's own arguments.
 
     Returns an ``InitContextManager``, None in releases without ``with`` blocks.
 
-    ``signal_handler_options`` None means all for the default context, none for another.
+    ``signal_handler_options`` None means all signals for the default context, and none for another.
 
     Raises:
         RuntimeError: the context was initialised before.

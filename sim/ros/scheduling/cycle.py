@@ -76,7 +76,7 @@ class Cycle:
         """Tasks that await something unknown; they are resumed when the executor is next woken."""
         self._following = _TASKS
         self.held = False
-        """Whether what was found waits until it may be served."""
+        """Whether the found work waits until it may be served."""
         self._found_all = False
         """Whether the result of ``next`` is from a snapshot of all entities that were ready."""
         self._yielded = False
@@ -137,12 +137,12 @@ class Cycle:
         return work
 
     def _released(self) -> bool:
-        """Whether what was found may be served; else it is held until it may."""
+        """Whether found work may be served; otherwise hold it until it may."""
         self.held = self.may_serve is not None and not self.may_serve()
         return not self.held
 
     def next_found(self, now: int) -> Work | None:
-        """The next to serve of what is found already; None: that is served, or may not be served yet."""
+        """The next work that is found already; None: all is served, or none may be served yet."""
         return None if self.held else self._serve(now)
 
     def snapshot_ended(self, now: int) -> bool:
@@ -160,9 +160,9 @@ class Cycle:
         return ends
 
     def gather(self, now: int) -> bool:
-        """Gather at once if all that was found is served; whether something is to be served.
+        """Gather if all found work is served; return whether there is work to serve.
 
-        Tasks are served at once. What else is found is held until it may be served.
+        Tasks are served at once. Other work is held until it may be served.
         """
         if not (self._due_tasks or self._snapshot):
             self._ask_again()
@@ -175,7 +175,7 @@ class Cycle:
         return bool(self._due_tasks or self._tasks or self._snapshot or snapshot(self.view, now))
 
     def hold(self) -> None:
-        """Have the rest of what was found wait until it may be served."""
+        """Hold the rest of the found work until it may be served."""
         self.held = True
 
     def _serve(self, now: int) -> Work | None:
@@ -283,7 +283,7 @@ class Cycle:
     # What the present wait leaves out
 
     def stop_waiting(self) -> None:
-        """Wait no longer for what was gathered."""
+        """Stop waiting for what was gathered."""
         self.held = False
         if self.waits:
             self._following = _TASKS

@@ -251,7 +251,7 @@ class EventsExecutor(Executor):
     # Events
 
     def _serve(self, entity: Entity, arrivals: Sequence[Entity | None]) -> None:
-        """Run the callback for each arrival that it was told of and that has not been dropped since."""
+        """Run the entity's callback for each arrival that has not been dropped since."""
         if entity not in self._registered:
             return
         self._stop_if_one_is_enough()

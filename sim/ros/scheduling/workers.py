@@ -1,10 +1,11 @@
 """The worker threads of a MultiThreadedExecutor, and the queue of callbacks that wait for a worker.
 
-Whatever is yielded goes into one queue and is begun in the order of yielding; if its group has let another
-one in by then, it is not taken. For each a free worker is called, the one that has been idle longest first; a
-new one starts only when none is idle. A worker that ends a callback takes the next of the queue, whoever was
-called for it, as Python's own pools do (``_worker`` in ``concurrent.futures.thread``): it has the interpreter
-still. If the queue is empty it looks for what is ready itself, so that a busy executor needs no hand-over.
+Yielded work goes into one queue and starts in the order of yielding; if its group admits another callback
+by then, it is not taken. Each item calls a free worker, first the one that has been idle longest; a new
+worker starts only if none is idle. A worker that ends a callback takes the next item of the queue,
+whichever worker was called for it, as Python's own pools do (``_worker`` in ``concurrent.futures.thread``).
+If the queue is empty, the worker looks for ready work itself, so that a busy executor needs no hand-over
+between threads.
 """
 
 from __future__ import annotations
@@ -89,7 +90,7 @@ class WorkerPool:
         return self._called_workers > 0 and len(self._queue) > 0
 
     def submit(self, work: Work, _now: int) -> None:
-        """Have yielded work wait for a worker, and call one if one is free. With the lock held."""
+        """Queue yielded work, and call a worker if one is free. Called with the lock held."""
         self._queue.append(work)
         if len(self._queue) > self._called_workers:
             self._call_worker()
@@ -153,7 +154,9 @@ class WorkerPool:
             with self._lock:
                 now = self._clock.now()
                 begun = self._begin_queued(worker, now)
-                others_go_first = begun is None and not may_find and self._clock.runnable > self._called_workers
+                others_go_first = (
+                    begun is None and not may_find and self._clock.runnable > self._called_workers
+                )
                 if begun is None and not others_go_first:
                     begun = self._begin_found(now)
                 if begun is not None:
@@ -175,7 +178,7 @@ class WorkerPool:
             may_find = True
 
     def _begin_queued(self, worker: Worker, now: int) -> AdmittedWork | None:
-        """Begin the next in the queue, whoever was called for it."""
+        """Start the next work of the queue, whichever worker was called for it."""
         if worker.called:
             worker.called = False
             self._called_workers -= 1
@@ -183,7 +186,7 @@ class WorkerPool:
         while begun is None and self._queue:
             begun = self._runner.begin(self._queue.popleft(), now)
         if self._starting is not None or self._spinner_waits:
-            self._tell_begun(worker)
+            self._report_begun(worker)
         if begun is not None and self._called_workers == 0 and self._executor._cycle.would_find(now):
             self._executor._wake_spinner()
         return begun
@@ -199,7 +202,7 @@ class WorkerPool:
             self._executor._wake_spinner()
 
     def _begin_found(self, now: int) -> AdmittedWork | None:
-        """Begin the first of what is ready, and give the rest of its cycle to others."""
+        """Start the first ready callback, and give the rest of its cycle to other workers."""
         if len(self._queue) > self._called_workers or not self._may_look():
             return None
         cycle = self._executor._cycle
