@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 def open_in_lines(
     look: "Appearance",
     start_lesson: str | None = None,
+    start_exercise: str | None = None,
     start_puzzle: "Puzzle | None" = None,
     start_file: tuple[Path, Sequence[str], str] | None = None,
     start_changes: "Changes | None" = None,
@@ -46,8 +47,9 @@ def open_in_lines(
             console = _recording(terminal, start_recording)
         elif start_puzzle is not None:
             console = _puzzle(terminal, start_puzzle)
-        elif start_lesson is not None:
-            console = _program(terminal, of_lesson(find(start_lesson), lessons()), start_changes)
+        elif (lesson := start_lesson or start_exercise) is not None:
+            subject = of_lesson(find(lesson), lessons())
+            console = _program(terminal, subject, start_changes, with_exercise=start_exercise is not None)
         elif start_file is not None:
             console = _program(terminal, of_file(*start_file), start_changes)
         elif start_program is not None:
@@ -62,14 +64,19 @@ def open_in_lines(
 
 
 def _program(
-    terminal: "LineTerminal", subject: "ShownProgram", changes: "Changes | None"
+    terminal: "LineTerminal",
+    subject: "ShownProgram",
+    changes: "Changes | None",
+    *,
+    with_exercise: bool = False,
 ) -> "LinearConsole[Any]":
     from cbtui.engines.listening import ListeningSession
     from cbtui.learning.outcome import observe_engine
     from cbtui.runs.setup.changes import Changes
     from cbtui.screens.linear.lesson import LessonConsole
 
-    return LessonConsole(terminal, subject, changes or Changes(), ListeningSession, observe_engine)
+    changes = changes or Changes()
+    return LessonConsole(terminal, subject, changes, ListeningSession, observe_engine, with_exercise)
 
 
 def _recording(terminal: "LineTerminal", recording: "Recording") -> "LinearConsole[Any]":

@@ -53,6 +53,7 @@ class LessonConsole(LinearConsole[LiveRun]):
         changes: Changes,
         open_session: OpenSession,
         observe: Observe,
+        with_exercise: bool = False,
     ) -> None:
         super().__init__(terminal, subject, self._make_run, live=lambda: self.runs.run)
         self._open_session = open_session
@@ -65,6 +66,7 @@ class LessonConsole(LinearConsole[LiveRun]):
         take_over = TakeOver(self, runs, subject, self._open_choosing)
         keys = (PaceKeys(self, runs), WorldKeys(runs), TypedLines(self), self.restarts, take_over)
         exercise = None if lesson is None else ExerciseInLines(self, lesson, self.progress)
+        self._opening_exercise = exercise if with_exercise else None
         recording = RecordingKey(self, runs, FinishInLines(self))
         refusals = Refusals(self, lesson, self._is_available)
         of_time = TimeRefusals(self, runs, self._is_available)
@@ -110,11 +112,14 @@ class LessonConsole(LinearConsole[LiveRun]):
         teaching = self._teaching
         self.tell_page(introduction(self.subject.guide) or f"# {self.subject.heading}")
         if teaching is not None:
-            if teaching.can_predict and not replace(self.restarts.changes, real=None).words:
+            changed = bool(replace(self.restarts.changes, real=None).words)
+            if teaching.can_predict and not changed and self._opening_exercise is None:
                 yield from teaching.predict()
             self.tell_page(teaching.lesson.task or "")
         self.tell(self.runs.run.start())
         self.tell("The run begins. ? tells the keys, q leaves.")
+        if self._opening_exercise is not None:
+            self._opening_exercise.action_exercise()
 
     def turn(self) -> None:
         """Print the news, and the comparison if it is due."""

@@ -73,12 +73,16 @@ class Lesson(Typist):
         keys: Keymap | None = None,
         more: Sequence[AnyEvent] = (),
         lesson: str = "shared-group",
+        *,
+        with_exercise: bool = False,
     ) -> None:
         self.engines = FakeEngines([*EVENTS, *more], ns(12.9))
         subject = of_lesson(find(lesson), lessons())
         super().__init__(
             script,
-            lambda terminal: LessonConsole(terminal, subject, Changes(), self.engines, observed(EVENTS)),
+            lambda terminal: LessonConsole(
+                terminal, subject, Changes(), self.engines, observed(EVENTS), with_exercise
+            ),
             keys,
         )
 
@@ -294,6 +298,16 @@ def test_an_exercise_is_made_and_a_changed_file_checked(
     lines = Lesson([("problem: ", "e"), ("The exercise is solved", "q")], lesson=EXERCISE).run()
     assert any(line.endswith("checks passed") for line in lines)
     assert Progress().of(EXERCISE).passed
+
+
+def test_an_exercise_that_is_opened_is_told_at_once_without_predictions(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    lines = Lesson([("checks it then", "q")], lesson=EXERCISE, with_exercise=True).run()
+    (file,) = tmp_path.iterdir()
+    assert any(line.startswith(f"Edit {file}; e checks it then") for line in lines)
+    assert Progress().of(EXERCISE).answers == ()
 
 
 def test_the_solution_is_told_line_by_line_after_a_warning(
