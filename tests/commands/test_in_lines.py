@@ -74,14 +74,16 @@ def test_arrows_are_no_other_keys(monkeypatch: pytest.MonkeyPatch) -> None:
     assert typed == ["ab", None]
 
 
-def test_the_setting_is_kept_in_the_configuration_and_what_is_only_a_picture_says_so(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+@pytest.mark.slow
+def test_an_exercise_is_opened_in_lines_by_the_setting_in_the_configuration(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     config = tmp_path / "c.toml"
     config.write_text('[display]\nscreen_reader = "on"\n')
-    with pytest.raises(SystemExit):
-        main(["open", "split-groups", "--exercise", "--config", str(config)])
-    assert "cbtui check split-groups tells it in lines" in capsys.readouterr().err
+    monkeypatch.chdir(tmp_path)
+    with standard_input(piped("q\n"), monkeypatch):
+        assert main(["open", "split-groups", "--exercise", "--config", str(config)]) == 0
+    assert f"Edit {tmp_path / 'split_groups.py'}; e checks it then." in capsys.readouterr().out
 
 
 def test_keys_of_a_terminal_come_one_by_one_and_lines_when_they_are_wanted(
