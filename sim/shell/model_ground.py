@@ -30,7 +30,7 @@ _FIND: dict[Kind, Callable[[str, str], Any]] = {
 class _LineNode(Node):
     """A line's node: its parameters are set before any other program discovers it."""
 
-    def _tell_parameter_change(self, change: ParameterChange) -> None:
+    def _publish_parameter_change(self, change: ParameterChange) -> None:
         pass
 
 

@@ -1,4 +1,4 @@
-"""Serialization of messages as CDR."""
+"""Encodes messages as CDR, and decodes them."""
 
 from typing import TypeVar
 
@@ -9,7 +9,7 @@ MessageT = TypeVar("MessageT", bound=Message)
 
 
 def serialize_message(message: Message) -> bytes:
-    """Serialize a message: little-endian CDR with its header.
+    """Encode a message: little-endian CDR with its header.
 
     Raises:
         AttributeError: it is not a message.
@@ -20,7 +20,7 @@ def serialize_message(message: Message) -> bytes:
 
 
 def deserialize_message(serialized_message: bytes, message_type: type[MessageT]) -> MessageT:
-    """Deserialize a message of a type.
+    """Decode a message of a type.
 
     Raises:
         AttributeError, RuntimeError: it is not a message type.

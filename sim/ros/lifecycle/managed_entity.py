@@ -31,7 +31,7 @@ class ManagedEntity:
         return TransitionCallbackReturn.SUCCESS
 
     def on_error(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """A transition failed; SUCCESS makes the node unconfigured, any other outcome finalizes it."""
+        """A transition failed; SUCCESS makes the node unconfigured, any other outcome finalises it."""
         return TransitionCallbackReturn.SUCCESS
 
 

@@ -1,4 +1,4 @@
-"""The state that the probe attaches to rclpy's objects."""
+"""The state that the probe keeps on rclpy's objects."""
 
 from __future__ import annotations
 
