@@ -27,7 +27,7 @@ class StorageOptions:
 
 @dataclass
 class ConverterOptions:
-    """The serialization of messages; it is always ``cdr``."""
+    """The encoding of messages; it is always ``cdr``."""
 
     input_serialization_format: str = ""
     output_serialization_format: str = ""
