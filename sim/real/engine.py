@@ -125,6 +125,7 @@ class RealEngine:
         )
         self._hold = HOLD
         self._cause: Cause | None = None
+        self._failed_before = False
         self._given_up_at: int | None = None
         self._due: list[_Due] = []
 
@@ -209,13 +210,15 @@ class RealEngine:
             self._kill()
 
     def _finish(self) -> None:
+        outcome = self._programs.outcome()
+        if self._cause is not None:
+            if outcome.failed and not self._failed_before:
+                self._tell(Severity.ERROR, outcome.reason)
+            failed = replace(outcome, time_was_up=self._cause.time_was_up)
+            outcome = failed if self._failed_before else self._cause
         now = time.monotonic_ns()
         self._translation.begin_at(now)
         self._translation.release(now)
-        outcome = self._programs.outcome()
-        if self._cause is not None:
-            failed = replace(outcome, time_was_up=self._cause.time_was_up)
-            outcome = failed if outcome.failed else self._cause
         self._outbox.close(outcome.event(self._now()))
 
     # the run's time
@@ -274,10 +277,13 @@ class RealEngine:
     def _stop(self, cause: Cause, at: int | None = None) -> None:
         """Interrupt the programs, and kill them if they take too long; watched programs go on.
 
+        What fails from then on is told, and is no failure of the run, as on the model.
+
         The trace shows this at the monotonic time ``at``, or now.
         """
         if self._cause is None:
             self._cause = cause
+            self._failed_before = self._programs.has_failed
             self._translation.take([RunEnding(time.monotonic_ns() if at is None else at, cause.reason)])
             self._given_up_at = time.monotonic_ns() + int(_GRACE * 1e9)
             self._programs.interrupt()

@@ -277,6 +277,11 @@ class LaunchedPrograms:
         return any(each.process == process for each in self._programs)
 
     @property
+    def has_failed(self) -> bool:
+        """Whether one of them has failed so far."""
+        return self._failure is not None
+
+    @property
     def any_run(self) -> bool:
         """Whether one of them has not ended."""
         return bool(self._running or self._launches)

@@ -76,6 +76,11 @@ class WatchedProcesses:
         return link.is_open
 
     @property
+    def has_failed(self) -> bool:
+        """Whether one of them did not exit by itself so far."""
+        return any(each.failed for each in self._outcomes.values())
+
+    @property
     def any_run(self) -> bool:
         """Whether to go on: a process is there, or none has come yet."""
         return not self._left and (len(self._outcomes) < len(self._links) or not self._links)

@@ -221,6 +221,20 @@ class Tried(Node):
 """
 
 
+RAISES_AT_ITS_END = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.create_timer(0.1, self.tick)
+
+    def tick(self):
+        try:
+            time.sleep(10)
+        finally:
+            raise ValueError("too late")
+"""
+
+
 def run(
     folder: Path,
     body: str,

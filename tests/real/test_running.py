@@ -92,6 +92,17 @@ def test_the_run_ends_when_its_time_is_up_and_nothing_had_to_be_forced(starved: 
     assert starved.loss is None
 
 
+@pytest.mark.parametrize("ground", ["ros2", "model"])
+def test_what_a_program_raises_when_it_is_ended_is_told_and_no_failure_of_the_run(
+    tmp_path: Path, ground: str
+) -> None:
+    run = programs.run(tmp_path, programs.RAISES_AT_ITS_END, ground=ground, seconds=1.0)
+    assert run.ending.time_was_up
+    assert not run.ending.failed
+    (told,) = (event.text for event in run.events if isinstance(event, Notice))
+    assert "raised ValueError: too late" in told
+
+
 @pytest.mark.parametrize(
     ("body", "executor", "rule"),
     [
