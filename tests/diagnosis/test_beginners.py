@@ -27,6 +27,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("rate_sleep", "self-made-deadlock", "self.rate.sleep()", "num_threads=2"),
         ("wrong_arity", "program-raised", "def on_chatter(self):", "def on_chatter(self, message)"),
         ("wrong_arity_of_timer", "program-raised", "def tick(self, event):", "def tick(self)"),
+        (
+            "wrong_arity_of_service",
+            "program-raised",
+            "def on_bell(self, request):",
+            "def on_bell(self, request, response)",
+        ),
         ("wait_for_service", "service-never-comes", "self.client.wait_for_service()", "start the node"),
         ("lock_across_callbacks", "self-made-deadlock", "with self.", "in the same order"),
         (

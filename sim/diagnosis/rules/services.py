@@ -69,6 +69,11 @@ class UnreturnedResponse(Rule):
             remedies=remedies,
         )
 
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant if the exception ended the program: that is the problem."""
+        ended = timeline.ended
+        return None if ended is not None and found.detail and found.detail == ended.error else self.weight
+
 
 class NobodyOffers(Rule):
     """A service was called while nobody offered it: the request is lost, and no reply will come."""
