@@ -4,6 +4,7 @@ from collections import deque
 from collections.abc import Iterable
 from functools import partial
 from heapq import heappop, heappush
+from itertools import groupby
 from random import Random
 
 from sim.clock.moves import Moves
@@ -24,7 +25,11 @@ def searched(results: Iterable[Result], distro: str, runs: int) -> list[Result]:
 
 
 class Search:
-    """Best first: what goes longest as a real run is tried with one choice more, before it goes otherwise."""
+    """Best first: what goes longest as a real run is tried with one choice more, before it goes otherwise.
+
+    A thread is often left at several places in turn with the same effect, so the places within a stretch are
+    tried spread out, not in a row; and runs that go on alike behind their last choice are followed once.
+    """
 
     def __init__(self, result: Result, distro: str) -> None:
         self._case = result.case
@@ -32,6 +37,7 @@ class Search:
         self._distro = distro
         self._untried: list[tuple[int, float, float, Moves]] = [(0, 0.0, 0.0, {})]
         self._random = Random(1)
+        self._followed: set[tuple[object, ...]] = set()
 
     def finds(self, runs: int) -> bool:
         """Whether one of so many runs of the model goes as a real one."""
@@ -48,12 +54,19 @@ class Search:
             return True
         alike, place = max(self._alike(model, real) for real in self._real)
         last = max(moves, default=-1)
-        for number, (said, options, preempts) in enumerate(model.choices):
-            if number > last and said <= place:
-                preemptions = sum(model.choices[each][2] for each in moves) + preempts
-                cost = len(moves) + 2 * preemptions + 0.1 * (place - said)
+        behind = (model.words, model.choices[last + 1 :])
+        if behind in self._followed:
+            return False
+        self._followed.add(behind)
+        left = range(last + 1, len(model.choices))
+        for (said, options, preempts), stretch in groupby(left, model.choices.__getitem__):
+            if said > place:
+                break
+            preemptions = sum(model.choices[each][2] for each in moves) + preempts
+            cost = len(moves) + 2 * preemptions + 0.1 * (place - said)
+            for turn, number in enumerate(_spread_out(list(stretch))):
                 for option in range(1, options):
-                    rank = (-alike, cost, self._random.random())
+                    rank = (-alike, cost + 0.15 * turn.bit_length(), self._random.random())
                     heappush(self._untried, (*rank, {**moves, number: option}))
         return False
 
@@ -71,3 +84,8 @@ class Search:
                 words.clear()
                 first = min(first, place)
         return alike, first
+
+
+def _spread_out(numbers: list[int]) -> list[int]:
+    """Consecutive numbers in another order, so that any first few of them are far apart."""
+    return sorted(numbers, key=lambda each: f"{each - numbers[0]:020b}"[::-1])
