@@ -73,7 +73,7 @@ def _say_unwritable(trouble: OSError) -> int:
     if isinstance(trouble, BrokenPipeError):
         return _BROKEN_PIPE
     with suppress(OSError):
-        sys.stderr.write(f"cbtui: what it says cannot be written: {trouble.strerror}\n")
+        sys.stderr.write(f"cbtui: its output cannot be written: {trouble.strerror}\n")
     streams.flush_streams()
     return 1
 
@@ -85,7 +85,7 @@ def _run_command(words: list[str]) -> int:
     options = _parser().parse_args(words[:split])
     options.arguments = words[split + 1 :]
     if not all(map(is_text, options.arguments)):
-        refuse("what stands behind -- has to be text in UTF-8")
+        refuse("what follows -- has to be text in UTF-8")
     _check_folder()
     _check_memory_limit()
     action: Callable[[argparse.Namespace], int] = options.action
@@ -169,7 +169,7 @@ def _parser() -> argparse.ArgumentParser:
         "explore",
         explore.add_options,
         explore.explore,
-        help="look for an order of threads in which a program fails",
+        help="search for an order of threads in which a program fails",
         usage="%(prog)s [options] FILE.py|LESSON [-- ARGUMENTS of the file]",
         description="Run a program headless many times, each time in another order of its threads that a "
         "machine could come to: which of those that can run goes on, who gets a lock, where one is left for "
@@ -202,7 +202,7 @@ def _parser() -> argparse.ArgumentParser:
         "prove",
         prove.add_options,
         prove.prove,
-        help="look whether a program does the same on the model and on real ROS 2",
+        help="compare what a program does on the model and on real ROS 2",
         usage="%(prog)s [options] LESSON|FILE.py … [-- ARGUMENTS of the files]",
         description=prove.DESCRIPTION,
     )
@@ -212,7 +212,7 @@ def _parser() -> argparse.ArgumentParser:
         check.add_options,
         check.check,
         help="check your file for an exercise",
-        description="Run your file on virtual time, or with --on ros2 on real ROS 2, and look whether it "
+        description="Run your file on virtual time, or with --on ros2 on real ROS 2, and check whether it "
         "does what the exercise asks. Ends with 0 if it does, with 1 if not.",
     )
     command(
@@ -222,9 +222,9 @@ def _parser() -> argparse.ArgumentParser:
         help="check the files of many learners",
         description=grade.DESCRIPTION,
     )
-    command("reset", reset.add_options, reset.reset, help="forget how far you have come in a lesson")
+    command("reset", reset.add_options, reset.reset, help="forget your progress in a lesson")
     command("replay", console.add_replay_options, console.replay, help="show a recording in the console")
-    command("info", info.add_options, info.info, help="tell what is in a recording")
+    command("info", info.add_options, info.info, help="summarise a recording")
     command(
         "compare",
         compare.add_options,
@@ -240,14 +240,14 @@ def _parser() -> argparse.ArgumentParser:
         "export",
         export.add_options,
         export.export_command,
-        help="take a recording to trace viewers, spreadsheets and paper",
+        help="turn a recording into a picture, a table, a report or a trace",
         usage="%(prog)s FILE.mcap --FORMAT OUT …",
     )
     command(
         "eject",
         eject.add_options,
         eject.eject,
-        help="take the lessons' nodes home, as ROS 2 packages",
+        help="write the lessons' nodes as ROS 2 packages",
         description="Write each unit as an ament_python package into a folder, for colcon build and ros2 "
         "launch on a ROS 2 machine. The nodes are the lessons' own, word for word. Nothing is written where "
         "a file that you have changed is in the way.",
@@ -259,7 +259,7 @@ def _parser() -> argparse.ArgumentParser:
         help="show the console in a browser",
         usage="%(prog)s [options] [-- what cbtui open gets]",
         description="Show the console in a browser, each visitor one of their own. Without more it opens on "
-        "the menu; what stands behind -- is opened as cbtui open would.",
+        "the menu; what follows -- is opened as cbtui open would.",
     )
     command("new", new.add_options, new.new, help="write a small node of your own to begin with")
     command(
@@ -273,14 +273,14 @@ def _parser() -> argparse.ArgumentParser:
         lint_lesson.add_options,
         lint_lesson.lint_lesson,
         help="prove that a lesson is right",
-        description="Run a lesson's node, starter and solution, and look whether all that its files say of "
-        "them is so. Ends with 0 if it is.",
+        description="Run a lesson's node, starter and solution, and check that all that its files say of "
+        "them is true. Ends with 0 if it is.",
     )
     command(
         "doctor",
         doctor.add_options,
         doctor.examine,
-        help="look whether this machine has what cbtui needs",
+        help="check whether this machine has what cbtui needs",
         description="Look at Python, PyBullet, the terminal, folders and files, and run an engine for a "
         "moment; nothing is changed. Ends with 0 if nothing is wrong, with 1 if something is.",
     )
@@ -294,13 +294,13 @@ def _parser() -> argparse.ArgumentParser:
         "completion",
         completion.add_options,
         partial(completion.completion, _parser),
-        help="print what makes a shell complete cbtui's words",
+        help="print the completion script for a shell",
         description="Print a script for a shell that completes commands, options, lessons and files: "
         'eval "$(cbtui completion bash)" in ~/.bashrc, the like in ~/.zshrc; cbtui completion fish | source.',
     )
     manual = commands.add_parser("man", help="print the manual page: cbtui man | man -l -")
     manual.set_defaults(action=partial(completion.man, _parser))
-    commands.add_parser("ros2", help="carry out a ros2 line in the run that is going on", add_help=False)
+    commands.add_parser("ros2", help="run a ros2 line in the run that is going on", add_help=False)
     return parser
 
 

@@ -18,7 +18,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     parser.add_argument("lesson", metavar="LESSON", help="a lesson with an exercise")
     parser.add_argument(
-        "file", metavar="FILE.py", nargs="?", help="the file to check (what cbtui start has put here)"
+        "file", metavar="FILE.py", nargs="?", help="the file to check (the one that cbtui start put here)"
     )
     add_limit(parser, 60)
     add_seed(parser)

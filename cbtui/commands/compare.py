@@ -22,9 +22,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     for name in ("A", "B"):
         parser.add_argument(name, help=f"a recording ({_RECORDING}), a lesson's id, or a node or launch file")
     appearance.add_options(parser)
-    parser.add_argument(
-        "--text", action="store_true", help="print the table, as it is done where there is no terminal"
-    )
+    parser.add_argument("--text", action="store_true", help="print the table, as without a terminal")
     parser.add_argument(
         "--from",
         dest="start",
@@ -94,7 +92,7 @@ def _check(options: argparse.Namespace) -> None:
     if options.inputs is not None and (options.calls or options.lines):
         refuse("--inputs gives what is run all its inputs; leave out --call and --at")
     if options.arguments and not any(is_file_name(name) for name in names if not _is_recording(name)):
-        refuse("only a file takes arguments; leave out what stands behind --")
+        refuse("only a file takes arguments; leave out what follows --")
 
 
 def _is_recording(name: str) -> bool:

@@ -73,7 +73,9 @@ def _open_exercise(options: argparse.Namespace) -> int:
     lesson = exercise_of(options.target)
     changed = changes.seeded_changes_of(options)
     if replace(changed, real=None).words:
-        refuse("an exercise is run as your file says: change that, and leave the options on threads and such")
+        refuse(
+            "an exercise is run as your file says: change that, and leave out the options on threads and such"
+        )
     look = appearance(options)
     if not look.screen_reader:
         need_terminal("cbtui check")

@@ -46,4 +46,6 @@ def _print(verdict: "Examination", *, plain: bool) -> None:
 def _sum(faults: int, notes: int) -> str:
     if faults:
         return f"{counted(faults, 'thing')} cbtui needs {'are' if faults > 1 else 'is'} not well."
-    return "All is well." if not notes else "cbtui works here; with what is marked ! something is left out."
+    return (
+        "All is well." if not notes else "cbtui works here; where a line is marked !, something is left out."
+    )

@@ -73,7 +73,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--merge",
         metavar="FILE.json",
         nargs="+",
-        help="run nothing, and tell the results of such files together",
+        help="run nothing, and report the results of such files together",
     )
     more_lessons.add_option(parser)
 
@@ -220,7 +220,7 @@ def _check(options: argparse.Namespace) -> None:
     if others := [name for name, given in _of_files_only(options).items() if given]:
         refuse(f"a lesson's checks are about the run that it describes; leave out {', '.join(others)}")
     if options.arguments:
-        refuse("a lesson has its own arguments; leave out what stands behind --")
+        refuse("a lesson has its own arguments; leave out what follows --")
 
 
 def _of_files_only(options: argparse.Namespace) -> dict[str, object]:

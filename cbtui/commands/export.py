@@ -51,7 +51,9 @@ def _request(options: argparse.Namespace, source: Path) -> ExportRequest:
     given = {name: getattr(options, name) for name in FORMATS}
     outputs = {name: Path(path) for name, path in given.items() if path is not None}
     if not outputs:
-        raise ExportError(f"name what to write, such as --svg lanes.svg; there are --{', --'.join(FORMATS)}")
+        raise ExportError(
+            f"name what to write, such as --svg lanes.svg; choose from --{', --'.join(FORMATS)}"
+        )
     _check_paths(outputs, source)
     placed = [options.start, options.end, options.width]
     if "svg" not in outputs and any(value is not None for value in placed):

@@ -107,7 +107,7 @@ def _chosen(terminal: "LineTerminal") -> "LinearConsole[Any] | None":
             say(f"puzzle: {puzzle.title}, {puzzle.id}\n")
     terminal.keyboard.take_lines(wanted=True)
     while True:
-        say("What is to be opened? Type a lesson's number, a puzzle's id, or a path:\n")
+        say("What do you want to open? Type a lesson's number, a puzzle's id, or a path:\n")
         line = terminal.typed.get()
         if line is None:
             return None

@@ -89,7 +89,7 @@ def _request(program: RunTargets, options: argparse.Namespace) -> "RunRequest":
             lines=options.lines,
         )
     if options.arguments:
-        refuse("a lesson has its own arguments; leave out what stands behind --")
+        refuse("a lesson has its own arguments; leave out what follows --")
     own = request_to_judge(program.lesson)
     is_as_it_says = options.seconds is None and not (options.calls or options.lines)
     return replace(

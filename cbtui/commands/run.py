@@ -54,7 +54,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="seconds of the run per real second, or max (max; on the real clock 1)",
     )
     add_chain(parser)
-    parser.add_argument("--events", metavar="FILE.jsonl", help="write every event as a line of JSON")
+    parser.add_argument(
+        "--events", metavar="FILE.jsonl", help="write each event as a line of JSON to this file"
+    )
     parser.add_argument(
         "--json", metavar="FILE.json", help="write the summary and the diagnosis as JSON, too"
     )
@@ -78,7 +80,7 @@ def add_chain(parser: argparse.ArgumentParser) -> None:
         type=values.chain,
         action="append",
         default=[],
-        help="tell how long messages took from one topic to another, and where: /scan:/cmd_vel; "
+        help="report how long messages took from one topic to another, and where: /scan:/cmd_vel; "
         "what lies between may be named as well; may be given again",
     )
 
@@ -166,4 +168,4 @@ def _check_run(options: argparse.Namespace, *, is_file: bool) -> None:
     if options.force and options.record is None:
         refuse("--force lets --record replace a file; there is nothing to record to")
     if options.arguments and not is_file:
-        refuse("a lesson has its own arguments; leave out what stands behind --")
+        refuse("a lesson has its own arguments; leave out what follows --")

@@ -67,7 +67,7 @@ def serve(options: argparse.Namespace) -> int:
     if not is_loopback(options.host):
         complain(
             f"whoever has the token and reaches {options.host} can run programs on this machine as you; "
-            "give it only to people whom you trust, and not over a network whose others could read along"
+            "give it only to people whom you trust, and not over a network on which others could read along"
         )
     os.environ.pop(_VARIABLE, None)  # programs of visitors must not see it
     token = options.token or secrets.token_urlsafe()
@@ -107,7 +107,7 @@ def _why_not(error: OSError | UnicodeError, host: str, port: int) -> str:
     if error.errno == errno.EADDRINUSE:
         return f"port {port} of {host} is in use; choose another with --port, or 0 for any that is free"
     if error.errno == errno.EACCES:
-        return f"port {port} needs more rights than yours; choose one from 1024 on with --port"
+        return f"port {port} needs more rights than yours; choose one of 1024 or more with --port"
     return f"cannot be reached at {host}: {error.strerror or error}; choose another address with --host"
 
 
@@ -121,7 +121,7 @@ def _token(text: str) -> str:
     if len(text) < _SHORTEST_TOKEN or not text.isprintable():
         # The token is not repeated: others may read the message.
         raise argparse.ArgumentTypeError(
-            f"a token has {_SHORTEST_TOKEN} or more printable characters; give such a one with --token or "
+            f"a token has {_SHORTEST_TOKEN} or more printable characters; give such a token with --token or "
             f"in {_VARIABLE}, or none at all for a random one"
         )
     return text

@@ -35,7 +35,7 @@ def engine() -> Examination:
     if trouble is not None:
         return fault("engine", f"does not run ({trouble})", _REMEDY)
     if took > _SLOW:
-        return note("engine", f"runs, after {took:.1f} s", "give the machine less else to do")
+        return note("engine", f"runs, after {took:.1f} s", "give the machine less to do besides")
     return well("engine", f"started, ran for {_RUN:g} s of virtual time and ended in {took:.2f} s")
 
 

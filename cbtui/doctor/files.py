@@ -18,7 +18,7 @@ def folders(current: Callable[[], Path]) -> Iterator[Examination]:
     yield _folder(
         "state folder",
         usual_path().parent,
-        "set HOME or XDG_STATE_HOME to a folder of yours to have progress kept",
+        "set HOME or XDG_STATE_HOME to a folder of yours, and progress is kept",
     )
     yield _temporary()
     try:

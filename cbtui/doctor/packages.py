@@ -91,7 +91,7 @@ def physics(world: ProbeProcess, *, installed: bool) -> Examination:
     install = "" if wheel is None else install_command("--force-reinstall", "--no-deps", wheel.name)
     if outcome.code != 0:
         why = outcome.death or (outcome.complained.strip().splitlines() or ["it failed"])[-1]
-        remedy = f"give --physics numpy, or install it anew: {install}" if install else "give --physics numpy"
+        remedy = f"give --physics numpy, or reinstall it: {install}" if install else "give --physics numpy"
         return fault("physics", f"PyBullet builds no world ({why})", remedy)
     if len(both := [name for name in sorted(PHYSICS) if _is_installed(name)]) > 1:
         return note(

@@ -66,7 +66,7 @@ class ProbeProcess:
             return ProbeResult(said, complained, -1, f"it did not come back within {_TIMEOUT:g} s")
         code = self._process.returncode
         return ProbeResult(
-            said, complained, code, f"it crashed by {signal.Signals(-code).name}" if code < 0 else ""
+            said, complained, code, f"it crashed with {signal.Signals(-code).name}" if code < 0 else ""
         )
 
     def end(self) -> None:

@@ -23,10 +23,10 @@ def why_silent(stands: str, stands_later: str) -> str:
     Python code that computes moves on between samples; C code that holds the GIL does not.
     """
     if not stands_later:
-        return "the machine has no time for it"
+        return "the machine is too busy"
     if stands == stands_later:
         return f"code in C keeps it, called from {stands}"
-    return f"the program computes ({stands_later}), and the machine has no time for both"
+    return f"the program computes ({stands_later}), and the machine is too busy for both"
 
 
 class HangDetector:

@@ -240,8 +240,8 @@ class ProcessSession:
         if -code == signal.SIGKILL:
             return f"the engine was killed by signal {-code}"
         if overflowed(stack_dump):
-            return f"the program called itself until its stack was full, and crashed by {name}"
-        return f"the program crashed by {name}"
+            return f"the program called itself until its stack was full, and crashed with {name}"
+        return f"the program crashed with {name}"
 
 
 def _engine(

@@ -21,9 +21,9 @@ _WIDTH = "Make the pane wider or narrower; that is remembered"
 _HEIGHT = "Make the pane, or the lanes, taller or lower"
 _JUMP = "Show a letter on each place; type it to go there"
 _OPTION = "Highlight another thread, and its line"
-_OPTION_NUMBER = "Have the thread with this number go on"
+_OPTION_NUMBER = "Let the thread with this number go on"
 _ANSWER_NUMBER = "Highlight the answer with this number"
-_NO_TIME = "Tell why time cannot be changed here"
+_NO_TIME = "Say why time cannot be changed here"
 OWN_TIME = {
     "pause": "space",
     "resume": "space",
@@ -88,7 +88,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         *((f"choose({number})", str(number), "", _OPTION_NUMBER, _OPTION_NUMBER) for number in range(1, 10)),
         ("cursor_up", "up", "who", "Highlight the thread above", _OPTION),
         ("cursor_down", "down", "who", "Highlight the thread below", _OPTION),
-        ("take", "enter", "choose", "Have the highlighted thread go on"),
+        ("take", "enter", "choose", "Let the highlighted thread go on"),
     ),
     Scope.LESSON: (
         ("call_service", "s", "service", "Call the lesson's SetBool service with true"),
@@ -98,7 +98,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("undo", "u", "undo", "Take back the last choice of who goes on"),
         ("live", "0", "live", "Go back to the present"),
         ("predict", "P", "predict", "Say what you expect of the run; your answer is final"),
-        ("explain", "a", "explain", "Tell what happened in the run, and why"),
+        ("explain", "a", "explain", "Explain what happened in the run, and why"),
         ("step", "full_stop", "step", "Go on by one decision; looking back, by one event"),
         ("run_again", "r", "run again", "Run again, when the run is over"),
         ("threads", "t", "threads", "Choose how many threads the executor gets, and run again"),
@@ -112,12 +112,12 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("set_up", "p", "set-up", "Change timer periods and the rest of the set-up"),
         ("reset_world", "r", "reset", "Put the robot back to its start"),
         ("compare", "C", "compare", "Compare this run with the one before"),
-        ("no_exercise", "e", "", "Tell why there is no exercise here"),
-        ("no_hint", "h", "", "Tell why there is no hint now"),
-        ("no_solution", "H", "", "Tell why there is no solution now"),
-        ("no_comparison", "C", "", "Tell what can be compared"),
+        ("no_exercise", "e", "", "Say why there is no exercise here"),
+        ("no_hint", "h", "", "Say why there is no hint now"),
+        ("no_solution", "H", "", "Say why there is no solution now"),
+        ("no_comparison", "C", "", "Say what can be compared"),
         *((f"no_time('{name}')", key, "", _NO_TIME) for name, key in OWN_TIME.items()),
-        ("no_take_over", "W", "", "Tell when you can choose which thread goes on"),
+        ("no_take_over", "W", "", "Say when you can choose which thread goes on"),
         ("diagnoses", "d", "diagnoses", "List what went wrong, why, and what to do about it"),
         *(
             (f"show_pane('{name}')", str(number), "pane", f"Go to the {name}", _PANE)
@@ -137,7 +137,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("step_back", "comma", "look back", "Look at the event before the moment on screen"),
         ("earlier", "left_square_bracket", "look back", "Move the cursor of every pane back"),
         ("later", "right_square_bracket", "look back", "Move the cursor of every pane on"),
-        ("narrate", "N", "narrator", "Tell what the executor decides, and why, or stop"),
+        ("narrate", "N", "narrator", "Start or stop the narrator: what the executor decides, and why"),
         ("slower", "minus", "speed", "Let time pass more slowly"),
         ("faster", "plus", "speed", "Let time pass faster"),
         ("zoom_out", "less_than_sign", "zoom", "Show a longer stretch of time"),
@@ -152,7 +152,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
             "previous_event",
             "left_curly_bracket",
             "event",
-            "Go back to the selected lane's bar before",
+            "Go back to the selected lane's previous bar",
             _EVENTS,
         ),
         ("next_event", "right_curly_bracket", "event", "Go on to the selected lane's next bar", _EVENTS),
@@ -177,7 +177,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("later", "right_square_bracket", "look back", "Move the cursor on"),
         ("pan_earlier", "left", "pan", "Show an earlier stretch, and leave the cursor", _PANNING),
         ("pan_later", "right", "pan", "Show a later stretch, and leave the cursor", _PANNING),
-        ("previous_event", "left_curly_bracket", "bar", "Go back to the lane's bar before", _BARS),
+        ("previous_event", "left_curly_bracket", "bar", "Go back to the lane's previous bar", _BARS),
         ("next_event", "right_curly_bracket", "bar", "Go on to the lane's next bar", _BARS),
         ("deselect", "escape", "deselect", "Clear the selection"),
         ("zoom_out", "less_than_sign", "zoom", "Show a longer stretch of time"),
@@ -188,7 +188,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("enlarge_lanes", "Z", "lanes", "Enlarge the lanes; press again to go back"),
         ("scroll_table_up", "up", "scroll", "Scroll the table up"),
         ("scroll_table_down", "down", "scroll", "Scroll the table down"),
-        ("step_back", "comma", "event", "Go to the event before, of either run"),
+        ("step_back", "comma", "event", "Go to the previous event, of either run"),
         ("step", "full_stop", "event", "Go to the next event, of either run"),
         ("jump", "j", "", _JUMP),
         ("leave", "q", "back", "Leave the comparison"),
@@ -233,7 +233,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
                 ("d", "default", "the node's default group"),
             )
         ),
-        ("choose('')", "p", "the program's", "Use the group that the program says"),
+        ("choose('')", "p", "the program's", "Use the group that the program gives it"),
         ("close", "escape,q", "close", "Close the window, and change nothing"),
     ),
     Scope.EXPORT: (
@@ -301,7 +301,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("close", "escape", "close", "Close the window, and follow what was followed before"),
     ),
     Scope.HELP: (
-        ("search", "/", "search", "Show only signs and keys with certain words"),
+        ("search", "/", "search", "Show only signs and keys that have certain words"),
         ("close", "escape,q,question_mark", "close", "Go back to where you were"),
     ),
     Scope.TOUR: (("close", "escape", "any key leaves the tour", "Leave the tour, as any key does"),),

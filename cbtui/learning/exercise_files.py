@@ -56,7 +56,7 @@ def own_file(lesson: Lesson, folder: Path) -> ExerciseFile:
 
 def before_the_solution(hints_left: int) -> str:
     """Return the question to a learner who asks for the solution."""
-    said = "What you find out yourself, you remember longer."
+    said = "You remember longer what you find out yourself."
     if hints_left:
         said += f" {counted(hints_left, 'hint')} {'is' if hints_left == 1 else 'are'} left."
     return said

@@ -174,7 +174,7 @@ def _verdict(prediction: Prediction, answer: int | None, true: int) -> str:
     because = prediction.because
     if true != prediction.right:
         expected = prediction.answers[prediction.right]
-        because = f"The lesson expected “{expected}”; the run shows otherwise, and the run counts."
+        because = f"The lesson expected “{expected}”; the run shows something else, and the run counts."
     return f"{prediction.question}\n\n{result}\n\n{because}"
 
 

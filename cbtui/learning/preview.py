@@ -28,7 +28,7 @@ class CannotPreviewError(Exception):
 def why_no_preview(lesson: Lesson) -> str | None:
     """Return why a lesson has no preview; None if it has one."""
     if not is_built_in(lesson):
-        return "it comes from somebody else, and is only run once you open it"
+        return "it comes from somebody else, and runs only once you open it"
     if lesson.setup.clock == "real":
         return f"on the real clock that would take {LENGTH / SECOND:g} s of computing"
     return None
@@ -80,7 +80,7 @@ class PreviewRun:
                 sentence = f"the engine could not be started: {error.strerror or error}"
                 raise CannotPreviewError(sentence) from None
             except RunTimeoutError:
-                raise CannotPreviewError(f"it did not come to its end in {_TIMEOUT:g} s") from None
+                raise CannotPreviewError(f"it did not end within {_TIMEOUT:g} s") from None
             except EngineLostError as error:
                 raise CannotPreviewError(str(error)) from None
         return timeline

@@ -168,7 +168,7 @@ def _line(value: object) -> None:
 
 def _word(value: object) -> None:
     if not isinstance(value, str):
-        raise argparse.ArgumentTypeError(f"{value!r} is no text")
+        raise argparse.ArgumentTypeError(f"{value!r} is not text")
 
 
 _LINE = "(2.0, 'ros2 topic list')"

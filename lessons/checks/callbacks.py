@@ -141,7 +141,7 @@ def uses_threads(at_least: int) -> Check:
         most = Concurrency(run).peak(run.end)
         return Verdict(most >= at_least, expected, f"at most {most}")
 
-    return Check(f"{at_least} threads are put to use", judge)
+    return Check(f"{at_least} threads are used at once", judge)
 
 
 def _missing(name: str, expected: str) -> Verdict:

@@ -30,7 +30,9 @@ def inputs_of(events: Iterable[AnyEvent]) -> tuple[TimedInput, ...]:
             commands.input_of(each.command)
         except msgspec.DecodeError:
             moment = each.at / 1e9
-            raise UnknownInputError(f"this version does not know the input given at {moment:.3f} s") from None
+            raise UnknownInputError(
+                f"this version of cbtui does not know the input given at {moment:.3f} s"
+            ) from None
     return found
 
 

@@ -131,7 +131,9 @@ class RealControl:
         match command:
             case commands.Pause():
                 self._clock.pause()
-                self._say("time stands for whatever waits; a callback that computes goes on", Severity.INFO)
+                self._say(
+                    "time is stopped for whatever waits; a callback that computes goes on", Severity.INFO
+                )
             case commands.Resume():
                 self._clock.resume()
             case commands.RunUntil(moment=moment):

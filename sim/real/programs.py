@@ -197,7 +197,7 @@ class Program:
         if status == -signal.SIGINT or (self._sent is not None and status == -self._sent):
             return Cause(STOPPED, failed=False)
         if status < 0:
-            return Cause(f"the program crashed by {signal.Signals(-status).name}", failed=True)
+            return Cause(f"the program crashed with {signal.Signals(-status).name}", failed=True)
         reason = "the program returned" if status == 0 else f"the program ended with exit code {status}"
         advice = self._advice(self._last_error)
         return Cause(f"{reason}; {advice}" if advice else reason, failed=status != 0)

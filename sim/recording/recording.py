@@ -154,11 +154,11 @@ class Recording:
         if self._size == 0:
             raise RecordingError(f"{self.path} is empty")
         if not (self._chunks or self._library):
-            raise RecordingError(f"{self.path} is no recording: there is nothing in it as MCAP files have it")
+            raise RecordingError(f"{self.path} is not a recording: it has nothing of an MCAP file in it")
         first = next(self.batches(), None)
         if first is None and not (self._library.startswith(LIBRARY) or self.about.title):
             raise RecordingError(
-                f"{self.path} is an MCAP file, but no recording of cbtui: nothing is on {batch.TOPIC}"
+                f"{self.path} is an MCAP file, but not a recording of cbtui: nothing is on {batch.TOPIC}"
             )
 
     # contents

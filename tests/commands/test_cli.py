@@ -70,7 +70,7 @@ def test_list_tells_how_far_one_is(capsys: pytest.CaptureFixture[str]) -> None:
         (["run", "single-thread", "--call-data", "perhaps"], "invalid choice: 'perhaps'"),
         (["run", "single-thread", "--events", "/no/such/folder/x.jsonl"], "cannot write events"),
         (["run", "nothing_here.py"], "there is no file nothing_here.py"),
-        (["run", "./"], "is a folder; name the file in it that is to run"),
+        (["run", "./"], "is a folder; name the file in it to run"),
         (["run", "single-thread", "--", "-x"], "a lesson has its own arguments"),
         (["run"], "LESSON"),
         (["fly"], "invalid choice: 'fly'"),

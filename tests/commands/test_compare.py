@@ -118,7 +118,7 @@ LESSONS = ["single-thread", "split-groups"]
         ([*LESSONS, "--threads-b", "two"], "'two' is not a whole number"),
         ([*LESSONS, "--inputs", "/no.mcap"], "/no.mcap cannot be read"),
         ([*LESSONS, "--inputs", "RECORDING", "--call", "1"], "leave out --call and --at"),
-        ([*LESSONS, "--", "-some"], "only a file takes arguments; leave out what stands behind --"),
+        ([*LESSONS, "--", "-some"], "only a file takes arguments; leave out what follows --"),
         (["RECORDING", "single-thread", "--threads-a", "2"], "leave out --threads-a"),
         (["single-thread", "RECORDING", "--threads-b", "2"], "leave out --threads-b"),
         (["single-thread", "RECORDING", "--distro-b", "kilted"], "leave out --distro-b"),

@@ -54,7 +54,7 @@ def test_where_pybullet_crashes_the_doctor_lives_and_ends_with_1(tmp_path: Path)
     assert done.returncode == 1
     [line] = [line for line in done.stdout.splitlines() if line.startswith("x")]
     assert "PyBullet" in line
-    assert "crashed by SIGSEGV" in line
+    assert "crashed with SIGSEGV" in line
     assert "pip install" in line
     assert done.stdout.isascii()
     assert done.stdout.endswith("1 thing cbtui needs is not well.\n")
@@ -91,10 +91,10 @@ class _Ended(ProbeProcess):
 
 def test_a_package_that_cannot_be_imported_is_named_with_why_and_so_is_one_that_crashes() -> None:
     said = "begin yaml\nbad yaml: ImportError: no libyaml\nbegin numpy\n"
-    found = list(dependencies(_Ended(ProbeResult(said, "", -11, "it crashed by SIGSEGV"))))
+    found = list(dependencies(_Ended(ProbeResult(said, "", -11, "it crashed with SIGSEGV"))))
     assert [each.subject for each in found] == ["numpy", "pyyaml"]
     assert all(each.sign is Sign.FAULT for each in found)
-    assert "it crashed by SIGSEGV" in found[0].what
+    assert "it crashed with SIGSEGV" in found[0].what
     assert "ImportError: no libyaml" in found[1].what
 
 

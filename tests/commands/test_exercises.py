@@ -239,7 +239,7 @@ def test_check_writes_plain_characters_where_the_terminal_has_no_others(here: Pa
         (A_GIGABYTE, "split_groups.py wrote more than 32 MB of log by 0.000 s"),
         ("raise RuntimeError('no')\n", "split_groups.py:1: the program raised RuntimeError: no"),
         ("", "split_groups.py defines no main() and runs nothing at its top level"),
-        ("\0", "split_groups.py is no Python file: there are null bytes in it"),
+        ("\0", "split_groups.py is not a Python file: it has null bytes in it"),
     ),
     ids=["syntax", "exit", "log", "raises", "empty", "null"],
 )

@@ -332,7 +332,7 @@ def test_files_that_do_not_belong_together_are_not_merged(
             program="mine.py", replays=(), first=1, schedules=schedules, strategy="pos", results={}
         ).write_to(path)
     for merge, sentence in (
-        ([one, other], "is of another exploration than"),
+        ([one, other], "belongs to another exploration than"),
         ([one, tmp_path / "none.json"], "cannot be read: No such file or directory"),
         ([file.with_suffix(".txt")], "is not part of an exploration"),
     ):

@@ -72,7 +72,7 @@ def test_info_says_what_is_no_recording(tmp_path: Path, capsys: pytest.CaptureFi
     text.write_text("nothing of the kind")
     assert cli.main(["info", str(text)]) == 2
     assert capsys.readouterr().err == (
-        f"cbtui: {text} is no recording: there is nothing in it as MCAP files have it\n"
+        f"cbtui: {text} is not a recording: it has nothing of an MCAP file in it\n"
     )
 
 

@@ -24,7 +24,7 @@ def refused(path: Path, capsys: pytest.CaptureFixture[str]) -> str:
 def test_what_is_no_recording_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text = tmp_path / "notes.txt"
     text.write_text("nothing of the kind")
-    assert "is no recording" in refused(text, capsys)
+    assert "is not a recording" in refused(text, capsys)
     text.write_text("")
     assert "is empty" in refused(text, capsys)
 
@@ -42,7 +42,7 @@ def test_a_recording_of_another_program_is_refused(
         writer = Writer(file)
         writer.start(profile="ros2", library="other")
         writer.finish()  # type: ignore[no-untyped-call]
-    assert "is an MCAP file, but no recording of cbtui" in refused(path, capsys)
+    assert "is an MCAP file, but not a recording of cbtui" in refused(path, capsys)
 
 
 def test_without_a_terminal_another_command_is_named(

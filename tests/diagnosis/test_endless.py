@@ -46,7 +46,7 @@ def test_a_recording_without_these_fields_is_told_in_the_words_of_its_notice() -
     assert explained(*events) == [
         (
             "odom_callback: deadlock: it waits; let go",
-            "wait with a timeout, and see that something ends the wait",
+            "wait with a timeout, and make sure that something ends the wait",
         )
     ]
 

@@ -144,13 +144,13 @@ def test_what_asyncio_misses_in_a_callback_is_told_with_what_to_await_instead(th
         ),
         (
             "AttributeError: 'NoneType' object has no attribute 'successful'",
-            "a callback of add_on_set_parameters_callback() has returned nothing; rclpy needs its answer",
+            "the callback of add_on_set_parameters_callback() returned nothing; rclpy needs its answer",
             "end that callback with: return SetParametersResult(successful=True)",
         ),
         (
             "AttributeError: property 'speed' of 'Motor' object has no setter",
             "an exception that no except clause takes ends the program, and spin() with it",
-            "mend the line, or catch the exception there",
+            "correct the line, or catch the exception there",
         ),
     ],
 )

@@ -45,7 +45,7 @@ FOR_EVER = (
     "deadlock: tick waits in spin_until_future_complete() for ever; "
     "all callbacks of its node are in group A, which tick holds"
 )
-TAKEN = "tick takes /caller from the executor that runs tick, by {}(): that serves it no more"
+TAKEN = "tick takes /caller from the executor that runs tick, by {}(): that executor no longer serves it"
 
 
 def program(ask: str, spin: str = "rclpy.spin(caller)") -> str:
@@ -176,7 +176,7 @@ def test_a_node_that_spins_in_its_constructor_is_told_with_the_line_of_the_spin(
     run = run_lines(tmp_path, *IN_CONSTRUCTOR)
     (found,) = diagnose(run.timeline)
     told = found.rule.explain(found, run.timeline)
-    assert told.what == "__init__ calls spin(), which does not come back: what follows line 7 is never done"
+    assert told.what == "__init__ calls spin(), which does not come back: what follows line 7 never runs"
     assert str(told.place) == "node.py:7"
     (remedy,) = told.remedies
     assert remedy.edit is not None

@@ -222,7 +222,9 @@ def test_an_input_is_read_back_as_it_was_given(command: Command) -> None:
 
 
 def test_an_input_of_another_version_is_refused_in_one_sentence() -> None:
-    with pytest.raises(UnknownInputError, match=r"^this version does not know the input given at 2\.000 s$"):
+    with pytest.raises(
+        UnknownInputError, match=r"^this version of cbtui does not know the input given at 2\.000 s$"
+    ):
         inputs_of([InputGiven(ns(2.0), '{"type":"dance"}')])
 
 

@@ -226,7 +226,7 @@ def test_on_the_real_clock_a_pause_stops_timers_and_says_what_it_cannot_stop(tmp
         notice = run.until(Notice)
         assert isinstance(notice, Notice)
         assert notice.severity is Severity.INFO
-        assert notice.text == "time stands for whatever waits; a callback that computes goes on"
+        assert notice.text == "time is stopped for whatever waits; a callback that computes goes on"
         time.sleep(0.1)
         run.give(Step(), RunUntil(notice.t + SECOND))
         refused = run.until(Notice, 2)

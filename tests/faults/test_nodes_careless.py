@@ -204,4 +204,4 @@ def test_a_robot_that_is_sent_velocities_that_are_no_numbers_stands_still_and_te
 def test_a_signal_that_ends_programs_ends_this_one_in_a_sentence(folder: Path) -> None:
     with provoked(node_with(folder, f"os.kill(os.getpid(), {int(signal.SIGALRM)})")) as run:
         run.to_its_end()
-        assert run.live.loss == "the program crashed by SIGALRM"
+        assert run.live.loss == "the program crashed with SIGALRM"

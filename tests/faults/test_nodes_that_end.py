@@ -26,14 +26,14 @@ FAULTS = {
         "sys.exit(3)", f"the run is over: the program ended with exit code 3 ({AT})", RunState.ENDED
     ),
     "os._exit": Ends("os._exit(3)", f"engine lost: ended with exit code 3 {IN_FAULT}"),
-    "os.abort": Ends("os.abort()", f"engine lost: the program crashed by SIGABRT {IN_FAULT}"),
+    "os.abort": Ends("os.abort()", f"engine lost: the program crashed with SIGABRT {IN_FAULT}"),
     "a crash in C": Ends(
         "import ctypes; ctypes.string_at(0)",
-        f"engine lost: the program crashed by SIGSEGV {IN_FAULT}",
+        f"engine lost: the program crashed with SIGSEGV {IN_FAULT}",
     ),
     "a full stack in C": Ends(
         "sys.setrecursionlimit(10**9)\nclass R:\n    def __repr__(self): return repr(self)\nrepr(R())",
-        "engine lost: the program called itself until its stack was full, and crashed by SIGSEGV "
+        "engine lost: the program called itself until its stack was full, and crashed with SIGSEGV "
         f"(node.py:{FIRST + 2}, in __repr__)",
     ),
     "a recursion without end": Ends(

@@ -18,7 +18,7 @@ from cbtui.pytest_plugin.terms import BadTermsError, RunTerms
         ({"calls": [-1]}, "calls=[-1]: -1 s is before the run begins"),
         ({"lines": ["ros2 topic list"]}, "give each line its moment, such as (2.0, 'ros2 topic list')"),
         ({"arguments": "-speed 1"}, "arguments='-speed 1': give a list"),
-        ({"arguments": [1]}, "1 is no text"),
+        ({"arguments": [1]}, "1 is not text"),
         ({"threads": 0}, "threads=0: an executor cannot have 0 threads here"),
         ({"groups": ["take"]}, "groups=['take']: give a dict, such as {'odom_callback': 'own'}"),
         ({"groups": {"take": "mine"}}, "'mine' is not a group; give own, shared"),

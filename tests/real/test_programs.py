@@ -41,7 +41,7 @@ def outcome_of(script: str, do: Callable[[Program], object]) -> Cause:
     [
         ("trap '' INT; echo x; sleep 60", Program.kill, Cause("it was stopped", failed=False)),
         ("echo x; exec sleep 60", Program.interrupt, Cause("it was stopped", failed=False)),
-        ("echo x; kill -9 $$", id, Cause("the program crashed by SIGKILL", failed=True)),
+        ("echo x; kill -9 $$", id, Cause("the program crashed with SIGKILL", failed=True)),
         ("echo x; exit 3", id, Cause("the program ended with exit code 3", failed=True)),
         ("echo x", id, Cause("the program returned", failed=False)),
     ],

@@ -116,7 +116,7 @@ def test_noise_is_no_recording(tmp_path: Path, beginning: bytes) -> None:
     for length in (1, 7, 8, 9, 100, 5000):
         sentence = opened(tmp_path / "noise.mcap", beginning + chance.randbytes(length))
         assert isinstance(sentence, str)
-        assert "is no recording" in sentence
+        assert "is not a recording" in sentence
 
 
 def test_an_empty_file_a_folder_and_none_are_told_apart(tmp_path: Path) -> None:
@@ -135,7 +135,7 @@ def test_a_foreign_mcap_file_is_told_to_be_one(tmp_path: Path) -> None:
         channel = writer.register_channel("/flag", "cdr", schema)
         writer.add_message(channel, 1, b"\0\1\0\0\1", 1)
         writer.finish()  # type: ignore[no-untyped-call]
-    with pytest.raises(RecordingError, match="no recording of cbtui: nothing is on /cbtui/events"):
+    with pytest.raises(RecordingError, match="not a recording of cbtui: nothing is on /cbtui/events"):
         read(path)
 
 

@@ -46,7 +46,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "--theme",
         metavar="THEME",
         default=argparse.SUPPRESS,
-        help="colours: dark, light, high-contrast, high-contrast-light, or another that ctrl+p offers (dark)",
+        help="theme: dark, light, high-contrast, high-contrast-light, or another that ctrl+p offers (dark)",
     )
     parser.add_argument(
         "--screen-reader",

@@ -114,7 +114,7 @@ def add_traceback(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--traceback",
         action="store_true",
-        help="print tracebacks whole: with the frames of cbtui's model of rclpy",
+        help="print whole tracebacks, with the frames of cbtui's model of rclpy",
     )
 
 

@@ -31,7 +31,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         nargs=2,
         action=values.TimedLineOption,
         default=[],
-        help="carry out a ros2 line at that time, such as 2 'ros2 topic list'; may be given again",
+        help="run a ros2 line at that time, such as 2 'ros2 topic list'; may be given again",
     )
 
 

@@ -78,7 +78,7 @@ def file_of(name: str) -> Path:
     try:
         mode = mode_of(path)
         if S_ISDIR(mode):
-            refuse(f"{name} is a folder; name the file in it that is to run")
+            refuse(f"{name} is a folder; name the file in it to run")
         if not mode:
             refuse(f"there is no file {name}; give a Python file, or a lesson of cbtui list")
         if not S_ISREG(mode):
@@ -86,7 +86,7 @@ def file_of(name: str) -> Path:
     except OSError as error:
         refuse(f"{name} cannot be opened: {error.strerror}")
     if not is_text(str(path.resolve())):
-        refuse(f"{name}: what runs has to have a name in UTF-8, and so have its folders; rename it")
+        refuse(f"{name}: its name and its folders' names have to be UTF-8; rename it")
     return path
 
 

@@ -79,7 +79,9 @@ def merged(paths: Sequence[Path]) -> Shard:
     whole = first
     for path, other in zip(paths[1:], others, strict=True):
         if _common_fields(other) != _common_fields(first):
-            raise BadShardError(f"{path} is of another exploration than {paths[0]}: other options or program")
+            raise BadShardError(
+                f"{path} belongs to another exploration than {paths[0]}: other options or program"
+            )
         whole = msgspec.structs.replace(
             whole,
             results={**whole.results, **other.results},

@@ -51,7 +51,7 @@ class LiveExport:
         try:
             export(self._material.batches, self._wish, self._reach)
         except _GivenUpError:
-            return f"The export was cancelled, and {self._path.name} was not written"
+            return f"The export was cancelled, so {self._path.name} was not written"
         except (ExportError, RecordingError) as error:
             return f"Nothing was exported: {error}"
         finally:

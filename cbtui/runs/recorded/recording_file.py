@@ -73,4 +73,4 @@ def date_text(nanoseconds: int) -> str:
     try:
         return f"{datetime.fromtimestamp(nanoseconds // SECOND, UTC):%Y-%m-%d %H:%M:%S} UTC"
     except (ValueError, OverflowError, OSError):
-        return "at no time that there is"
+        return "at an impossible time"

@@ -39,13 +39,13 @@ def entry_for(text: str, at: float) -> RecentEntry:
     """
     typed = text.strip()
     if not typed:
-        raise CannotOpenError("Type the path of a program (.py, a launch file) or of a recording (.mcap).")
+        raise CannotOpenError("Type the path of a program (.py, or a launch file) or of a recording (.mcap).")
     path = _expanded(typed)
     kind = _kind_of(path)
     check(path)
     if kind is None:
         raise CannotOpenError(
-            f"{typed} is neither a program (.py, a launch file) nor a recording (.mcap) by its name."
+            f"{typed} is neither a program (.py, or a launch file) nor a recording (.mcap), by its name."
         )
     return RecentEntry(kind, str(path.absolute()), int(at))
 
@@ -59,7 +59,7 @@ def check(path: Path) -> None:
     try:
         mode = mode_of(path)
         if S_ISDIR(mode):
-            raise CannotOpenError(f"{path} is a folder; name the file in it that is to be opened.")
+            raise CannotOpenError(f"{path} is a folder; name the file in it to open.")
         if not mode:
             raise CannotOpenError(f"There is no file {path}.")
         if not S_ISREG(mode):

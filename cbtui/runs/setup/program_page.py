@@ -94,7 +94,7 @@ def _tries(timeline: Timeline, problems: Sequence[str]) -> Iterator[str]:
     ]
     if silent:
         yield (
-            f"Nothing was sent on ``{silent[0]}`` yet: `:` and ``ros2 topic pub {silent[0]}``; "
+            f"Nothing has been sent on ``{silent[0]}`` yet: `:` and ``ros2 topic pub {silent[0]}``; "
             "`tab` completes the rest."
         )
     if own:

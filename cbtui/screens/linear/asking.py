@@ -60,7 +60,7 @@ class ChainPrompt(ScreenPart):
     def _ask(self) -> Dialogue:
         timeline = self.runs.timeline
         known = ", ".join(timeline.names_sent)
-        names = names_in((yield f"From which to which, such as first:last? There is {known}."))
+        names = names_in((yield f"From which to which, such as first:last? Here are {known}."))
         if not names:
             return
         try:

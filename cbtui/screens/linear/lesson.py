@@ -181,7 +181,7 @@ class LinearComparison(ScreenPart):
             self._due = min(self.restarts.before.timeline.end, _COMPARED)
             self.tell_when_due()
             if self._due is not None:
-                self.host.tell(f"The comparison is told when this run has reached {timestamp(self._due)}.")
+                self.host.tell(f"The comparison comes when this run has reached {timestamp(self._due)}.")
 
     def tell_when_due(self) -> None:
         """Print the requested comparison if the run is long enough."""

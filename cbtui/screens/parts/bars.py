@@ -40,7 +40,7 @@ class BarSelection(ScreenPart):
         self.navigation.seek(message.at)
 
     def action_previous_event(self) -> None:
-        """Go back to the lane's bar before the cursor."""
+        """Go back to the lane's previous bar the cursor."""
         self._go(-1)
 
     def action_next_event(self) -> None:

@@ -63,7 +63,7 @@ class Exports(ScreenPart):
             self.host.ask(ExportScreen(self.host.charset), self._begin)
         else:
             done = int(100 * self._export.share)
-            self.host.tell(f"An export is being written, {done} % of it so far; the next can begin after it")
+            self.host.tell(f"An export is being written, {done} % so far; the next can begin when it is done")
 
     def _begin(self, name: str | None) -> None:
         if name is None:

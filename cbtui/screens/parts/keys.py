@@ -127,12 +127,12 @@ class Refusals(ScreenPart):
         self._tell(
             f"There are no more hints; {self.host.key('solution')} shows the solution."
             if self.is_available("solution")
-            else "The hints come once the lesson is explained: press {key}."
+            else "Hints come after the explanation: press {key}."
         )
 
     def action_no_solution(self) -> None:
         """Say when there is a solution."""
-        self._tell("The solution can be looked at once the lesson is explained: press {key}.")
+        self._tell("The solution comes after the explanation: press {key}.")
 
     def action_no_comparison(self) -> None:
         """Say what makes a second run."""
@@ -144,8 +144,8 @@ class Refusals(ScreenPart):
     def _tell(self, with_exercise: str) -> None:
         """Say that there is no exercise, or the sentence about the existing one."""
         if self.lesson is None:
-            self.host.tell("Your own program has no exercise; lessons of the menu have.")
+            self.host.tell("Your own program has no exercise; the lessons of the menu do.")
         elif self.lesson.exercise is None:
-            self.host.tell(f"{self.lesson.title} has no exercise: it is done once it is explained.")
+            self.host.tell(f"{self.lesson.title} has no exercise: the lesson is done once it is explained.")
         else:
             self.host.tell(with_exercise.format(key=self.host.key("explain")))

@@ -40,7 +40,7 @@ class ChainScreen(LineScreen[tuple[str, ...]]):
         )
         line = TypedLine(":".join(self._names), self._take, "first:last, such as /scan:/cmd_vel")
         yield line
-        yield Static(f"There is {', '.join(self._known)}.", markup=False)
+        yield Static(f"Here are {', '.join(self._known)}.", markup=False)
         yield line.refusal
 
     def _take(self, text: str) -> None:

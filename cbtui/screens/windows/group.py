@@ -22,7 +22,7 @@ _MEANINGS = {
     "shared": "one exclusive group for all you put there",
     "reentrant": "one reentrant group for all you put there",
     "default": "the node's default group, which is exclusive",
-    UNCHANGED: "the group that the program says",
+    UNCHANGED: "the group that the program gives it",
 }
 
 

@@ -15,7 +15,7 @@ from sim.trace.events import Doing, EntityId, Notice, NoticeKind, Severity
 from sim.trace.model import Position, Window
 from sim.trace.timeline import Timeline
 
-_ADVICE = "wait with a timeout, and see that something ends the wait"
+_ADVICE = "wait with a timeout, and make sure that something ends the wait"
 """For notices without advice, as of waits on the real clock, and in old recordings."""
 
 
@@ -93,7 +93,7 @@ class WaitsForLock(Rule):
         also = f", and so {'does' if len(others) == 1 else 'do'} {listed(others)}" if others else ""
         return Explanation(
             f"{first} has waited for a lock for {duration(found.lasted)}{also}",
-            "who has a lock and waits for another one keeps the first meanwhile: if each has what the other "
+            "a thread that waits for a lock keeps the locks it has: if each has what the other "
             "wants, neither ever goes on",
             "take locks in the same order everywhere, and let go of one before you take the next",
             line_of(found.subject, _moment(found), timeline),

@@ -40,9 +40,9 @@ class ProgramRaised(Rule):
         assert ended is not None
         place = line_location(*ended.place)
         why = "an exception that no except clause takes ends the program, and spin() with it"
-        cure = "mend the line, or catch the exception there"
+        cure = "correct the line, or catch the exception there"
         if ended.exception in _UNREADABLE:
-            why, cure = "Python could not read the file, so nothing of it ran", "mend the line"
+            why, cure = "Python could not read the file, so nothing of it ran", "correct the line"
         for pattern, its_why, its_cure in _KNOWN:
             if known := pattern.fullmatch(ended.error or ""):
                 why, cure = known.expand(its_why), known.expand(its_cure)
@@ -91,7 +91,7 @@ _KNOWN = tuple(
         ),
         (
             r"AttributeError: 'NoneType' object has no attribute 'successful'",
-            r"a callback of add_on_set_parameters_callback() has returned nothing; rclpy needs its answer",
+            r"the callback of add_on_set_parameters_callback() returned nothing; rclpy needs its answer",
             r"end that callback with: return SetParametersResult(successful=True)",
         ),
     )

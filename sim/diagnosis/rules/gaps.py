@@ -23,7 +23,7 @@ class GapsInTrace(Rule):
         missing = "1 event is" if found.size == 1 else f"{found.size:,} events are"
         return Explanation(
             f"{missing} missing from the trace: what is found about calls, waits and queues may be wrong",
-            "the program did more at once than could be sent; a start, an end or a reply may be among it",
+            "the program did more at once than could be sent; a start, an end or a reply may be among them",
             "let the program do less at once, or run it on virtual time, where no event is lost",
             None,
         )

@@ -180,7 +180,7 @@ class ServiceNeverComes(Rule):
         place = line_of(found.subject, Window(found.at, found.until + 1), timeline)
         return Explanation(
             f"{subject} waits in wait_for_service() for {found.about}, which nobody offers",
-            "while it waits it keeps its thread and its group, and without a timeout it does so for ever",
+            "while it waits, it keeps its thread and its group, for ever without a timeout or in a loop",
             f"start the node that offers {found.about}; wait for it in __init__, before spin(), or ask "
             f"service_is_ready() in {subject} and return",
             place,

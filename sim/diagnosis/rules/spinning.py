@@ -58,7 +58,10 @@ class NestedSpin(Rule):
         )
         if clash.node:
             node = timeline.nodes.get(clash.node, "its node")
-            what = f"{subject} takes {node} from {runner}, by {clash.function}(): that serves it no more"
+            what = (
+                f"{subject} takes {node} from {runner}, by {clash.function}(): that executor no longer "
+                "serves it"
+            )
             why = (
                 "a node is in one executor at a time: this one has it until the call returns, "
                 "and then none has it"
@@ -84,7 +87,7 @@ class SpinInConstructor(Rule):
     """``__init__`` spins and does not return, so that no later line is ever run."""
 
     id = "spin-in-constructor"
-    summary = "__init__ spins, and what follows is never done"
+    summary = "__init__ spins, and what follows never runs"
     threshold: Nanoseconds = SECOND
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
@@ -101,8 +104,8 @@ class SpinInConstructor(Rule):
         file, _, line = at.frames[-1]
         place, spin = CodeLocation(file, line, line), found.detail.rpartition(".")[2]
         return Explanation(
-            f"__init__ calls {spin}(), which does not come back: what follows line {line} is never done",
-            f"{spin}() runs callbacks until the program ends; what would be made after it does not exist",
+            f"__init__ calls {spin}(), which does not come back: what follows line {line} never runs",
+            f"{spin}() runs callbacks until the program ends; what is made after it never exists",
             f"leave {spin}() out of __init__, and call rclpy.spin(node) in main() once the node is made",
             place,
             remedies=by_edit(place, f"leave {spin}() out of __init__", leave_out),

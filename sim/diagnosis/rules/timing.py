@@ -40,9 +40,7 @@ class OverlappingCallback(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
-        cure = (
-            f"give {subject} a MutuallyExclusiveCallbackGroup, or see that a lock guards what its calls share"
-        )
+        cure = f"give {subject} a MutuallyExclusiveCallbackGroup, or guard what its calls share with a lock"
         if entity_of(found, timeline).kind is EntityKind.TIMER:
             cure += "; a callback shorter than the timer's period never overlaps"
         return Explanation(

@@ -141,7 +141,7 @@ class BehindOthers(_KeptWaiting):
             found,
             timeline,
             f"the EventsExecutor was running {culprit}",
-            "an EventsExecutor asks no group: it runs one callback at a time, in the order of their arrival",
+            "an EventsExecutor asks no group: it runs one callback at a time, in order of arrival",
             f"keep {culprit} short, or let a MultiThreadedExecutor with more than one thread run both",
         )
 
@@ -183,7 +183,7 @@ class NodeNeverSpins(Rule):
         what = "nobody spins its node any more" if ever else "nobody ever spun its node"
         cure = "call rclpy.spin(node), or add the node to an executor and spin that"
         if timeline.executors and not ever:
-            what = "no executor that spins has its node"
+            what = "none of the spinning executors has its node"
             cure = "add the node to an executor, and call spin() on that: one that is only made runs nothing"
         elif ever:
             cure = "keep spinning the node: spin() has returned, or its executor was shut down"

@@ -67,7 +67,7 @@ def rejected_callback(error: BaseException) -> RejectedCallback | None:
     own = ["self"] if inspect.ismethod(callback) else []
     written = f"def {code.co_name}({', '.join([*own, *taken])})"
     return RejectedCallback(
-        code.co_filename, code.co_firstlineno, f"rclpy calls it otherwise; write {written}"
+        code.co_filename, code.co_firstlineno, f"rclpy calls it with other arguments; write {written}"
     )
 
 

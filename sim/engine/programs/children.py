@@ -49,10 +49,10 @@ def refuse_children() -> None:
     """Make every start of a process raise NotImplementedError, as virtual time has none."""
 
     def start(_process: object) -> NoReturn:
-        raise NotImplementedError("multiprocessing does not live on virtual time; use --clock real")
+        raise NotImplementedError("multiprocessing does not work on virtual time; use --clock real")
 
     def fork() -> NoReturn:
-        raise NotImplementedError("os.fork does not live on virtual time; use --clock real")
+        raise NotImplementedError("os.fork does not work on virtual time; use --clock real")
 
     process_class: Any = multiprocessing.process.BaseProcess
     process_class.start = start

@@ -38,7 +38,7 @@ def read_source(path: Path) -> str:
     except OSError as error:
         raise NothingToRunError(f"{path.name} cannot be read: {error.strerror}") from None
     if b"\0" in data:
-        raise NothingToRunError(f"{path.name} is no Python file: there are null bytes in it")
+        raise NothingToRunError(f"{path.name} is not a Python file: it has null bytes in it")
     try:
         return importlib.util.decode_source(data)
     except UnicodeDecodeError as error:

@@ -91,7 +91,7 @@ def _cure(thread: VirtualThread) -> str:
     if _signal(thread):
         return "wait with a timeout, and let a callback of another group, on another thread, end it"
     if _waits_for_end(thread):
-        return "see that the thread ends, or join it with a timeout"
+        return "make sure that the thread ends, or join it with a timeout"
     return "take locks by with, which lets go of them whatever happens"
 
 

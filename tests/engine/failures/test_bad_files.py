@@ -43,8 +43,8 @@ FILES = {
     "a bracket left open": Bad("x = 1\nprint('a'\n\ny = 2", "node.py:2: '(' was never closed"),
     "no indentation": Bad("def f():\npass", "node.py:2: expected an indented block"),
     "tabs among spaces": Bad("def f():\n        x = 1\n\ty = 2", "node.py:3: inconsistent use of tabs"),
-    "a binary": Bad(b"\x7fELF\x02\x01\x00\x00\xff", "node.py is no Python file: there are null bytes in it"),
-    "UTF-16": Bad("print(1)".encode("utf-16"), "node.py is no Python file: there are null bytes in it"),
+    "a binary": Bad(b"\x7fELF\x02\x01\x00\x00\xff", "node.py is not a Python file: it has null bytes in it"),
+    "UTF-16": Bad("print(1)".encode("utf-16"), "node.py is not a Python file: it has null bytes in it"),
     "Latin-1 in a comment": Bad(
         b"# one\n# two\n# caf\xe9\nprint(1)",
         "node.py:3: the byte 0xe9 is not UTF-8; save the file as UTF-8, or name its coding in its first line",

@@ -63,4 +63,4 @@ def test_a_child_that_uses_ros_is_told_that_it_cannot(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_on_virtual_time_there_are_no_children(tmp_path: Path) -> None:
     ended = run(tmp_path, PROGRAM.replace("WHO", "None"), clock="virtual")
-    assert "multiprocessing does not live on virtual time; use --clock real" in ended.ending.reason
+    assert "multiprocessing does not work on virtual time; use --clock real" in ended.ending.reason

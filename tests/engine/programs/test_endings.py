@@ -366,4 +366,4 @@ def test_a_sigterm_that_a_program_sends_itself_ends_its_context(tmp_path: Path) 
 @pytest.mark.slow
 def test_a_sigterm_that_a_program_does_not_have_handled_kills_it(tmp_path: Path) -> None:
     run = run_program(tmp_path, SIGTERM_OF_ITS_OWN.replace("OPTIONS", LEFT_ALONE))
-    assert run.loss == "the program crashed by SIGTERM"
+    assert run.loss == "the program crashed with SIGTERM"

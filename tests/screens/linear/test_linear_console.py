@@ -317,7 +317,7 @@ def test_the_solution_is_told_line_by_line_after_a_warning(
     monkeypatch.chdir(tmp_path)
     script = [
         ("problem: ", "H"),
-        ("once the lesson is explained: press a", "a"),
+        ("after the explanation: press a", "a"),
         ("Checked against", "H"),
         ("3 hints are left. Type yes", "yes"),
         ("split_groups.py becomes the solution", "H"),
@@ -369,6 +369,6 @@ def test_hints_come_one_by_one_once_the_lesson_is_explained() -> None:
     predict(EXERCISE)
     exercise = find(EXERCISE).exercise
     assert exercise is not None
-    script = [("problem: ", "h"), ("once the lesson is explained", "a"), ("Checked against", "h|q")]
+    script = [("problem: ", "h"), ("after the explanation", "a"), ("Checked against", "h|q")]
     Lesson(script, lesson=EXERCISE).run()
     assert Progress().of(EXERCISE).hints == 1

@@ -98,7 +98,7 @@ async def test_a_chain_is_asked_for_and_its_path_marked_until_nothing_is_wanted(
         await until(pilot, lambda: bool(shown(app).query_one(Lanes).timeline.names_sent))
         await pilot.press("k")
         await until(pilot, lambda: isinstance(app.screen, ChainScreen))
-        assert "There is /raw, /good, /drive." in text_of(app)
+        assert "Here are /raw, /good, /drive." in text_of(app)
         await pilot.press(*"raw:nowhere", "enter")
         await pilot.pause()
         assert "nothing was sent on /nowhere" in text_of(app)
