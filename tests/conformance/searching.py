@@ -8,7 +8,7 @@ from itertools import groupby
 from random import Random
 
 from sim.clock.moves import Moves
-from tests.conformance.comparing import Outcome, Result, on_model, outcome, place_of, words_of
+from tests.conformance.comparing import DIFFERENT, Outcome, Result, on_model, outcome, place_of, words_of
 from tests.conformance.running import Said
 
 _RUNS_AT_ONCE = 12
@@ -18,7 +18,7 @@ def searched(results: Iterable[Result], distro: str, runs: int) -> list[Result]:
     """The same results, but REACHED where at most so many runs of the model find what a real run said."""
     return [
         each._replace(outcome=Outcome.REACHED)
-        if each.outcome is Outcome.ORDER and Search(each, distro).finds(runs)
+        if each.outcome in DIFFERENT and Search(each, distro).finds(runs)
         else each
         for each in results
     ]
