@@ -28,11 +28,13 @@ _PLAIN_SIGNS = _SIGNS | {
 
 
 def signs_of(actions: Iterable[KeyAction], charset: Charset) -> str:
-    """Return the keys of some actions for display."""
+    """Return the keys of some actions for display, numbers last."""
     keys = list(dict.fromkeys(action.key.partition(",")[0] for action in actions))
     digits = [key for key in keys if key.isdigit()]
-    if len(digits) > 2 and "".join(digits) in "0123456789":
-        keys = [key for key in keys if key not in digits] + [f"{digits[0]}-{digits[-1]}"]
+    if len(digits) > 1:
+        is_row = len(digits) > 2 and "".join(digits) in "0123456789"
+        numbers = [f"{digits[0]}-{digits[-1]}"] if is_row else digits
+        keys = [*(key for key in keys if key not in digits), *numbers]
     return " ".join(_sign(key, charset) for key in keys)
 
 

@@ -18,7 +18,10 @@ _RULE = Ink(Role.FAINT)
 
 
 class HeadingLine(PaintedWidget):
-    """One line of words; what does not fit is cut. ``ruled`` draws a line from their end to the edge."""
+    """One line of texts: the first is cut if need be, of the others those that fit are shown.
+
+    ``ruled`` draws a line from their end to the edge.
+    """
 
     words: reactive[tuple[TextRun, ...]] = painted(())
 
@@ -32,9 +35,10 @@ class HeadingLine(PaintedWidget):
         room = size.width
         line: list[TextRun] = []
         for text, ink in self.words:
-            shown = fit(text, room, self._charset).rstrip() if len(text) > room else text
-            line.append(TextRun(shown, ink))
-            room -= len(shown)
+            if len(text) <= room or not line:
+                shown = fit(text, room, self._charset).rstrip() if len(text) > room else text
+                line.append(TextRun(shown, ink))
+                room -= len(shown)
         return [[*line, TextRun((self._ruled or " ") * room, _RULE)]]
 
 

@@ -178,7 +178,7 @@ def call_note(timeline: Timeline, at: Nanoseconds) -> str:
     pending = [call for call in calls if call.replied is None or call.replied > at]
     if pending:
         more = f" and {len(pending) - 1} more" if len(pending) > 1 else ""
-        return f"{pending[0].service}{more}: no reply for {duration(at - pending[0].sent)}"
+        return f"no reply for {duration(at - pending[0].sent)}: {pending[0].service}{more}"
     latest = max(calls, key=lambda call: call.replied or 0, default=None)
     if latest is None or latest.replied is None or at - latest.replied > _REPLY_STAYS:
         return ""

@@ -23,7 +23,8 @@ _INKS = {
 _INDENT = 3
 _GAP = 2
 """Columns between the sentence and the text at the right."""
-_LEAST_NOTE = 12
+_LEAST_AFTER_NAME = 17
+"""Columns after the first word of a note, to which it may be cut: as ``reply for 3.2 s:``."""
 _MOST = 4
 """The most lines of a sentence."""
 _SIGNS = {DiagnosisLevel.FINE: "✓", DiagnosisLevel.WAITS: "·", DiagnosisLevel.TROUBLE: "!"}
@@ -97,7 +98,7 @@ def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) ->
 def _ways_to_say(diagnosis: Diagnosis) -> Iterator[str]:
     """Yield texts of a diagnosis, the fullest first: with short names, without time, the first clauses."""
     yield from filter(None, (diagnosis.at_length, diagnosis.text))
-    brief = [sub(r"\w+_callback\b", lambda found: short_name(found[0]), diagnosis.text)]
+    brief = [sub(r"\w+_callback\b(?!\.py)", lambda found: short_name(found[0]), diagnosis.text)]
     brief.append(brief[0].removeprefix(diagnosis.time))
     yield from brief
     for text in brief:
@@ -107,4 +108,5 @@ def _ways_to_say(diagnosis: Diagnosis) -> Iterator[str]:
 
 def _fitting(note: str, room: int) -> str:
     """The note and a blank, cut to the remaining room; "" if that is too small."""
-    return fit(f"{note} ", min(len(note) + 1, room), Charset.BRAILLE) if note and room >= _LEAST_NOTE else ""
+    whole, least = len(note) + 1, len(note.partition(" ")[0]) + _LEAST_AFTER_NAME
+    return fit(f"{note} ", min(whole, room), Charset.BRAILLE) if note and room >= min(whole, least) else ""

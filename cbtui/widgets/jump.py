@@ -7,10 +7,14 @@ from textual.geometry import Offset
 
 
 class JumpTarget(NamedTuple):
-    """A place, counted from the top left of its widget's content, and the action that goes there."""
+    """A place, counted from the top left of its widget's content, and the action that goes there.
+
+    ``for_number``: the letter takes the place of a number, and has no brackets of its own.
+    """
 
     place: Offset
     go: Callable[[], object]
+    for_number: bool = False
 
 
 @runtime_checkable

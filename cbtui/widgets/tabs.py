@@ -60,7 +60,7 @@ class Tabs(PaintedWidget):
     def jump_targets(self) -> Iterator[JumpTarget]:
         """Yield the tabs."""
         for start, pane, _ in self._placed():
-            yield JumpTarget(Offset(start, 0), partial(self.post_message, self.TabPicked(pane)))
+            yield JumpTarget(Offset(start + 1, 0), partial(self.post_message, self.TabPicked(pane)), True)
 
     def _placed(self) -> Iterator[tuple[int, str, str]]:
         start = 1

@@ -41,6 +41,7 @@ class WaitedFor(StrEnum):
 
     REPLY = "a reply"
     RATE = "the rate's timer"
+    CLOCK = "the simulated time"
     LOCK = "a lock"
 
 

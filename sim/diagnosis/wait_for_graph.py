@@ -2,9 +2,10 @@
 
 A callback that is blocked in ``Client.call``, or suspended in ``await``, needs a reply, and so does one that
 waits for the reply in a loop or for an event. The reply needs the service's callback, then the client, then a
-worker for the future's done-callback. ``Rate.sleep`` needs the rate's timer, and a lock its holder. Each of
-these can wait for other callbacks: those that hold its group, those that occupy the threads, or the service's
-callback, which may be blocked itself. A callback is stuck if all callbacks that it waits for are stuck.
+worker for the future's done-callback. ``Rate.sleep`` needs the rate's timer, ``Clock.sleep_for`` on simulated
+time the subscription of ``/clock``, and a lock its holder. Each of these can wait for other callbacks: those
+that hold its group, those that occupy the threads, or the service's callback, which may be blocked itself. A
+callback is stuck if all callbacks that it waits for are stuck.
 
 Source: the usual test of a wait-for graph in which a request for one of several equal resources waits for
 all their owners to be stuck (Holt, "Some Deadlock Properties of Computer Systems", 1972).
@@ -19,7 +20,7 @@ from typing import TypeAlias
 
 from sim.diagnosis.rule import WaitedFor, is_models
 from sim.diagnosis.timeline_view import pool_of
-from sim.diagnosis.words import group_of, who
+from sim.diagnosis.words import group_of, listed, who
 from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, Reason, ThreadId
 from sim.trace.model import Call, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.timeline import Timeline
@@ -199,16 +200,27 @@ class WaitForGraph:
             me = self._name(OnThread(position.thread))
             return Obstacle(WaitedFor.LOCK, f"{me} wants the lock that {self._name(holder)} keeps", (holder,))
         if position.call == "Rate.sleep":
-            node = self._timeline.entities[span.entity].node
-            for entity in self._moment.waiting:
-                known = self._timeline.entities[entity]
-                if known.kind is EntityKind.TIMER and known.node == node and is_models(known):
-                    return self._admission_obstacle(entity, WaitedFor.RATE, WaitedFor.RATE)
+            timer = self._waiting_of_rclpy(EntityKind.TIMER, span)
+            if timer is not None:
+                return self._admission_obstacle(timer, WaitedFor.RATE, WaitedFor.RATE)
+        if position.call.startswith("Clock.sleep"):
+            waits = position.doing is Doing.WAITS  # on simulated time
+            clock = self._waiting_of_rclpy(EntityKind.SUBSCRIPTION, span, "/clock") if waits else None
+            return None if clock is None else self._admission_obstacle(clock, WaitedFor.CLOCK, "/clock")
         if position.doing is Doing.WAITS or position.loop[0]:
             pending = (call for call in self._outstanding() if call.caller == span.entity)
             for call in pending:
                 if call.sent >= span.start:
                     return self._obstacle(call)
+        return None
+
+    def _waiting_of_rclpy(self, kind: EntityKind, span: Span, name: str = "") -> EntityId | None:
+        """What rclpy made for the node of a call and now waits: a rate's timer, a clock's subscription."""
+        node = self._timeline.entities[span.entity].node
+        for entity in self._moment.waiting:
+            known = self._timeline.entities[entity]
+            if known.kind is kind and known.node == node and is_models(known) and name in ("", known.name):
+                return entity
         return None
 
     # the obstacles
@@ -247,9 +259,11 @@ class WaitForGraph:
             if group is None or group.kind is not GroupKind.EXCLUSIVE:
                 return None
             by = tuple(waiter for each in self._moment.holders[known.group] for waiter in self._waiters(each))
+            if not by:
+                return None
             name = group_of(owner, self._timeline)
             text = f"{needs} waits for {name}, which {self._names(by)} holds"
-            return Obstacle(wanted, text, by, group=name) if by else None
+            return Obstacle(wanted, text, by, group=name)
         if wait.reason in (Reason.NO_FREE_WORKER, Reason.EVENT_QUEUE) and wait.holder:
             return self._worker_obstacle(self._pool(wait.holder), wanted, needs)
         return None
@@ -284,12 +298,14 @@ class WaitForGraph:
         return None
 
     def _worker_obstacle(self, pool: tuple[Waiter, ...], wanted: str, needs: str) -> Obstacle | None:
+        if not pool:
+            return None
         if len(pool) == 1:
             text = f"{needs} needs the only thread, which {self._names(pool)} keeps"
         else:
             every = "both" if len(pool) == 2 else f"all {len(pool)}"
             text = f"{needs} needs a thread, and {every} stand still: {self._names(pool)}"
-        return Obstacle(wanted, text, pool, needs_worker=True) if pool else None
+        return Obstacle(wanted, text, pool, needs_worker=True)
 
     # threads and queues
 
@@ -315,8 +331,7 @@ class WaitForGraph:
         return tuple(OnThread(each) for each in pool_of(threads[0], self._timeline)) if threads else ()
 
     def _names(self, waiters: tuple[Waiter, ...]) -> str:
-        names = dict.fromkeys(self._name(waiter) for waiter in waiters)
-        return " and ".join(names)
+        return listed(self._name(waiter) for waiter in waiters)
 
     def _name(self, waiter: Waiter) -> str:
         if isinstance(waiter, Suspended):

@@ -84,12 +84,18 @@ def _activity(inside: list[FrameType]) -> tuple[Doing, str]:
     code, module = inside[-1].f_code, str(inside[-1].f_globals.get("__name__"))
     name, own = code.co_name, code.co_qualname
     if name.startswith("sleep") and not own.startswith("Rate."):
-        return Doing.SLEEPS, own if module.startswith("sim.ros.") else "time.sleep"
+        # simulated time comes as messages, which somebody has to take in
+        doing = Doing.WAITS if _is_simulated(inside[-1].f_locals.get("self")) else Doing.SLEEPS
+        return doing, own if module.startswith("sim.ros.") else "time.sleep"
     if module.startswith("sim.ros."):
         return Doing.CALLS_ROS, own
     if any(str(frame.f_globals.get("__name__")).startswith(_WAITING) for frame in inside):
         return Doing.WAITS, {"acquire": LOCK, "__enter__": LOCK, "join": "Thread.join"}.get(name, own)
     return Doing.COMPUTES, ""
+
+
+def _is_simulated(clock: object) -> bool:
+    return getattr(clock, "ros_time_is_active", False) is True
 
 
 def _lock_holder(inside: list[FrameType]) -> int:

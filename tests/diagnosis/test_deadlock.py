@@ -1,9 +1,11 @@
 """Calls whose reply cannot come as long as they wait for it."""
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
+from sim.diagnosis import diagnose
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
@@ -12,6 +14,7 @@ from sim.ros.scheduling.callback_groups import (
 )
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, serve_outside, spin
 from tests.support.builder import ns
+from tests.support.engine_runs import run_program
 from tests.support.simulation import Simulation
 
 Group = Callable[[], CallbackGroup]
@@ -172,3 +175,50 @@ def test_a_call_from_a_thread_that_is_no_executors_is_well() -> None:
         client.call(SetBool.Request())
 
     assert diagnosed(program).problems() == set()
+
+
+SLEEPER = """
+import rclpy
+from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+rclpy.init()
+node = Node("sleeper", parameter_overrides=[Parameter("use_sim_time", value=True)])
+clock = CLOCK
+once = node.create_timer(0.5, lambda: clock.sleep_for(Duration(seconds=2.0)), clock=Clock())
+rclpy.spin(node)
+"""
+
+
+@pytest.mark.parametrize(
+    ("clock", "rules"),
+    [("node.get_clock()", ["deadlock-over-the-clock"]), ("Clock(clock_type=ClockType.STEADY_TIME)", [])],
+)
+def test_a_sleep_on_simulated_time_that_keeps_the_clock_out_is_a_deadlock(
+    clock: str, rules: list[str], tmp_path: Path
+) -> None:
+    world = (
+        "from rosgraph_msgs.msg import Clock as Message\n"
+        "class World(Node):\n"
+        "    def __init__(self):\n"
+        "        super().__init__('world')\n"
+        "        self.pub = self.create_publisher(Message, '/clock', 10)\n"
+        "        self.create_timer(0.05, self.tick)\n"
+        "    def tick(self):\n"
+        "        self.pub.publish(Message(clock=self.get_clock().now().to_msg()))\n"
+        "import threading\n"
+        "from rclpy.executors import SingleThreadedExecutor\n"
+        "executor = SingleThreadedExecutor()\n"
+        "executor.add_node(World())\n"
+        "threading.Thread(target=executor.spin, daemon=True).start()\n"
+    )
+    program = SLEEPER.replace("CLOCK", clock).replace("rclpy.spin(node)", f"{world}rclpy.spin(node)")
+    run = run_program(tmp_path, program, 2.0)
+    found = [each for each in diagnose(run.timeline) if each.rule.id == "self-made-deadlock"]
+    assert [each.rule.kind(each) for each in found] == rules
+    for each in found:
+        told = each.rule.explain(each, run.timeline)
+        assert "waits for the simulated time for ever; /clock waits for group A" in told.what
+        assert "a callback group of its own" in told.cure

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from lessons.checks import never_stuck
 from sim.diagnosis import Finding, diagnose
 from sim.trace.events import Printed, ProgramAt, SpinClashed
 from tests.support.daily import first_row_daily
@@ -46,6 +47,12 @@ FOR_EVER = (
     "all callbacks of its node are in group A, which tick holds"
 )
 TAKEN = "tick takes /caller from the executor that runs tick, by {}(): that executor no longer serves it"
+
+
+REPLY_HELD = (
+    "deadlock: tick waits in spin_until_future_complete() for ever; "
+    "the reply of /power waits for group B, which tick holds"
+)
 
 
 def program(ask: str, spin: str = "rclpy.spin(caller)") -> str:
@@ -113,6 +120,21 @@ def test_a_spin_without_end_inside_a_callback_is_a_ring_and_nothing_moves(tmp_pa
     assert found.ring == ("tick", "spin_until_future_complete()", "group A", "tick")
     assert found.rule.explain(found, run.timeline).for_ever
     assert [each.rule.id for each in diagnose(run.timeline)] == ["nested-spin"]
+
+
+def test_the_reply_that_a_spinning_callback_keeps_out_is_a_ring_although_others_run(tmp_path: Path) -> None:
+    apart = "self.create_timer(0.7, lambda: None, callback_group=MutuallyExclusiveCallbackGroup())"
+    text = program("rclpy.spin_until_future_complete(self, future)", MULTI)
+    alone = "self.create_timer(0.5, self.tick)"
+    text = text.replace(alone, f"{alone}\n        {apart}")
+    reentrant = "callback_group=ReentrantCallbackGroup()"
+    text = text.replace("self.serve)", f"self.serve, {reentrant})")
+    groups = "from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup"
+    run = run_program(tmp_path, f"{groups}\n{text}", 4.0)
+    (found,) = found_in(run)
+    assert found.rule.explain(found, run.timeline).what == REPLY_HELD
+    assert found.ring == ("tick", "spin_until_future_complete()", "group B", "tick")
+    assert not never_stuck().judge(run.timeline).passed
 
 
 def test_a_node_of_its_own_may_be_spun_inside_a_callback(tmp_path: Path) -> None:

@@ -102,6 +102,13 @@ def test_neighbouring_keys_are_written_together() -> None:
     assert signs_of(groups["speed"], Charset.BRAILLE) == "- +"
 
 
+@pytest.mark.parametrize(("answers", "signs"), [(2, "↑ ↓ 1 2"), (3, "↑ ↓ 1-3")])
+def test_numbers_come_after_the_other_keys_however_many_there_are(answers: int, signs: str) -> None:
+    choosing = [action for action in actions_of(Scope.PREDICTION) if action.label == "choose"]
+    offered = [each for each in choosing if not each.key.isdigit() or int(each.key) <= answers]
+    assert signs_of(offered, Charset.BRAILLE) == signs
+
+
 @pytest.mark.parametrize("scope", Scope)
 def test_an_ascii_terminal_gets_keys_in_ascii(scope: Scope) -> None:
     assert signs_of(actions_of(scope), Charset.ASCII).isascii()

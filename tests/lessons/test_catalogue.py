@@ -38,6 +38,7 @@ def test_the_lessons_of_a_unit_stand_together() -> None:
         ("self-made-deadlock", "call-in-a-callback"),
         ("deadlock-over-a-lock", "lock-or-group"),
         ("deadlock-over-a-rate", "rate-sleep-in-a-callback"),
+        ("deadlock-over-the-clock", "sim-time-in-a-callback"),
         ("group-starvation", "single-thread"),
     ],
 )

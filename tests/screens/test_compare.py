@@ -190,6 +190,14 @@ async def test_w_lets_the_table_tell_of_the_stretch_on_screen_and_back() -> None
         assert "Whole runs, 0 to 9.4 s" in title(app)
 
 
+async def test_the_end_of_a_run_is_told_whole_where_its_executor_has_no_room() -> None:
+    async with compared(*sides((14.0, 3.0)), size=NARROW) as (app, _):
+        headings = [line.rstrip() for line in lines_of(app) if re.match(" run [AB]  ", line)][:2]
+        for line in headings:
+            assert re.search(r"   (?:ends at \d+\.000 s|goes on)(?: {3}|$)", line), line
+            assert "…" not in line
+
+
 async def test_a_stretch_that_only_one_run_has_says_so() -> None:
     async with compared(*sides((14.0, 3.0))) as (app, pilot):
         await press(app, pilot, "w")

@@ -164,7 +164,7 @@ def test_looking_back_over_a_run_that_is_over_tells_of_that_moment() -> None:
 def test_a_call_is_followed_from_request_to_reply() -> None:
     timeline = timeline_of(dummy_server_run(), 10.0)
     assert call_note(timeline, ns(2.0)) == ""
-    assert call_note(timeline, ns(5.15)) == "/dummy_server_srv: no reply for 2.6 s"
+    assert call_note(timeline, ns(5.15)) == "no reply for 2.6 s: /dummy_server_srv"
     assert call_note(timeline, ns(8.0)) == "/dummy_server_srv replied success=True, message='TURNING'"
 
 
@@ -178,7 +178,7 @@ def test_several_calls_without_reply_are_counted() -> None:
     run = dummy_server_run()
     run.call("/dummy_server_srv", 3.0)
     run.call("/dummy_server_srv", 4.0)
-    assert call_note(timeline_of(run, 5.0), ns(4.55)) == "/dummy_server_srv and 2 more: no reply for 2.0 s"
+    assert call_note(timeline_of(run, 5.0), ns(4.55)) == "no reply for 2.0 s: /dummy_server_srv and 2 more"
 
 
 def test_executors_are_written_as_code_would_make_them() -> None:
@@ -192,6 +192,27 @@ def test_executors_are_written_as_code_would_make_them() -> None:
 def test_the_line_is_as_wide_as_the_screen(width: int, note: str, problems: str) -> None:
     runs = diagnosis_row(said(shared_group_run(), 12.9), note, problems, width)
     assert sum(len(run.text) for run in runs) == width
+
+
+@pytest.mark.parametrize(
+    ("note", "shown"),
+    [
+        ("no reply for 3.2 s: /dummy_server_srv", "no reply for 3.2 s:…"),
+        ("/dummy_server_srv replied success=True", ""),
+    ],
+)
+def test_a_note_is_not_cut_to_a_name_alone(note: str, shown: str) -> None:
+    said = Diagnosis("nothing waits; 2 of 2 threads were ever needed at once", DiagnosisLevel.FINE)
+    line = "".join(run.text for run in diagnosis_row(said, note, "", 80))
+    assert line.removeprefix(f" ✓ {said.text}").strip() == shown
+
+
+def test_a_shortened_sentence_keeps_the_names_of_files() -> None:
+    text = (
+        "1 of 5 checks fails. o opens lookup_in_a_callback.py; saving it checks it again after odom_callback"
+    )
+    line = "".join(run.text for run in diagnosis_row(Diagnosis(text, DiagnosisLevel.FINE), "", "", 96))
+    assert "lookup_in_a_callback.py; saving it checks it again after odom" in line
 
 
 def test_the_note_gives_way_to_the_diagnosis() -> None:

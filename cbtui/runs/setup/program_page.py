@@ -76,7 +76,8 @@ def _tries(timeline: Timeline, problems: Sequence[str]) -> Iterator[str]:
     """Suggestions for this program, the most useful first."""
     own = [each for each in timeline.entities.values() if programs_own(each)]
     if problems:
-        yield f"`d` shows {counted(len(problems), 'problem')}, at which line, and a cure: {problems[0]}."
+        more = f", and {counted(len(problems) - 1, 'further problem')}" if len(problems) > 1 else ""
+        yield f"{problems[0]}. `d` shows its line and a cure{more}."
     services = [each for each in own if each.kind is EntityKind.SERVICE]
     calls = next((each.name for each in services if each.interface_type == _SET_BOOL), None)
     if calls is not None:

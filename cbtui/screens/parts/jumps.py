@@ -12,7 +12,7 @@ from textual.widget import Widget
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenPart, WindowHost
 from cbtui.screens.windows.jump import JumpScreen
-from cbtui.widgets.jump import Jumpable
+from cbtui.widgets.jump import Jumpable, JumpTarget
 from cbtui.widgets.tabs import Tabs
 
 _LETTERS = "asdfghjklqwertyuiopzxcvbnm" + ascii_uppercase
@@ -33,27 +33,27 @@ class Jumps(ScreenPart):
 
         def go(letter: str | None) -> None:
             if letter is not None:
-                found[letter][1]()
+                found[letter].go()
 
-        places = {letter: place for letter, (place, _) in found.items()}
-        self.host.ask(JumpScreen(places, self.host.charset), go)
+        self.host.ask(JumpScreen(found, self.host.charset), go)
 
-    def _places(self) -> Iterator[tuple[Offset, Callable[[], object]]]:
-        """Yield the places on the screen, the panes first."""
+    def _places(self) -> Iterator[JumpTarget]:
+        """Yield the places, counted from the top left of the screen, the panes first."""
         if self.panes is not None:
             yield from _framed(self.panes)
         for widget in sorted(self.screen.query("*"), key=lambda each: not isinstance(each, Tabs)):
             if isinstance(widget, Jumpable) and widget.region:
-                for place, go in widget.jump_targets():
-                    yield widget.content_region.offset + place, partial(_go, widget, go)
+                for target in widget.jump_targets():
+                    place = widget.content_region.offset + target.place
+                    yield target._replace(place=place, go=partial(_go, widget, target.go))
 
 
-def _framed(panes: PaneLayout) -> Iterator[tuple[Offset, Callable[[], object]]]:
+def _framed(panes: PaneLayout) -> Iterator[JumpTarget]:
     """Yield the panes that have a frame to hold a letter."""
     for name in panes.names:
         pane = panes.pane(name)
         if pane.styles.border_top[0] and pane.size:
-            yield pane.region.offset + Offset(1, 0), partial(panes.show, name)
+            yield JumpTarget(pane.region.offset + Offset(1, 0), partial(panes.show, name))
 
 
 def _go(widget: Widget, go: Callable[[], object]) -> None:

@@ -84,8 +84,9 @@ class Predictions(ScreenPart):
         self._find_out()
         learning.update_state()
         self.screen.run_worker(learning.update_page(), group="page")
-        key = self.host.key("explain")
-        self.host.tell(f"The guide now tells what happened, and why: press {key}.")
+        if not learning.progress.explained:
+            key = self.host.key("explain")
+            self.host.tell(f"The guide now tells what happened, and why: press {key}.")
 
     def _was_watched(self) -> bool:
         """Whether enough of the run was watched to judge the predictions."""
@@ -116,6 +117,7 @@ class Predictions(ScreenPart):
         if learning.state is None:
             return
         learning.store.explain(self.learning.lesson.id)
+        self.screen.app.clear_notifications()  # one may still say that the key is to be pressed
         self._wanted = True
         self._find_out()
         await learning.update_page()

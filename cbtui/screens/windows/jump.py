@@ -6,7 +6,6 @@ from typing import ClassVar
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.events import Click, Key
-from textual.geometry import Offset
 from textual.screen import ModalScreen
 from textual.types import CSSPathType
 from textual.widgets import Static
@@ -15,6 +14,7 @@ from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedScreen
+from cbtui.widgets.jump import JumpTarget
 from cbtui.widgets.key_bar import KeyBar
 
 
@@ -25,16 +25,17 @@ class JumpScreen(ModalScreen[str], SizedScreen[str]):
     CSS_PATH: ClassVar[CSSPathType | None] = "window.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.JUMP)]
 
-    def __init__(self, places: Mapping[str, Offset], charset: Charset) -> None:
+    def __init__(self, places: Mapping[str, JumpTarget], charset: Charset) -> None:
         super().__init__()
         self._places = places
         self._charset = charset
 
     def compose(self) -> ComposeResult:
         """Lay out the letters."""
-        for letter, place in self._places.items():
-            label = Static(f"[{letter}]", classes="letter", markup=False)
-            label.styles.offset = place
+        for letter, target in self._places.items():
+            text = letter if target.for_number else f"[{letter}]"
+            label = Static(text, classes="letter", markup=False)
+            label.styles.offset, label.styles.width = target.place, len(text)
             yield label
         yield KeyBar(self.SCOPE, self._charset)
 

@@ -32,7 +32,7 @@ def _walks_at_its_pace(run: Timeline) -> Verdict:
 
 
 CHECKS = (
-    keeps_coming("blink_callback", NODE_RUNS, at_least=1.5),
+    keeps_coming("blink_callback", NODE_RUNS, at_least=1.75),
     log_says("ROUND DONE", at_least=2),
     Check("the watchman keeps his pace", _walks_at_its_pace),
     every_call_answered(),

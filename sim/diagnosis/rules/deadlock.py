@@ -33,17 +33,19 @@ class SelfMadeDeadlock(Rule):
         )
 
     def kind(self, found: Finding) -> str:
-        """Distinguish deadlocks over locks and rates from those over calls."""
+        """Distinguish deadlocks over locks, rates and clocks from those over calls."""
         return next((kind for wanted, kind in _KINDS.items() if wanted in found.waited_for), self.id)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
+        apart = f"give {subject} a callback group of its own"
         about = _OWN_LOCK if found.about == WaitedFor.LOCK and found.size == 1 else found.about
         if found.waited_for >= {WaitedFor.LOCK, WaitedFor.REPLY}:
             about = _LOCK_AND_CALL
         why, cure = _WHY.get(about, _WHY_REPLY), _CURES.get(about, "")
+        if about == WaitedFor.CLOCK:
+            cure = f"return, and let a timer of the node's clock do what comes later; or {apart}"
         if not cure:
-            apart = f"give {subject} a callback group of its own"
             stands = timeline.positions_of(found.subject, Window(found.at, found.at + 1))
             if not stands or stands[-1].call in ("", "Client.call"):
                 cure = f"use call_async() and return from {subject}, or {apart}"
@@ -66,6 +68,8 @@ class SelfMadeDeadlock(Rule):
         apart = Remedy((found.subject,), threads)
         if found.about == WaitedFor.RATE:
             return apart, Remedy(threads=threads)
+        if found.about == WaitedFor.CLOCK:
+            return (apart,)
         if WaitedFor.LOCK not in found.waited_for:
             return apart, *edits_for_reply(place, found.subject, timeline)
         other = _line_of(found.culprit, found, timeline)
@@ -102,13 +106,21 @@ class NeedsOneMoreWorker(Rule):
         return _explanation(found, why, cure, (Remedy(threads=found.size + 1), *edits), timeline)
 
 
-_KINDS = {WaitedFor.LOCK: "deadlock-over-a-lock", WaitedFor.RATE: "deadlock-over-a-rate"}
+_KINDS = {
+    WaitedFor.LOCK: "deadlock-over-a-lock",
+    WaitedFor.RATE: "deadlock-over-a-rate",
+    WaitedFor.CLOCK: "deadlock-over-the-clock",
+}
 _WHY_REPLY = "the reply is brought by the executor, and needs a group that lets it in and a thread"
 _OWN_LOCK = "its own lock"
 _LOCK_AND_CALL = "a lock and a reply"
 _WHY = {
     _OWN_LOCK: "it holds the lock already, and a Lock cannot be taken twice",
     WaitedFor.RATE: "the rate's sleep() ends when the executor calls its timer, which needs a thread",
+    WaitedFor.CLOCK: (
+        "simulated time goes on when the executor takes the messages of /clock, which needs a group that "
+        "lets it in and a thread"
+    ),
     WaitedFor.LOCK: "each keeps its lock while it waits for the other's, so neither lets go",
     _LOCK_AND_CALL: "the lock is held during a call, and whoever has to answer needs it",
 }

@@ -8,10 +8,10 @@ from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES
-from sim.diagnosis.words import often, threads_for, who, with_threads
+from sim.diagnosis.words import group_of, listed, often, threads_for, who, with_threads
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import Doing, GroupKind, SpinClashed
-from sim.trace.model import Nanoseconds, Position
+from sim.trace.events import Doing, EntityKind, GroupKind, SpinClashed
+from sim.trace.model import Nanoseconds, Position, Window
 from sim.trace.timeline import Timeline
 
 
@@ -30,9 +30,10 @@ class NestedSpin(Rule):
         spinning = {each.entity for each in view.positions if _SPIN in each.call and _lasts(each, view)}
         latest = {each.entity: each for each in view.timeline.spin_clashes}
         for clash in reversed(view.timeline.spin_clashes):
-            ring = _ring(clash, view.timeline) if latest[clash.entity] is clash else ()
-            if ring and clash.entity in spinning:
+            held = _held_up(clash, view) if latest[clash.entity] is clash else ""
+            if held and clash.entity in spinning:
                 stuck, until = frozenset([clash.entity]), view.end
+                ring = _ring(clash, view.timeline)
             elif clash.t > view.window.start:
                 stuck, until, ring = frozenset(), clash.t, ()
             else:
@@ -45,6 +46,7 @@ class NestedSpin(Rule):
                 clash.entity,
                 about=clash.function,
                 event=clash,
+                detail=held,
                 stuck=stuck,
                 ring=ring,
             )
@@ -73,9 +75,11 @@ class NestedSpin(Rule):
             why = "an executor is spun once at a time; rclpy before Jazzy 7.1.9 tells nobody, and may hang"
         for_ever = bool(found.ring) and found.until >= timeline.end
         if for_ever:
-            held = f"all callbacks of its node are in {found.ring[2]}, which {subject} holds"
-            what = f"deadlock: {subject} waits in {found.ring[1]} for ever; {held}"
-            why = "it comes back when a callback of the node has run, and their group lets none of them in"
+            what = (
+                f"deadlock: {subject} waits in {found.ring[1]} for ever; "
+                f"{found.detail} {found.ring[2]}, which {subject} holds"
+            )
+            why = "it comes back when a callback of this group has run, and the group lets none in meanwhile"
         place = line_location(clash.file, clash.line)
         cure, remedies = _cure(clash, subject, timeline), _remedies(clash, place, timeline)
         return Explanation(
@@ -120,17 +124,38 @@ def _lasts(position: Position, view: TimelineView) -> bool:
     return position.doing is Doing.CALLS_ROS and view.end - position.start >= SETTLES
 
 
-def _ring(clash: SpinClashed, timeline: Timeline) -> tuple[str, ...]:
-    """Return the cycle of a callback that spins its node without end, if it holds the node's only group."""
+def _held_up(clash: SpinClashed, view: TimelineView) -> str:
+    """Return what a callback that spins without end keeps out of its group, so that it never returns; or "".
+
+    That is either whatever its node has, or the replies to all calls of which it can wait for the future.
+    """
+    timeline = view.timeline
     known = timeline.entities.get(clash.entity)
     group = None if known is None else timeline.groups.get(known.group)
     if known is None or group is None or not clash.endless or clash.node != known.node:
-        return ()
-    groups = {each.group for each in timeline.entities.values() if each.node == clash.node}
-    if groups != {group.id} or group.kind is not GroupKind.EXCLUSIVE:
-        return ()
-    subject = who(clash.entity, timeline)
-    return subject, f"{clash.function}()", f"group {group.letter}", subject
+        return ""
+    if group.kind is not GroupKind.EXCLUSIVE:
+        return ""
+    if all(each.group == group.id for each in timeline.entities.values() if each.node == clash.node):
+        return "all callbacks of its node are in"
+    if not clash.function.endswith("future_complete"):
+        return ""
+    kept = {
+        timeline.entities[wait.entity].name
+        for wait in timeline.moment(view.end).waiting.values()
+        if wait.holder == clash.entity and view.end - wait.since >= SETTLES
+        if timeline.entities[wait.entity].kind is EntityKind.CLIENT
+    }
+    begun = timeline.spans_of(clash.entity, Window(clash.t, clash.t + 1))
+    since = Window(begun[-1].start, view.end + 1) if begun else Window(clash.t, view.end + 1)
+    called = {call.service for call in timeline.calls_within(since) if call.caller == clash.entity}
+    return f"the reply of {listed(sorted(called))} waits for" if called and called <= kept else ""
+
+
+def _ring(clash: SpinClashed, timeline: Timeline) -> tuple[str, ...]:
+    """Return the cycle of a callback that spins its node and keeps its group meanwhile."""
+    subject, group = who(clash.entity, timeline), group_of(clash.entity, timeline)
+    return subject, f"{clash.function}()", group, subject
 
 
 def _remedies(clash: SpinClashed, place: CodeLocation | None, timeline: Timeline) -> tuple[Remedy, ...]:

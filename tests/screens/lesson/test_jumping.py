@@ -41,8 +41,23 @@ async def test_a_letter_leads_to_a_pane(size: tuple[int, int], charset: str) -> 
     app = RecordedConsole("shared-group", EVENTS, 12.9, charset=charset)
     async with app.run_test(size=size) as pilot:
         await settle(pilot)
-        await jump_to(app, pilot, " ?Code ")
+        await pilot.press("j")
+        await pilot.pause()
+        found = re.search(r" (\w) Code |\[(\w)\] ?Code ", text_of(app))
+        assert found is not None, text_of(app)
+        await pilot.press(found[1] or found[2])
+        await settle(pilot)
         assert app.lesson_screen.query_one(CodeView).has_focus
+
+
+async def test_letters_of_tabs_take_the_place_of_the_numbers_and_leave_the_brackets() -> None:
+    app = RecordedConsole("shared-group", EVENTS, 12.9)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        place = next(place for place, line in enumerate(lines_of(app)) if "[1 Guide]" in line)
+        await pilot.press("j")
+        await pilot.pause()
+        assert re.match(r"─\[[a-z] Guide\] [a-z] Code  [a-z] Factory ", lines_of(app)[place])
 
 
 async def test_a_letter_on_a_bar_selects_it_and_goes_to_its_moment() -> None:
