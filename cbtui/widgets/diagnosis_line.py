@@ -79,13 +79,19 @@ def diagnosis_rows(diagnosis: Diagnosis, note: str, problems: str, width: int) -
 
 
 def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[TextRun]:
-    """Return the line in exactly ``width`` columns; of the text at the right only the problems always fit."""
+    """Return the line in exactly ``width`` columns; of the text at the right only the problems always fit.
+
+    Where nothing is wrong, the note is worth more than the further clauses of the diagnosis.
+    """
     ink = _INKS[diagnosis.level]
     at_right = f"{problems} " if problems else ""
     gap = _GAP if problems else 0
     room = width - len(at_right) - gap
-    texts = (f" {_SIGNS[diagnosis.level]} {each}" for each in _ways_to_say(diagnosis))
-    text = next((each for each in texts if len(each) <= room), f" {_SIGNS[diagnosis.level]} {diagnosis.text}")
+    fine = diagnosis.level is DiagnosisLevel.FINE
+    rooms = (room - len(note) - _INDENT - 1, room) if note and fine else (room,)
+    texts = [f" {_SIGNS[diagnosis.level]} {each}" for each in _ways_to_say(diagnosis)]
+    fitting = (each for most in rooms for each in texts if len(each) <= most)
+    text = next(fitting, f" {_SIGNS[diagnosis.level]} {diagnosis.text}")
     shown_note = _fitting(note, room - len(text) - _INDENT)
     runs = [
         TextRun(fit(text, room - len(shown_note), Charset.BRAILLE), ink),

@@ -202,9 +202,16 @@ def test_the_line_is_as_wide_as_the_screen(width: int, note: str, problems: str)
     ],
 )
 def test_a_note_is_not_cut_to_a_name_alone(note: str, shown: str) -> None:
-    said = Diagnosis("nothing waits; 2 of 2 threads were ever needed at once", DiagnosisLevel.FINE)
+    said = Diagnosis("odom waits for group A, which timer has held for 4.1 s", DiagnosisLevel.WAITS)
     line = "".join(run.text for run in diagnosis_row(said, note, "", 80))
-    assert line.removeprefix(f" ✓ {said.text}").strip() == shown
+    assert line.removeprefix(f" · {said.text}").strip() == shown
+
+
+def test_where_nothing_is_wrong_a_reply_is_told_whole() -> None:
+    said = Diagnosis("nothing waits; 2 of 2 threads were ever needed at once", DiagnosisLevel.FINE)
+    line = "".join(run.text for run in diagnosis_row(said, "/motor_power replied success=True", "", 80))
+    assert line.split("  ")[0] == " ✓ nothing waits"
+    assert line.endswith(" /motor_power replied success=True ")
 
 
 def test_a_shortened_sentence_keeps_the_names_of_files() -> None:
