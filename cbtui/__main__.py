@@ -23,6 +23,12 @@ def command() -> int:
             return main()
         finally:
             interrupts.ignore()
+    except ImportError as error:
+        from cbtui.text.clashing_packages import on_hidden
+
+        if not (clash := on_hidden(error)):
+            raise
+        sys.exit(f"cbtui: {clash}")
     except KeyboardInterrupt:
         return _INTERRUPTED
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-import sys
-from typing import TYPE_CHECKING
+from collections.abc import Generator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pytest
+
+from cbtui.text.clashing_packages import on_hidden, on_hiding
 
 if TYPE_CHECKING:
     from cbtui.pytest_plugin.runner import Runner
@@ -15,8 +18,6 @@ _MARK = (
     "sensor_rate=None, distro=None, schedules=1, seed=None, on='model', python=None, robot=True, limit=60): "
     "how the fixture cbtui runs programs"
 )
-
-_OWN_PACKAGES = {"cbtui", "lessons", "sim"}
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -50,12 +51,38 @@ def cbtui(request: pytest.FixtureRequest) -> Runner:
     except pytest.UsageError as error:
         pytest.fail(str(error), pytrace=False)
     except ImportError as error:
-        hidden = (error.name or "").partition(".")[0]
-        if hidden not in _OWN_PACKAGES:
+        clash = on_hidden(error)
+        if not clash:
             raise
-        there = getattr(sys.modules.get(hidden), "__file__", None) or f"a folder {hidden}"
         pytest.fail(
-            f"cbtui's own package {hidden} is hidden by {there}; rename that, or keep it off sys.path: start "
-            "pytest rather than python -m pytest, with --import-mode=importlib",
-            pytrace=False,
+            f"{clash}: start pytest rather than python -m pytest, with --import-mode=importlib", pytrace=False
         )
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(
+    item: pytest.Item, call: pytest.CallInfo[None]
+) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """Name the package of cbtui's that hides one which a test imports."""
+    report = yield
+    _add_clash(report, call, item.path)
+    return report
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report(
+    collector: pytest.Collector,
+) -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    """Name the package of cbtui's that hides one which a file of tests imports."""
+    report = yield
+    _add_clash(report, getattr(report, "call", None), collector.path)
+    return report
+
+
+def _add_clash(
+    report: pytest.TestReport | pytest.CollectReport, call: pytest.CallInfo[Any] | None, file: Path
+) -> None:
+    raised = None if call is None or call.excinfo is None else call.excinfo.value
+    for error in (raised, getattr(raised, "__cause__", None)):
+        if isinstance(error, ImportError) and (clash := on_hiding(error, file)):
+            report.sections.append(("cbtui", clash))

@@ -213,6 +213,18 @@ def test_a_package_of_the_project_that_hides_one_of_cbtuis_is_named(project: Pat
     assert f"cbtui's own package sim is hidden by {project / 'sim' / '__init__.py'}; rename" in run.stdout
 
 
+@pytest.mark.parametrize("workers", first_daily("0", "2"))
+def test_a_package_of_cbtuis_that_hides_one_of_the_project_is_named(project: Path, workers: str) -> None:
+    (project / "test_line.py").write_text("import sim.conveyor\ndef test_own(): pass\n")
+    (project / "test_late.py").write_text("def test_late():\n    from lessons import mine\n")
+    run = pytest_in(project, "-q", "-n", workers)
+    assert re.search(r"/sim is cbtui's own package sim, which hides yours; rename yours\n", run.stdout)
+    run = pytest_in(project, "-q", "-n", workers, "test_late.py")
+    assert re.search(
+        r"/lessons is cbtui's own package lessons, which hides yours; rename yours\n", run.stdout
+    )
+
+
 @pytest.mark.slow
 def test_a_lesson_and_a_file_in_its_place_are_judged_by_its_checks(project: Path) -> None:
     (project / "test_line.py").write_text(

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Iterable
 from difflib import get_close_matches
 
+from sim.engine.failures.missing_names import on_hidden
 from sim.interfaces import kinds_sentence, packages
 from sim.ros.importing import HOMES
 
@@ -129,14 +130,11 @@ _KNOWN = {
 }
 
 
-_OURS = {"cbtui", "lessons", "sim"}
-
-
 def on_missing(module: str) -> str:
     """Return advice on a module that cannot be imported, as a clause."""
     package = module.partition(".")[0]
-    if package in _OURS:
-        return f"{package} is a package of cbtui's own, which hides yours; rename yours"
+    if hidden := on_hidden(package):
+        return hidden
     if package in packages():
         return kinds_sentence(package)
     if package in sys.modules:

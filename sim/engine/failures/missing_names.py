@@ -61,14 +61,24 @@ _NEWER = {
     "set_content_filter": _FILTER,
 }
 """What Kilted's rclpy has and no release here: arguments, attributes and modules."""
+_OURS = {"cbtui", "lessons", "sim"}
 _INSTEAD = {f"{module}.{name}": instead for module, names, instead in _MISSING for name in names.split()}
 """The replacement of each missing name."""
 
 
 def on_missing_name(module: str, name: str) -> str:
     """Return advice on a name that a module has in ROS 2 and lacks in the model, as a clause; else ""."""
-    whole = f"{names_for_programs(module)}.{name}"
-    return f"{whole} is not modelled here; {_INSTEAD[whole]}" if whole in _INSTEAD else ""
+    module = names_for_programs(module)
+    whole = f"{module}.{name}"
+    return f"{whole} is not modelled here; {_INSTEAD[whole]}" if whole in _INSTEAD else on_hidden(module)
+
+
+def on_hidden(module: str) -> str:
+    """Return advice on a program's own module that a package of cbtui's hides, as a clause; else ""."""
+    package = module.partition(".")[0]
+    return (
+        f"{package} is a package of cbtui's own, which hides yours; rename yours" if package in _OURS else ""
+    )
 
 
 def on_newer(name: str) -> str:

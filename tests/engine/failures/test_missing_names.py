@@ -28,6 +28,12 @@ def test_what_is_said_to_be_missing_is(tmp_path: Path) -> None:
     assert printed(tmp_path, f"import importlib\n{looks}\nprint('all missing')\n") == ["all missing"]
 
 
+def test_a_name_of_ones_own_package_that_one_of_cbtuis_hides() -> None:
+    assert (
+        on_missing_name("sim", "SPEED") == "sim is a package of cbtui's own, which hides yours; rename yours"
+    )
+
+
 def test_other_names_are_left_to_spelling() -> None:
     assert on_missing_name("sim.ros_packages.tf2_ros", "Transformer") == ""
 
