@@ -11,7 +11,7 @@ _LAG_FORGIVEN = 250_000_000
 
 
 class Pace:
-    """The pace of a virtual clock. Only the thread that has the clock's baton may use it.
+    """The pace of a virtual clock. Only the thread that has the clock's baton may change it.
 
     ``speed`` is virtual seconds per real second; None: as fast as possible. A fast-forward to a goal (the
     next step, or a moment) ignores the speed. ``on_halt`` is called each time a goal is reached.

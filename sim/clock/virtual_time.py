@@ -25,8 +25,8 @@ _CHECK_PERIOD = 20_000_000
 class VirtualTime:
     """The nanoseconds of a run, changed by the thread that has the baton.
 
-    ``inject``, ``steer`` and ``give`` are thread-safe. ``resume_thread`` is called with each thread whose
-    deadline is reached.
+    ``inject``, ``steer``, ``give`` and ``reached`` are thread-safe. ``resume_thread`` is called with each
+    thread whose deadline is reached.
     """
 
     def __init__(self, speed: float | None, resume_thread: Callable[[VirtualThread], None]) -> None:
@@ -39,6 +39,7 @@ class VirtualTime:
         self._resume_thread = resume_thread
         self._inbox = Inbox()
         self._inputs = Inputs()
+        self._target: int | None = None
         self.before_jump: Callable[[], int | None] = lambda: None
         """Called whenever time is about to pass, on any thread of the clock; it must not wait.
 
@@ -55,6 +56,11 @@ class VirtualTime:
     def rests(self) -> bool:
         """Whether the run waits for its pace, for the end of a pause, or for something from outside."""
         return self._inbox.rests
+
+    @property
+    def reached(self) -> int:
+        """The moment that a run has reached at its pace, which may be between two deadlines. Thread-safe."""
+        return self.pace.reached(self.now, self._target) if self.rests else self.now
 
     def inject(self, action: Callable[[], None]) -> None:
         """Run ``action``, which must not wait, at the moment that the run has reached. Thread-safe."""
@@ -202,6 +208,7 @@ class VirtualTime:
 
         Injected actions are done by then; an input is carried out when the present moment ends.
         """
+        self._target = target
         while not self._inbox.waiting:
             if target is not None and target <= self.now:
                 return True  # the moment continues to its end, even if time is paused

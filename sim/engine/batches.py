@@ -44,9 +44,11 @@ class Batches:
         return self._seal.close(packed, replaced)
 
     def heartbeat(self) -> list[AnyEvent]:
-        """Return an event with the time if that has changed; virtual time changes with events only."""
-        now = 0 if isinstance(self._clock, VirtualClock) else self._clock.now()
-        if now <= self._time_told:
+        """Return an event with the time if that has changed; virtual time only if it passes at a pace."""
+        told, now = self._time_told, self._clock.now()
+        if isinstance(self._clock, VirtualClock):
+            told, now = max(told, now), self._clock.time.reached
+        if now <= told:
             return []
         self._time_told = now
         return [TimePassed(now)]

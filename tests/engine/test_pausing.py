@@ -272,3 +272,20 @@ def tick():
 node.create_timer(0.02, tick)
 rclpy.spin(node)
 """
+
+
+def test_paced_virtual_time_is_told_while_a_callback_sleeps_but_not_in_a_pause(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text("import time\ntime.sleep(60)")
+    with console(msgspec.structs.replace(program_setup(path, 60.0), speed=1.0)) as run:
+        run.until(TimePassed, 5)
+        run.give(Pause())
+        paused = run.until(CommandGiven)
+        told = len(run.events)
+        time.sleep(0.5)
+        assert not [each for each in run.events[told:] if isinstance(each, TimePassed)]
+        run.give(Resume())
+        run.until(TimePassed, 10)
+    times = [event.t for event in run.events if isinstance(event, TimePassed)]
+    assert times == sorted(set(times))
+    assert times[4] <= paused.t < times[9] < 60 * SECOND

@@ -9,7 +9,7 @@ from sim.engine.commands import PaceCommand, Resume, SetSpeed, Step
 from sim.engine.time_control import VirtualControl
 from sim.probes.probe import Probe
 from sim.ros.middleware.host import Host
-from sim.trace.events import AnyEvent, CommandGiven, TimeHalted
+from sim.trace.events import AnyEvent, CommandGiven, TimeHalted, TimePassed
 from tests.support.builder import ns
 from tests.support.simulation import EndedClock, Program, Simulation, installed, no_thread_left
 
@@ -107,5 +107,5 @@ def _steer(steering: Steering, helm: Helm, began: threading.Event, trouble: list
 
 
 def without_commands(events: list[AnyEvent]) -> list[AnyEvent]:
-    """What the program did, without what the person at the keyboard did to time."""
-    return [event for event in events if not isinstance(event, (CommandGiven, TimeHalted))]
+    """What the program did, without what the person at the keyboard did to time, and what that showed."""
+    return [event for event in events if not isinstance(event, (CommandGiven, TimeHalted, TimePassed))]

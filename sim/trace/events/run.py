@@ -90,7 +90,9 @@ class TimeHalted(TraceEvent, frozen=True, tag="halt"):
 
 
 class TimePassed(TraceEvent, frozen=True, tag="time"):
-    """The time of a run on the real clock, sent when there is no other event, so that the display is updated.
+    """The time of a run, sent when there is no other event for a while, so that the display is updated.
+
+    A virtual run sends it only at a pace, between two of its moments.
 
     Lines of JSON leave it out.
     """
