@@ -116,7 +116,7 @@ class ActionWaitable(Entity):
 
     def arrivals(self) -> list[Part | None]:
         """The part of each queued item, part by part."""
-        return [part for part, _ in self._parts for _ in range(part.queued)]
+        return [part for part, _ in self._parts for _ in part.arrivals()]
 
     def expect(self, arrived: Entity | None) -> None:
         """Take from one part only; None: from no part, because a result has expired."""

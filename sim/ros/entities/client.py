@@ -1,7 +1,7 @@
 """Clients: they call a service; an executor takes the replies."""
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, TypeVar
 
 import msgspec
@@ -23,6 +23,8 @@ SrvTypeRequest = TypeVar("SrvTypeRequest")
 SrvTypeResponse = TypeVar("SrvTypeResponse")
 """Type variables that programs import for their type hints."""
 
+_FOREIGN = None
+"""Stands for a reply to another client."""
 _POLL = 0.25
 """Seconds between two polls for a service, as in rclpy."""
 
@@ -65,6 +67,7 @@ class Client(ClientOrService, Entity):
         self._host = node.context.host
         self.gid = self._host.new_gid()
         self._pending_requests: dict[int, Future[Any]] = {}
+        node.context.network.join_client(self)
 
     @property
     def handle(self) -> ClientHandle:
@@ -162,17 +165,34 @@ class Client(ClientOrService, Entity):
             return
         now = self._host.clock.now()
         self._queue.append(Reply(call, response, now))
-        self._probe.ready(self, len(self._queue), call)
+        self._probe.ready(self, self.queued, call)
         self.become_ready(now)
 
+    def overhear(self) -> None:
+        """A reply to another client arrived, for DDS sends it to all of the service; a take finds none.
+
+        Until that take the client is ready, and its own replies come behind it.
+        """
+        self._queue.append(_FOREIGN)
+        self.become_ready(self._host.clock.now())
+
+    @property
+    def queued(self) -> int:
+        """How many replies to this client there are to take."""
+        return len(self._queue) - self._queue.count(_FOREIGN)
+
+    def arrivals(self) -> Sequence[Entity | None]:
+        """For all that there is to take, foreign replies too, what it arrived at."""
+        return [None] * len(self._queue)
+
     def take(self, now: int) -> TakenData | None:
-        """Take the oldest reply."""
-        if not self._queue:
+        """Take the oldest reply; None if it is to another client."""
+        reply: Reply | None = self._take_oldest(now) if self._queue else _FOREIGN
+        if reply is _FOREIGN:
             return None
-        reply: Reply = self._take_oldest(now)
         if self._introspection is not None:
             self._introspection.publish_step("RESPONSE_RECEIVED", self.gid, reply.call, response=reply.data)
-        return TakenData(reply, reply.call, now - reply.sent, len(self._queue))
+        return TakenData(reply, reply.call, now - reply.sent, self.queued)
 
     def invoke(self, taken: TakenData) -> Any:
         """Set the result of the future that waits for the reply."""
@@ -189,5 +209,6 @@ class Client(ClientOrService, Entity):
         future.set_result(result)
 
     def removed(self) -> None:
-        """Stop the introspection: the client was removed from its node."""
+        """Leave the network: the client was removed from its node."""
+        self.node.context.network.leave_client(self)
         self.stop_introspection()

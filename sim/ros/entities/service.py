@@ -101,6 +101,7 @@ class Service(ClientOrService, Entity):
             if self._introspection is not None:
                 self._introspection.publish_step("RESPONSE_SENT", request.client, request.call, response=copy)
             request.answer(copy)
+            self.node.context.network.spread_reply(self.name, self.srv_type, request.client)
 
     def removed(self) -> None:
         """Leave the network: the service was removed from its node."""

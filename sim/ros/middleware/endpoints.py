@@ -68,6 +68,17 @@ class ServiceEndpoint(Protocol):
         """Queue a request."""
 
 
+class ClientEndpoint(Protocol):
+    """A client."""
+
+    name: str
+    srv_type: Any
+    gid: bytes
+
+    def overhear(self) -> None:
+        """Queue a reply to another client."""
+
+
 class NetworkNode(Protocol):
     """A node."""
 

@@ -10,7 +10,13 @@ import msgspec
 
 from sim.interfaces import copy_message
 from sim.ros.middleware.delivery import Request
-from sim.ros.middleware.endpoints import NetworkNode, PublisherEndpoint, ServiceEndpoint, TopicEndpoint
+from sim.ros.middleware.endpoints import (
+    ClientEndpoint,
+    NetworkNode,
+    PublisherEndpoint,
+    ServiceEndpoint,
+    TopicEndpoint,
+)
 from sim.ros.qos.qos import mismatches
 
 
@@ -22,6 +28,7 @@ class Network:
         self._publishers: defaultdict[str, list[PublisherEndpoint]] = defaultdict(list)
         self._subscriptions: defaultdict[str, list[TopicEndpoint]] = defaultdict(list)
         self._services: defaultdict[str, list[ServiceEndpoint]] = defaultdict(list)
+        self._clients: defaultdict[str, list[ClientEndpoint]] = defaultdict(list)
         self._demand_actions: dict[str, Callable[[], None]] = {}
 
     def on_first_use(self, names: Iterable[str], action: Callable[[], None]) -> None:
@@ -84,6 +91,10 @@ class Network:
         """Add a service."""
         self._services[service.name].append(service)
 
+    def join_client(self, client: ClientEndpoint) -> None:
+        """Add a client."""
+        self._clients[client.name].append(client)
+
     def leave_publisher(self, publisher: PublisherEndpoint) -> None:
         """Remove a publisher."""
         self._publishers[publisher.topic_name].remove(publisher)
@@ -98,6 +109,10 @@ class Network:
         """Remove a service."""
         self._services[service.name].remove(service)
 
+    def leave_client(self, client: ClientEndpoint) -> None:
+        """Remove a client."""
+        self._clients[client.name].remove(client)
+
     def send_request(self, name: str, srv_type: type, request: Request) -> bool:
         """Deliver a request to every server of the service; False without a server: the request is lost."""
         servers = self._servers(name, srv_type)
@@ -105,6 +120,12 @@ class Network:
             own = copy_message(request.data) if number else request.data
             each.deliver(msgspec.structs.replace(request, data=own))
         return bool(servers)
+
+    def spread_reply(self, name: str, srv_type: type, receiver: bytes) -> None:
+        """Have all clients of a service but the receiver overhear a reply."""
+        for client in self._clients.get(name, ()):
+            if client.srv_type is srv_type and client.gid != receiver:
+                client.overhear()
 
     def _servers(self, name: str, srv_type: type) -> list[ServiceEndpoint]:
         self.announce_use(name)

@@ -196,6 +196,8 @@ class Agenda:
             return None
         executor = self.executor
         for entity in self.collect_due(self.host.clock.now()):
+            if not entity.queued:
+                continue  # foreign replies: nothing that a program has wait
             if executor is None:
                 self._probe.waits(entity, Reason.NOBODY_SPINS, None, workers_busy=False)
             else:

@@ -206,8 +206,8 @@ class EventsExecutor(Executor):
                     clock, self._clock, self._lock, self._queue, self._call_timer
                 )
             self._timers[clock].add(entity)
-        elif entity.queued:
-            self._queue.put(partial(self._serve, entity, entity.arrivals()))
+        elif arrivals := entity.arrivals():
+            self._queue.put(partial(self._serve, entity, arrivals))
         elif entity.due < NEVER:
             self._timer_set(entity)
 

@@ -9,6 +9,7 @@ import sim.ros.rclpy as rclpy
 from sim.interfaces import service
 from sim.ros.exceptions import InvalidHandle
 from sim.ros.node.node import Node
+from sim.ros.scheduling.executors import SingleThreadedExecutor
 from sim.trace.events import MessageDropped, ServiceCalled, ServiceReplied
 from tests.support.simulation import Simulation, simulate
 
@@ -182,5 +183,25 @@ def test_a_service_that_its_own_callback_destroyed_cannot_answer() -> None:
         with pytest.raises(InvalidHandle):
             rclpy.spin(node)
         assert not future.done()
+
+    simulate(program)
+
+
+def test_a_reply_makes_all_clients_of_its_service_ready_and_the_others_take_nothing() -> None:
+    # Measured on Jazzy 7.1.5 and Kilted 9.1.2: Fast DDS sends a reply to all clients of the service.
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_service(SetBool, "s", lambda _, response: response)
+        clients = [node.create_client(SetBool, "s") for _ in range(2)]
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        future = clients[1].call_async(SetBool.Request())
+        executor.spin_once()
+        for client in clients:
+            assert not future.done()
+            take, entity, _ = executor.wait_for_ready_callbacks(timeout_sec=0.1)
+            assert entity is client
+            take()
+        assert future.done()
 
     simulate(program)
