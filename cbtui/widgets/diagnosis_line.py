@@ -87,10 +87,9 @@ def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) ->
     at_right = f"{problems} " if problems else ""
     gap = _GAP if problems else 0
     room = width - len(at_right) - gap
-    texts = (f" {_SIGNS[diagnosis.level]} {each}" for each in _ways_to_say(diagnosis))
-    fitting = [each for each in texts if len(each) <= room] or [
-        f" {_SIGNS[diagnosis.level]} {diagnosis.text}"
-    ]
+    sign = f" {_SIGNS[diagnosis.level]} "
+    texts = (sign + each for each in _ways_to_say(diagnosis))
+    fitting = [each for each in texts if len(each) <= room] or [sign + diagnosis.text]
     with_note = (each for each in fitting if _fitting(note, room - len(each) - _INDENT))
     text = next(with_note, fitting[0]) if diagnosis.level is DiagnosisLevel.FINE else fitting[0]
     shown_note = _fitting(note, room - len(text) - _INDENT)
