@@ -12,7 +12,8 @@ from textual._styles_cache import StylesCache
 from textual.app import App
 from textual.await_complete import AwaitComplete
 from textual.command import CommandList, CommandPalette
-from textual.geometry import Size
+from textual.content import Content
+from textual.geometry import Region, Size
 from textual.widget import Widget
 
 if TYPE_CHECKING:
@@ -57,6 +58,14 @@ def resize_content(widget: Widget, size: Size) -> None:
     """Set a scrollable widget's virtual size; assigning it would lay out the whole screen again."""
     widget.set_reactive(Widget.virtual_size, size)
     widget._scroll_update(size)
+
+
+def set_title(widget: Widget, title: str) -> None:
+    """Set the title in a widget's frame and draw that line; assigning it would draw the whole widget."""
+    if widget._border_title != title:
+        widget._border_title = Content(title)
+        left, top = widget.gutter.top_left
+        widget.refresh(Region(-left, -top, widget.outer_size.width, 1))
 
 
 def forget_drawn_styles() -> None:

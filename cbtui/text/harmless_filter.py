@@ -19,7 +19,7 @@ class HarmlessFilter(LineFilter):
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
         """Return the segments without such characters; control segments stay."""
-        if all(text.isprintable() for text, _, control in segments if not control):
+        if "".join([text for text, _, control in segments if not control]).isprintable():
             return segments
         return [
             segment if segment.control else Segment(harmless(segment.text), segment.style)

@@ -6,6 +6,7 @@ from typing import Any
 
 from textual.events import Click
 from textual.geometry import Size
+from textual.reactive import reactive
 from textual.screen import Screen
 
 from cbtui.keys.action import KeyAction, Scope, group_by, method_of
@@ -16,7 +17,7 @@ from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.terminal.textual_internals import paint_now
 from cbtui.text.cells import fit
-from cbtui.widgets.painted_widget import PaintedWidget
+from cbtui.widgets.painted_widget import PaintedWidget, painted
 
 _KEY = Ink(Role.STRONG)
 _LABEL = Ink(Role.FAINT)
@@ -41,10 +42,11 @@ class KeyBarEntry:
 class KeyBar(PaintedWidget):
     """Shows the keys of a scope; a click performs the action. Call ``changed`` when others are available.
 
-    ``first`` are labels of actions that come first.
+    ``first`` are labels of actions that come first; ``offered`` those shown, if the screen sets them.
     """
 
     first: Sequence[str] = ()
+    offered: reactive[tuple[KeyAction, ...]] = painted(())
 
     def __init__(self, scope: Scope, charset: Charset) -> None:
         super().__init__()
@@ -53,7 +55,7 @@ class KeyBar(PaintedWidget):
 
     def show(self, scope: Scope) -> None:
         """Show the keys of another scope."""
-        self._scope = scope
+        self._scope, self.offered = scope, ()
         self.changed()
 
     def working(self) -> list[KeyAction]:
@@ -89,7 +91,7 @@ class KeyBar(PaintedWidget):
             start += entry.width
 
     def _entries(self, width: int) -> list[KeyBarEntry]:
-        return fitting_entries(key_bar_entries(self.working(), self._charset), width - 1)
+        return fitting_entries(key_bar_entries(self.offered or self.working(), self._charset), width - 1)
 
     def _works(self, action: KeyAction) -> bool:
         return self.screen.check_action(*method_of(action)) is not False

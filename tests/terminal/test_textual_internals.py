@@ -61,6 +61,10 @@ WORKAROUNDS: dict[str, tuple[str, list[Callable[..., Any]]]] = {
         "a0d863d867bc",
         [Screen._compositor_refresh, App._display, Compositor.update_widgets],
     ),
+    "textual_internals.set_title: a new title draws the whole widget": (
+        "56fa711aecd9",
+        [type(vars(Widget)["border_title"]).__set__],
+    ),
     "textual_internals.is_being_removed": ("be1dc93ca461", [App._prune]),
     "textual_internals.forget_drawn_styles": ("d2509f3e7966", [StylesCache.get_inner_outer.__wrapped__]),
     "widgets.options: paging fails where no line is visible": ("85f7f3300576", [OptionList._move_page]),

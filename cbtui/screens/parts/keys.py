@@ -6,7 +6,7 @@ from typing import Any
 
 from textual.widget import Widget
 
-from cbtui.keys.action import KeyAction, Scope
+from cbtui.keys.action import Scope
 from cbtui.looks.theme import Charset
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.part import RunHost, ScreenPart, ScreenParts
@@ -61,7 +61,6 @@ class OfferedKeys:
     screen: SizedScreen[Any]
     parts: ScreenParts
     charset: Charset
-    _shown: tuple[KeyAction, ...] = ()
 
     def offer(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Tell whether an action is available now."""
@@ -81,11 +80,8 @@ class OfferedKeys:
         framed = self.screen.layout_now is Layout.GRID
         on_lanes = (*_ON_LANES, "enlarge") if lanes.has_focus and not framed else ()
         bar.first = _ON_SHELL if isinstance(self.screen.focused, ShellOutput) else on_lanes
-        working = tuple(bar.working())
-        if working != self._shown:
-            self._shown = working
-            bar.changed()
-        lanes.hint = hint([action for action in working if action.label in _ON_LANES], self.charset)
+        bar.offered = tuple(bar.working())
+        lanes.hint = hint([action for action in bar.offered if action.label in _ON_LANES], self.charset)
 
     def follow_focus(self) -> None:
         """Show the keys of the widget with the focus."""

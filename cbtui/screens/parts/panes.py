@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from rich.text import Text
 from textual.screen import Screen
 from textual.widget import Widget
 
@@ -11,6 +10,7 @@ from cbtui.keys.action import Scope
 from cbtui.keys.keymap import keymap_of
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.terminal.editor import EditorError, edit
+from cbtui.terminal.textual_internals import set_title
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.choice import ChoiceOptions
 from cbtui.widgets.code import CodeView
@@ -82,7 +82,7 @@ class PaneLayout(ScreenPart):
             pane = self.pane(name)
             if isinstance(pane, CodeView | FactoryView | LogView | ChecksView):
                 notes[name] = pane.note
-                pane.border_title = Text(f"{title_of(name)} {pane.note}".rstrip())
+                set_title(pane, f"{title_of(name)} {pane.note}".rstrip())
         words = self.changes()
         changed = f"changed: {words}" if words else ""
         self.screen.query_one(Tabs).note = " · ".join(filter(None, (notes.get(self.current), changed)))
