@@ -64,8 +64,19 @@ def set_title(widget: Widget, title: str) -> None:
     """Set the title in a widget's frame and draw that line; assigning it would draw the whole widget."""
     if widget._border_title != title:
         widget._border_title = Content(title)
-        left, top = widget.gutter.top_left
-        widget.refresh(Region(-left, -top, widget.outer_size.width, 1))
+        _refresh_frame(widget, 0)
+
+
+def set_subtitle(widget: Widget, title: str) -> None:
+    """Set the title in the lower line of a widget's frame likewise."""
+    if widget._border_subtitle != title:
+        widget._border_subtitle = Content(title)
+        _refresh_frame(widget, widget.outer_size.height - 1)
+
+
+def _refresh_frame(widget: Widget, line: int) -> None:
+    left, top = widget.gutter.top_left
+    widget.refresh(Region(-left, line - top, widget.outer_size.width, 1))
 
 
 def forget_drawn_styles() -> None:

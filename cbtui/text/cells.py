@@ -130,7 +130,7 @@ class CellRow:
         runs: list[TextRun] = []
         at = 0
         for ink, same in groupby(self.inks):
-            end = at + sum(1 for _ in same)
+            end = at + len(list(same))
             runs.append(TextRun("".join(self.cells[at:end]), ink))
             at = end
         return runs

@@ -2,13 +2,13 @@
 
 from collections.abc import Callable, Iterator, Sequence
 
-from rich.text import Text
 from textual.events import Click, MouseScrollDown, MouseScrollUp
 from textual.geometry import Offset, Size
 from textual.message import Message
 from textual.reactive import reactive
 
 from cbtui.looks.theme import GLYPHS, Charset, TextRun
+from cbtui.terminal.textual_internals import set_subtitle, set_title
 from cbtui.widgets.jump import JumpTarget
 from cbtui.widgets.lanes.details import details_of_selection
 from cbtui.widgets.lanes.details_rows import ROWS, details_rows
@@ -73,7 +73,6 @@ class Lanes(PaintedWidget, can_focus=True):
     _painter = LanePainter(looks=INTERVALS_PER_FRAME)
     _picture: LanePicture | None = None
     _laid_out_for = 0
-    _titled = ""
     _goes_on = False
 
     class BarPicked(Message):
@@ -217,7 +216,7 @@ class Lanes(PaintedWidget, can_focus=True):
         if not picture.complete:
             self._go_on_later()
         title = ["Lanes", picture.time_per_column, *([f"changed: {self.changes}"] if self.changes else [])]
-        self._entitle(f" {GLYPHS[self.charset].between} ".join(title))
+        set_title(self, f" {GLYPHS[self.charset].between} ".join(title))
         if selection is None or not described:
             return picture.rows
         told = self.now if self.told is None else self.told
@@ -233,12 +232,6 @@ class Lanes(PaintedWidget, can_focus=True):
     def _go_on(self) -> None:
         self._goes_on = False
         self.changed()
-
-    def _entitle(self, title: str) -> None:
-        """Set a different title: Textual would draw the widget again even for the same one."""
-        if title != self._titled:
-            self._titled = title
-            self.border_title = Text(title)
 
     def _rows_told(self, size: Size) -> int:
         return ROWS if size.height >= ROWS + _LEAST_LANES and size.width > ROWS else 0
@@ -270,7 +263,7 @@ class Lanes(PaintedWidget, can_focus=True):
 
     def watch_hint(self) -> None:
         """Show another hint; the keys' signs are not markup."""
-        self.border_subtitle = Text(self.hint)
+        set_subtitle(self, self.hint)
 
     def watch_service(self) -> None:
         """Give the service a lane."""
