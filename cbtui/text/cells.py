@@ -98,6 +98,12 @@ class CellRow:
         self.cells = [" "] * width
         self.inks = [BLANK] * width
 
+    def copy(self) -> "CellRow":
+        """Return a row that can be painted on without changing this one."""
+        row = CellRow(0, self.charset)
+        row.cells, row.inks = self.cells.copy(), self.inks.copy()
+        return row
+
     def put(self, column: int, glyph: str, ink: Ink) -> None:
         """Put a glyph of one column's width at a column; columns outside of the row are ignored."""
         if not 0 <= column < len(self.cells):

@@ -226,12 +226,16 @@ class BarPainter:
     def _columns(self, row: CellRow, stretch: MergedColumns[Span], ink: Ink) -> None:
         """Draw a stretch as a bar; nothing is drawn there yet."""
         left, right = self.glyphs.left, self.glyphs.right
-        self._cells(row, stretch, [(right if c.runs_on else left)[c.eighths] for c in stretch.columns], ink)
+        for place, column in stretch.places():
+            row.cells[place] = (right if column.runs_on else left)[column.eighths]
+            row.inks[place] = ink
 
     def _texture(self, row: CellRow, stretch: MergedColumns[Span], number: int) -> None:
         """Fill the bar's full columns, except at its ends, with the group's texture."""
+        if stretch.is_short:
+            return
         glyph, ink = texture_of(number, self.glyphs)
-        if glyph == self.glyphs.left[8] or stretch.is_short:
+        if glyph == self.glyphs.left[8]:
             return
         first = stretch.first + (stretch.columns[0].eighths < 8)
         after = stretch.after - (stretch.columns[-1].eighths < 8)
@@ -240,11 +244,9 @@ class BarPainter:
     def _line(self, row: CellRow, stretch: MergedColumns[Span], ink: Ink) -> None:
         """Draw a stretch as a line, double where there are several; nothing is drawn there yet."""
         one, several = self.glyphs.line, self.glyphs.double_line
-        self._cells(row, stretch, [several if c.at_once > 1 else one for c in stretch.columns], ink)
-
-    def _cells(self, row: CellRow, stretch: MergedColumns[Span], cells: list[str], ink: Ink) -> None:
-        row.cells[stretch.first : stretch.after] = cells
-        row.inks[stretch.first : stretch.after] = [ink] * len(cells)
+        for place, column in stretch.places():
+            row.cells[place] = several if column.at_once > 1 else one
+            row.inks[place] = ink
 
     def _seam(self, row: CellRow, stretch: MergedColumns[Span]) -> None:
         """Separate a bar from the one directly before it."""

@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
-from cbtui.looks.theme import TextRun
+from cbtui.looks.theme import Charset, TextRun
+from cbtui.text.cells import CellRow
 from cbtui.widgets.lanes.columns import I, InstantColumns, LaneColumn, LaneColumns
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from cbtui.widgets.lanes.scale import TimeScale
@@ -38,7 +39,7 @@ class LaneCache:
     timeline: Timeline
     painted: dict[Lane, tuple[LaneSummary, list[TextRun]]] = field(default_factory=dict)
     inside: dict[Lane, tuple[object, list[list[TextRun]]]] = field(default_factory=dict)
-    overview: tuple[object, list[TextRun]] = (None, [])
+    overview: tuple[object, CellRow] = (None, CellRow(0, Charset.BRAILLE))
     _columns: dict[tuple[str, int], LaneColumns[Any]] = field(default_factory=dict)
     _losses: dict[EntityId, InstantColumns] = field(default_factory=dict)
 

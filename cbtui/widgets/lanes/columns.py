@@ -318,7 +318,7 @@ def stretches(columns: Sequence[LaneColumn[I] | None]) -> list[MergedColumns[I]]
     for place, column in enumerate(columns):
         top = None if column is None else column.top
         if column is not None and top is not None:
-            if before is not None and (top is before or _key(top) == _key(before)):
+            if top is before or (before is not None and _key(top) == _key(before)):
                 found[-1].columns.append(column)
             else:
                 found.append(MergedColumns(place, [column], top))

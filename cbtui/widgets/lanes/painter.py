@@ -266,15 +266,20 @@ class _LaneFrame:
         """Paint how busy the threads were in the whole run, and which part of it is on screen."""
         shown = self._scale.window
         first, last = scale.column_of(max(0, shown.start)), scale.column_of(shown.end - 1)
-        key = (scale, scale.column_of(self._edge), first, last, scale.column_of(self._now))
+        key = (scale, scale.column_of(self._edge))
         if key != self._cache.overview[0]:
             unseen: set[int] = set()
-            runs = self._painted_overview(scale, first, last, unseen)
-            self._cache.overview = (None if unseen else key, runs)
+            busy = self._busy_threads(scale, unseen)
+            self._cache.overview = (None if unseen else key, busy)
+        row = self._cache.overview[1].copy()
+        row.put(scale.column_of(self._now), self._glyphs.cursor, NOW)
+        row.inks = [
+            ink if first <= place <= last else ink._replace(later=True) for place, ink in enumerate(row.inks)
+        ]
         name, unit = TextRun("whole run", FAINT), TextRun(f"{duration(scale.per_column)}/col", FAINT)
-        return self._framed([name], self._cache.overview[1], unit, chosen=False)
+        return self._framed([name], row.runs(), unit, chosen=False)
 
-    def _painted_overview(self, scale: TimeScale, first: int, last: int, unseen: set[int]) -> list[TextRun]:
+    def _busy_threads(self, scale: TimeScale, unseen: set[int]) -> CellRow:
         row = CellRow(self._layout.columns, self._charset)
         threads = list(self._timeline.threads)
         lanes = [
@@ -289,11 +294,7 @@ class _LaneFrame:
                 height = -(-sum(column.eighths for column in busy) // len(threads))
                 number = self._numbers[self._timeline.entities[top.entity].group]
                 row.put(place, self._glyphs.heights[min(8, height)], Ink(Role.LINE, number))
-        row.put(scale.column_of(self._now), self._glyphs.cursor, NOW)
-        row.inks = [
-            ink if first <= place <= last else ink._replace(later=True) for place, ink in enumerate(row.inks)
-        ]
-        return row.runs()
+        return row
 
     def axis(self, hidden: int) -> list[TextRun]:
         """Paint the time axis, with the number of hidden lanes at its left."""
