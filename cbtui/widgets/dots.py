@@ -10,6 +10,7 @@ from cbtui.looks.theme import Charset, Ink
 from cbtui.text.cells import CellRow
 
 Floats = NDArray[np.float64]
+Layers = NDArray[np.uint8]
 
 _BRAILLE = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], dtype=np.int32)
 _QUARTERS = np.array([[1, 2], [4, 8]], dtype=np.int32)
@@ -36,16 +37,14 @@ class DotGrid:
         other._layers = self._layers.copy()
         return other
 
-    def plot(self, x: Floats, y: Floats, layer: int) -> None:
-        """Set dots."""
-        rows, columns = self._inside(x, y)
-        self._layers[rows, columns] = np.maximum(self._layers[rows, columns], layer)
+    def plot(self, x: Floats, y: Floats, layer: int | Layers) -> None:
+        """Set dots in one layer, or each in its own; these must not descend."""
+        inside = self._inside(x, y)
+        self._set(x, y, inside, layer if isinstance(layer, int) else layer[inside])
 
     def plot_sparsely(self, x: Floats, y: Floats, layer: int) -> None:
         """Set every other dot, in a chequer."""
-        rows, columns = self._inside(x, y)
-        even = (rows + columns) % 2 == 0
-        self._layers[rows[even], columns[even]] = np.maximum(self._layers[rows[even], columns[even]], layer)
+        self._set(x, y, self._inside(x, y) & ((np.floor(x) + np.floor(y)) % 2 == 0), layer)
 
     def line(self, start: tuple[float, float], end: tuple[float, float], layer: int) -> None:
         """Set the dots from one point to another."""
@@ -69,22 +68,26 @@ class DotGrid:
             rows.append(row)
         return rows
 
-    def _glyphs(self, cells: NDArray[np.uint8], tops: NDArray[np.uint8], signs: str) -> list[str]:
+    def _glyphs(self, cells: Layers, tops: Layers, signs: str) -> list[str]:
         if self._charset is Charset.ASCII:
             return ["".join(signs[layer] for layer in row) for row in tops.tolist()]
         weights = _BRAILLE if self._charset is Charset.BRAILLE else _QUARTERS
-        codes = ((cells > 0) * weights[:, None, :]).sum(axis=(1, 3)).tolist()
+        codes = ((cells > 0) * weights[:, None, :]).sum(axis=(1, 3))
         if self._charset is Charset.BLOCK:
-            return ["".join(_QUARTER_GLYPHS[code] for code in row) for row in codes]
-        return ["".join(chr(0x2800 + code) if code else " " for code in row) for row in codes]
+            return ["".join(_QUARTER_GLYPHS[code] for code in row) for row in codes.tolist()]
+        characters = np.where(codes > 0, 0x2800 + codes, ord(" ")).astype("<u4")
+        return [row.tobytes().decode("utf-32-le") for row in characters]
 
-    def _inside(self, x: Floats, y: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    def _inside(self, x: Floats, y: Floats) -> NDArray[np.bool_]:
         lines, dots = self._layers.shape
-        inside = (x >= 0) & (x < dots) & (y >= 0) & (y < lines)
-        return y[inside].astype(np.int64), x[inside].astype(np.int64)
+        return (x >= 0) & (x < dots) & (y >= 0) & (y < lines)
+
+    def _set(self, x: Floats, y: Floats, chosen: NDArray[np.bool_], layer: int | Layers) -> None:
+        dots = y[chosen].astype(np.int64), x[chosen].astype(np.int64)
+        self._layers[dots] = np.maximum(self._layers[dots], layer)
 
 
-def _carried_on(layers: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def _carried_on(layers: Layers) -> Layers:
     """Return rows of layers in which every 0 is replaced by the layer before it."""
     columns = np.arange(layers.shape[1])
     last = np.maximum.accumulate(np.where(layers > 0, columns, 0), axis=1)

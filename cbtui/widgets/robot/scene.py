@@ -46,22 +46,22 @@ class RobotScene:
     def __init__(self, plan: ArenaShown, timeline: Timeline, now: Nanoseconds, robot: RobotMoved) -> None:
         self.plan = plan
         self.robot = robot
-        self._true = timeline.scan(now)
-        self._seen = timeline.scan_seen(now)
-        self.seen_age = None if self._seen is None else now - self._seen.t
+        seen = timeline.scan_seen(now)
+        self._true, self._seen = self._points(timeline.scan(now)), self._points(seen)
+        self.seen_age = None if seen is None else now - seen.t
         self.hit_age = since_hit(timeline, now)
         trail = timeline.trail(Window(max(0, now - _TRAIL_LASTS), now + 1))
         step = max(1, len(trail) // _TRAIL_POINTS)
-        self._trail = [trail[place] for place in range(0, len(trail), step)]
+        places = [(moved.x, moved.y) for moved in (trail[place] for place in range(0, len(trail), step))]
+        self._trail = np.array(places).reshape(-1, 2)
+        """The robot's places in metres, the oldest first."""
 
     def picture(self, view: MapView, charset: Charset) -> list[CellRow]:
         """Draw everything in one view."""
         dots = _arena_dots(self.plan, view, charset).copy()
         self._draw_trail(dots, view)
-        if self._seen is not None:
-            dots.plot_sparsely(*view.dots(*self._points(self._seen)), _SEEN)
-        if self._true is not None:
-            dots.plot(*view.dots(*self._points(self._true)), _TRUE)
+        dots.plot_sparsely(*view.dots(*self._seen), _SEEN)
+        dots.plot(*view.dots(*self._true), _TRUE)
         layer = _HURT if self.robot.touching else _ROBOT
         self._draw_robot(dots, view, layer)
         self._draw_flash(dots, view)
@@ -78,9 +78,9 @@ class RobotScene:
         return rows
 
     def _draw_trail(self, dots: DotGrid, view: MapView) -> None:
-        places = np.array([(moved.x, moved.y) for moved in self._trail]).reshape(-1, 2)
-        for age, part in enumerate(np.array_split(places, TRAIL_STEPS)):
-            dots.plot(*view.dots(part[:, 0], part[:, 1]), _TRAIL + age)
+        lengths = list(map(len, np.array_split(self._trail, TRAIL_STEPS)))
+        layers = np.repeat(np.arange(_TRAIL, _TRAIL + TRAIL_STEPS, dtype=np.uint8), lengths)
+        dots.plot(*view.dots(self._trail[:, 0], self._trail[:, 1]), layers)
 
     def _draw_robot(self, dots: DotGrid, view: MapView, layer: int) -> None:
         robot, radius = self.robot, self.plan.robot_radius
@@ -102,10 +102,10 @@ class RobotScene:
             end = (self.robot.x + 1.8 * inner * cos, self.robot.y + 1.8 * inner * sin)
             dots.line(view.dot(*start), view.dot(*end), _FLASH)
 
-    def _points(self, scan: Scanned) -> tuple[Floats, Floats]:
-        """Return the ends of a scan's beams, in metres, for the robot's position."""
+    def _points(self, scan: Scanned | None) -> tuple[Floats, Floats]:
+        """Return the ends of a scan's beams, in metres, for the robot's position; none of no scan."""
         robot = self.robot
-        ranges = np.frombuffer(scan.ranges, dtype="<u2") / 1000.0
+        ranges = np.frombuffer(b"" if scan is None else scan.ranges, dtype="<u2") / 1000.0
         angles = robot.yaw - math.pi + np.arange(len(ranges)) * (2 * math.pi / max(1, len(ranges)))
         hit = ranges > 0
         return robot.x + ranges[hit] * np.cos(angles[hit]), robot.y + ranges[hit] * np.sin(angles[hit])
@@ -127,9 +127,14 @@ def _arena_dots(plan: ArenaShown, view: MapView, charset: Charset) -> DotGrid:
 def _write_metres(row: CellRow, column: int, metres: float) -> None:
     """Write a coordinate where nothing but the grid is drawn."""
     text = f"{metres:g} m"
-    under = list(zip(row.cells, row.inks, strict=True))[column : column + len(text)]
-    if len(under) == len(text) and all(glyph == " " or ink == _FAINT for glyph, ink in under):
+    under = slice(column, column + len(text))
+    cells, inks = row.cells[under], row.inks[under]
+    if len(cells) == len(text) and all(map(_is_grid, cells, inks)):
         row.write(column, text, _FAINT)
+
+
+def _is_grid(glyph: str, ink: Ink) -> bool:
+    return glyph == " " or ink == _FAINT
 
 
 def since_hit(timeline: Timeline, now: Nanoseconds) -> Nanoseconds | None:
