@@ -64,7 +64,7 @@ class DotGrid:
         for glyphs, layers in zip(self._glyphs(cells, tops, signs), _carried_on(tops).tolist(), strict=True):
             row = CellRow(len(layers), self._charset)
             row.cells = list(glyphs)
-            row.inks = [inks[layer] for layer in layers]
+            row.inks = list(map(inks.__getitem__, layers))
             rows.append(row)
         return rows
 
