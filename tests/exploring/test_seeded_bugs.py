@@ -8,7 +8,7 @@ import pytest
 
 from cbtui.runs.judged.bounded_search import BoundedSearch
 from tests.exploring.seeded_bugs import BUGS, PERIOD, SHOWN_BY_USUAL_ORDER
-from tests.exploring.strategies import exploration
+from tests.exploring.strategies import MOST, PREEMPTIONS, exploration
 from tests.support.daily import first_daily
 
 
@@ -40,5 +40,5 @@ def test_a_callback_that_waits_for_what_was_told_before_fails_in_a_run_that_last
     ],
 )
 def test_at_most_two_preemptions_show_each_bug(name: str, tmp_path: Path) -> None:
-    results = exploration(BUGS[name], tmp_path).search(BoundedSearch(2, 300))
+    results = exploration(BUGS[name], tmp_path).search(BoundedSearch(PREEMPTIONS, MOST))
     assert any(not result.well for _, result in results)
