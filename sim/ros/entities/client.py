@@ -164,7 +164,7 @@ class Client(ClientOrService, Entity):
         if self.destroyed:
             return
         now = self._host.clock.now()
-        self._queue.append(Reply(call, response, now))
+        self._enqueue(Reply(call, response, now))
         self._probe.ready(self, self.queued, call)
         self.become_ready(now)
 
@@ -173,8 +173,16 @@ class Client(ClientOrService, Entity):
 
         Until that take the client is ready, and its own replies come behind it.
         """
-        self._queue.append(_FOREIGN)
+        self._enqueue(_FOREIGN)
         self.become_ready(self._host.clock.now())
+
+    def _enqueue(self, reply: Reply | None) -> None:
+        """Queue a reply; a full queue drops its oldest one, and the future of that call stays pending."""
+        if self.depth and len(self._queue) >= self.depth:
+            lost: Reply | None = self._queue.popleft()
+            if lost is not _FOREIGN:
+                self._probe.dropped(self, self.queued, lost.call)
+        self._queue.append(reply)
 
     @property
     def queued(self) -> int:

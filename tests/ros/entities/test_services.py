@@ -205,3 +205,26 @@ def test_a_reply_makes_all_clients_of_its_service_ready_and_the_others_take_noth
         assert future.done()
 
     simulate(program)
+
+
+@pytest.mark.parametrize("caller", [0, 1], ids=["of its own calls", "of another client's calls"])
+def test_a_client_that_is_not_served_loses_its_oldest_reply_to_the_tenth_after_it(caller: int) -> None:
+    # Measured on Jazzy: the reader keeps the last 10 replies of the service, whichever client they are to.
+    def program(simulation: Simulation) -> None:
+        here, there = Node("here"), Node("there")
+        here.create_service(SetBool, "s", lambda _, response: response)
+        clients = [there.create_client(SetBool, "s") for _ in range(2)]
+        server, waiting = SingleThreadedExecutor(), SingleThreadedExecutor()
+        server.add_node(here)
+        waiting.add_node(there)
+        future = clients[0].call_async(SetBool.Request())
+        for _ in range(10):
+            server.spin_once()
+            clients[caller].call_async(SetBool.Request())
+        server.spin_once()
+        for _ in range(30):
+            waiting.spin_once(timeout_sec=0.01)
+        assert not future.done()
+
+    dropped = [event for event in simulate(program).events if isinstance(event, MessageDropped)]
+    assert len(dropped) == 1
