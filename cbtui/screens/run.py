@@ -287,9 +287,15 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
     def _draw(self, content: FrameContent) -> None:
         if self.layout_now is Layout.SMALL:
             return
-        self.draw_lanes()
-        if content is FrameContent.LANES:
-            return
+        if content is not FrameContent.TEXTS:
+            self.draw_lanes()
+        if content in (FrameContent.ALL_BUT_TEXTS, FrameContent.ALL):
+            self._draw_beside_lanes()
+        if content in (FrameContent.TEXTS, FrameContent.ALL):
+            self._draw_panes(lambda pane: isinstance(pane, _TEXTS))
+            self._keys.show()
+
+    def _draw_beside_lanes(self) -> None:
         self.query_one(Lanes).told = self.navigation.now  # all panes show the same moment
         self._narration.draw()
         run, findings, keymap = self.runs.run, self.runs.findings.findings, keymap_of(self.app)
@@ -308,12 +314,13 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         line.diagnosis = with_worst_problem(self.diagnosis(), findings, how_to_continue(run, keymap))
         line.note = call_note(run.timeline, self.navigation.now)
         line.problems = problems_note(findings, keymap, self.charset)
-        for pane in map(self.panes.pane, self.PANES_HERE):
-            if pane.display and (content is FrameContent.ALL or not isinstance(pane, _TEXTS)):
-                self.draw_pane(pane)
-        if content is FrameContent.ALL:
-            self._keys.show()
+        self._draw_panes(lambda pane: not isinstance(pane, _TEXTS))
         self.drawn()
+
+    def _draw_panes(self, chosen: Callable[[Widget], bool]) -> None:
+        for pane in map(self.panes.pane, self.PANES_HERE):
+            if pane.display and chosen(pane):
+                self.draw_pane(pane)
 
     def draw_lanes(self) -> None:
         """Show it on the lanes only."""

@@ -45,7 +45,10 @@ _SETTLED = 3.0
 _PAUSES = 0.05, 0.30
 """Seconds between what a key did and the next, so that keys fall anywhere between two frames."""
 _BACK_AND_LIVE = (("[", rb"BACK"), ("0", rb"LIVE"))
-"""Keys that draw every pane anew while the run goes on, and what the status line then says."""
+"""Keys that draw every pane anew while the run goes on, and what the status line then says.
+
+It comes with all panes but log and code, whose texts follow some milliseconds later.
+"""
 
 
 def in_a_lesson(presses: int) -> list[float]:

@@ -17,6 +17,9 @@ FRAMES_A_SECOND = 15
 _SOONEST = 0.01
 """Least seconds between two frames with all panes that keys cause."""
 
+_TEXTS_AFTER = 0.005
+"""Seconds after the other panes until the texts are drawn that a key changes: the picture goes out first."""
+
 _LANES_A_PANE = 3
 """Lane frames per frame of the other panes: their words and figures are read slower than lanes move."""
 
@@ -36,6 +39,7 @@ class FrameContent(Enum):
     NOTHING = auto()
     LANES = auto()
     ALL_BUT_TEXTS = auto()
+    TEXTS = auto()
     ALL = auto()
 
 
@@ -80,10 +84,11 @@ class FrameSchedule:
         return max(0.0, self._drawn_at + _SOONEST - self._clock())
 
     def drawn(self, extent: FrameContent) -> None:
-        """Note what is being drawn: everything, or all but the texts."""
-        self._stale = self._grown = False
-        self._texts_behind = extent is not FrameContent.ALL
-        self._drawn_at = self._clock()
+        """Note what is being drawn: everything, all but the texts, or these."""
+        self._texts_behind = extent is FrameContent.ALL_BUT_TEXTS
+        if extent is not FrameContent.TEXTS:
+            self._stale = self._grown = False
+            self._drawn_at = self._clock()
 
     def rest(self, waited: float) -> None:
         """Rest after a frame by the seconds that it waited for a CPU; key effects are still drawn."""
@@ -118,7 +123,7 @@ class FrameLoop:
         self._schedule.grow()
 
     def redraw(self) -> None:
-        """Draw everything at once, or soon if it was just drawn."""
+        """Draw at once, or soon if all was just drawn; the texts follow the other panes."""
         self._schedule.invalidate()
         if self._screen.is_running:
             self._screen.call_next(self._draw_at_once)
@@ -132,7 +137,8 @@ class FrameLoop:
     def _draw_at_once(self) -> None:
         due_in = self._schedule.due_in()
         if due_in == 0:
-            self.draw(FrameContent.ALL)
+            self.draw(FrameContent.ALL_BUT_TEXTS)
+            self._screen.set_timer(_TEXTS_AFTER, lambda: self.draw(FrameContent.TEXTS))
         elif due_in is not None:
             self._screen.set_timer(due_in, self._draw_at_once)
 

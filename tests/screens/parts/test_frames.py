@@ -75,3 +75,14 @@ def test_after_a_frame_that_waited_for_a_processor_nothing_is_drawn_unasked_for_
     schedule.drawn(FrameContent.ALL)
     clock.now += 0.2
     assert drawing(schedule, 1, grows=True) != [FrameContent.NOTHING]
+
+
+def test_texts_drawn_after_the_other_panes_take_no_frame_from_what_has_grown_since() -> None:
+    schedule = FrameSchedule()
+    schedule.drawn(FrameContent.ALL_BUT_TEXTS)
+    schedule.grow()
+    schedule.drawn(FrameContent.TEXTS)
+    assert schedule.next() is not FrameContent.NOTHING
+    schedule.drawn(FrameContent.ALL_BUT_TEXTS)
+    schedule.drawn(FrameContent.TEXTS)
+    assert drawing(schedule, 12, grows=False) == [FrameContent.NOTHING] * 12
