@@ -16,10 +16,10 @@ from cbtui.widgets.key_bar import KeyBar
 from lessons.progress import Progress
 from lessons.puzzles import Puzzle, puzzles
 from sim.engine.commands import Choose, Resume
-from sim.trace.events import Reason
+from sim.trace.events import ChoiceAsked, Reason
 from sim.trace.timeline import Timeline
 from tests.support.asking import PUZZLE, Asking, question
-from tests.support.builder import Run
+from tests.support.builder import Run, ns
 from tests.support.console import NARROW, WIDE, settle
 from tests.support.exercises import until
 from tests.support.pictures import lines_of, text_of
@@ -149,17 +149,38 @@ def test_it_is_told_why_the_others_may_not_go_on() -> None:
     run.wait(ready, 0.1, reason=Reason.NO_FREE_WORKER)
     timeline = Timeline()
     timeline.extend(run.events)
-    asked = question(0, ("MainThread (node.py:9, in main) waits for time or work",))
+    crossed = "ThreadPoolExecutor-0_2 waits for the lock that ThreadPoolExecutor-0_3 took"
+    asked = question(0, ("MainThread (node.py:9, in main) waits for time or work", crossed))
     assert [*kept_of(asked, timeline)] == [
         "quick is ready: group A held by slow",
         "ready is ready for a thread that looks for work",
         "MainThread (node.py:9, in main) waits for time or work",
-        "not ready when the executor last looked: idle",
+        "Pool-0_2 waits for the lock that Pool-0_3 took",
+        "not ready, or about to begin: idle",
     ]
     assert [(option.text, option.line) for option in options_of(asked, timeline)] == [
         ("slow in order, line 20 (runs now, Pool-0_0)", 20),
         ("looks for work (Pool-0_1)", 0),
     ]
+
+
+def test_a_callback_whose_last_line_is_done_ends_and_does_not_begin() -> None:
+    run = Run()
+    thread = run.thread("ThreadPoolExecutor-0_0")
+    group = run.reentrant(run.node("/node"))
+    run.start(run.timer(group, "left", 1.0), thread, 0.1)
+    run.timer(group, "right", 1.0)
+    timeline = Timeline()
+    timeline.extend(run.events)
+    pool = ("ThreadPoolExecutor-0_0", "ThreadPoolExecutor-0_1")
+    asked = ChoiceAsked(ns(0.1), 2, pool, ("", ""), (("", 0), ("", 0)), True, (), (0,))
+    assert [option.text for option in options_of(asked, timeline)] == [
+        "left ends (runs now, Pool-0_0)",
+        "begins (Pool-0_1)",
+    ]
+    assert [*kept_of(asked, timeline)] == ["not ready, or about to begin: right"]
+    alone = ChoiceAsked(ns(0.1), 2, pool[:1], ("",), (("", 0),), True, (), (0,))
+    assert [*kept_of(alone, timeline)] == ["not ready when the executor last looked: right"]
 
 
 async def choose(pilot: Pilot[None], key: str, after: int) -> None:

@@ -34,16 +34,16 @@ class ChoiceSheet:
 
 def options_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[ChoiceOption]:
     """Yield the threads that may go on; the first one does if nobody chooses another."""
-    callbacks = {
-        timeline.threads[span.thread].name: name_of(span.entity, timeline)
-        for span in timeline.moment(timeline.end).running.values()
-    }
+    callbacks = _callbacks(timeline)
     whole = zip(question.threads, question.functions, question.places, strict=True)
     for number, (thread, function, (file, line)) in enumerate(whole):
-        begins = "looks for work" if number in question.pooled else "begins"
         callback = callbacks.get(thread, function)
-        inside = function if callback == function else f"{callback} in {function}"
-        where = f"{inside}, line {line}" if line else begins
+        if line:
+            where = f"{function if callback == function else f'{callback} in {function}'}, line {line}"
+        elif callback:
+            where = f"{callback} ends"
+        else:
+            where = "looks for work" if number in question.pooled else "begins"
         runs = "runs now, " if question.preempts and not number else ""
         yield ChoiceOption(f"{where} ({runs}{short_thread(thread)})", file, line)
 
@@ -51,12 +51,22 @@ def options_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[ChoiceOpti
 def kept_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[str]:
     """Yield why each of the other threads and callbacks may not go on."""
     moment = timeline.moment(timeline.end)
+    callbacks = _callbacks(timeline)
+    options = zip(question.threads, question.functions, strict=True)
+    takes_work = any(not function and thread not in callbacks for thread, function in options)
     for wait in moment.waiting.values():
-        free = wait.reason is Reason.NO_FREE_WORKER and "" in question.functions
+        free = wait.reason is Reason.NO_FREE_WORKER and takes_work
         why = "for a thread that looks for work" if free else why_waiting(wait, timeline)
         yield f"{name_of(wait.entity, timeline)} is ready{' ' if free else ': '}{why}"
     yield from (short_thread(each) for each in question.others)
     busy = {*moment.waiting, *(span.entity for span in moment.running.values())}
     idle = [each for each in timeline.entities.values() if each.callback and each.id not in busy]
     if idle:
-        yield f"not ready when the executor last looked: {', '.join(each.spoken_name for each in idle)}"
+        known = "not ready, or about to begin" if takes_work else "not ready when the executor last looked"
+        yield f"{known}: {', '.join(each.spoken_name for each in idle)}"
+
+
+def _callbacks(timeline: Timeline) -> dict[str, str]:
+    """The name of the callback that each thread runs, by the name of the thread."""
+    running = timeline.moment(timeline.end).running.values()
+    return {timeline.threads[span.thread].name: name_of(span.entity, timeline) for span in running}

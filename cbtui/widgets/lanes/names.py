@@ -13,8 +13,8 @@ _BRIEF = 4
 
 
 def short_thread(name: str) -> str:
-    """Return a thread's name with the pool's long class name cut to ``Pool``."""
-    return name.replace("ThreadPoolExecutor", "Pool", 1)
+    """Return the name of a thread, or a text with several, with the pool's class name cut to ``Pool``."""
+    return name.replace("ThreadPoolExecutor", "Pool")
 
 
 def thread_name(thread: ThreadInfo, room: int, ellipsis: str) -> str:
