@@ -163,6 +163,8 @@ class CompareScreen(SizedScreen[None]):
     def _draw_table(self) -> None:
         """Start a new comparison if the window changed, but rarely enough to keep the keys responsive."""
         asked = self._common(self._asked)
+        if asked == self._compared and self._whole and not self._comparing and asked.length > 0:
+            self._title(self._extent(asked))  # a run goes on
         if asked == self._compared or self._comparing or monotonic() < self._rest_until:
             return
         self._compared = asked
@@ -218,21 +220,27 @@ class CompareScreen(SizedScreen[None]):
 
     def _figures(self, asked: Window) -> Incremental[tuple[str, tuple[Section, ...]]]:
         first, second = self._sides
-        what = "Whole runs" if self._whole else "On screen"
-        if self._whole and self._bounds is not None:
-            what = "As asked"
         if asked.length <= 0:
-            return f"{what}: nothing that both runs have; {_shorter(first, second)}", ()
+            return f"{self._what}: nothing that both runs have; {_shorter(first, second)}", ()
         compared = yield from compare_incrementally(first.timeline, second.timeline, asked)
         if self._whole:
             self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
             self._verdict, self._is_tie = verdict(compared), is_tie(compared)
             yield
             self._hang = self._hangs.told()
-            return f"{what}, {extent(compared)}", sections(compared)
+            return self._extent(asked), sections(compared)
         cut = asked.end < min(self._asked.end, self._end)
         after = f"; {_shorter(first, second)}" if cut else ""
-        return f"{what}, {stretch(asked)}{after}", sections(compared)
+        return f"{self._what}, {stretch(asked)}{after}", sections(compared)
+
+    @property
+    def _what(self) -> str:
+        if not self._whole:
+            return "On screen"
+        return "Whole runs" if self._bounds is None else "As asked"
+
+    def _extent(self, compared: Window) -> str:
+        return f"{self._what}, {extent(compared, *(side.timeline.end for side in self._sides))}"
 
     @property
     def _asked(self) -> Window:

@@ -15,7 +15,7 @@ from sim.diagnosis.words import thread_count
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of
-from sim.trace.events import KeyboardAsked, Notice, NoticeKind, Reason, Severity
+from sim.trace.events import EntityKind, KeyboardAsked, Notice, NoticeKind, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.figures.waiting import WORTH_TELLING, waits_for_others
 from sim.trace.model import Call, Moment, Nanoseconds, Wait, Window
@@ -146,15 +146,21 @@ def diagnosis_at(
     for_others = waits_for_others(moment)
     if for_others:
         return _of_waits(for_others, moment, timeline)
-    own = (wait for wait in moment.waiting.values() if at - wait.since >= WORTH_TELLING)
-    for_itself = min(own, key=attrgetter("since"), default=None)
-    overdue = "" if for_itself is None else f"; {_overdue(for_itself, at, timeline)}"
     if asked is not None:
         return Diagnosis(_of_keyboard(asked, keymap), DiagnosisLevel.FINE)
-    at_rest = (
-        _in_a_call(moment, timeline) or f"nothing waits; {_threads_needed(timeline, concurrency.peak(at))}"
-    )
-    return Diagnosis(at_rest, DiagnosisLevel.FINE, at_length=f"{at_rest}{overdue}")
+    return _at_rest(moment, timeline, concurrency.peak(at))
+
+
+def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
+    """The diagnosis of a moment at which no callback waits for another one."""
+    own = (wait for wait in moment.waiting.values() if moment.at - wait.since >= WORTH_TELLING)
+    for_itself = min(own, key=attrgetter("since"), default=None)
+    in_a_call = _in_a_call(moment, timeline)
+    threads = _threads_needed(timeline, peak)
+    if for_itself is None:
+        return Diagnosis(in_a_call or f"nothing waits; {threads}", DiagnosisLevel.FINE)
+    text = f"{_overdue(for_itself, moment.at, timeline)}; {in_a_call or 'nothing else waits'}"
+    return Diagnosis(text, DiagnosisLevel.FINE, at_length="" if in_a_call else f"{text}; {threads}")
 
 
 def _in_a_call(moment: Moment, timeline: Timeline) -> str:
@@ -202,7 +208,8 @@ def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
 
 def _overdue(wait: Wait, at: Nanoseconds, timeline: Timeline) -> str:
     """The text on a callback that only waits for its own previous call."""
-    return f"{name_of(wait.entity, timeline)}, due again {duration(at - wait.since)} ago, still runs"
+    due = "due" if timeline.entities[wait.entity].kind is EntityKind.TIMER else "ready"
+    return f"{name_of(wait.entity, timeline)}, {due} again {duration(at - wait.since)} ago, still runs"
 
 
 def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosis:

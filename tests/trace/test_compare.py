@@ -208,8 +208,13 @@ def test_a_run_without_a_robot_has_no_figures_of_one() -> None:
 
 def test_a_run_that_goes_on_past_the_window_is_told_of() -> None:
     longer = run([ODOM], called(1, 19.0, 20.0))
-    assert extent(compare(starved(), longer, Window(0, ns(3.1)))) == "0 to 3.1 s; run B goes on to 20 s"
-    assert extent(compare(starved(), starved(), Window(ns(0.0005), ns(3.1)))) == "0.001 to 3.1 s"
+    assert extent(Window(0, ns(3.1)), starved().end, longer.end) == "0 to 3.1 s; run B goes on to 20 s"
+    assert extent(Window(ns(0.0005), ns(3.1)), ns(3.1), ns(3.1)) == "0.001 to 3.1 s"
+
+
+def test_a_robot_that_stands_still_in_both_runs_has_no_figures() -> None:
+    stands = run([], [moved(0.0, 0.0)])
+    assert list(rows_of(stands, stands, "whole program")) == ["threads used", "at once"]
 
 
 def test_two_runs_as_lines_name_the_run_of_each_figure() -> None:
@@ -265,6 +270,14 @@ def test_a_verdict_says_which_run_is_better_and_by_what() -> None:
     assert verdict(compare(healthy(), healthy(), window)).startswith("Neither run is better")
 
 
+def test_lower_figures_of_far_fewer_calls_speak_for_no_run() -> None:
+    never = run([ODOM, TIMER], [])
+    old = run([ODOM, TIMER], called(1, 1.0, 1.1, age=0.5))
+    assert verdict(compare(never, old, Window(0, ns(4.0)))).startswith("Neither")
+    again = run([ODOM, TIMER], [*called(1, 1.0, 1.1), *called(1, 2.0, 2.1)])
+    assert "oldest data" in verdict(compare(old, again, Window(0, ns(4.0))))
+
+
 def test_a_run_that_an_error_ends_and_one_that_hears_nothing_are_worse() -> None:
     window = Window(0, ns(4.0))
     deaf = QosMismatched(ns(1.0), "/odom", 1, 1, "RELIABILITY")
@@ -285,3 +298,12 @@ def test_runs_first_differ_where_a_call_does_otherwise() -> None:
     assert differ([*same, *called(1, 2.0, 2.1)], [*same, *called(1, 2.0, 2.5)]) == ns(2.1)
     assert differ(same, [*same, *called(1, 3.0, 3.1)]) == ns(3.0)
     assert differ(same, called(1, 1.0001, 1.1001)) is None
+
+
+def test_on_the_real_clock_runs_differ_by_more_than_a_start_that_is_a_little_later() -> None:
+    def differ(first: list[AnyEvent], second: list[AnyEvent]) -> Nanoseconds | None:
+        one, other = (run([ODOM], [RunStarted(0, "run", "real", 0), *events]) for events in (first, second))
+        return run_to_end(first_difference(one, other, Window(0, ns(4.0))))
+
+    assert differ(called(1, 1.0, 1.1), called(1, 1.05, 1.15)) is None
+    assert differ(called(1, 1.0, 1.1), called(1, 1.05, 1.9)) == ns(1.1)

@@ -80,7 +80,8 @@ def test_where_nothing_waits_the_threads_that_were_needed_are_told() -> None:
 
 def test_a_timer_that_outlasts_its_period_waits_for_nobody_else() -> None:
     told = said(split_groups_run(), 9.4)
-    assert told.at_length.endswith("timer_callback, due again 4.9 s ago, still runs")
+    assert told.text == "timer_callback, due again 4.9 s ago, still runs; nothing else waits"
+    assert told.at_length == f"{told.text}; 2 of 4 threads were ever needed at once"
     assert told.level is DiagnosisLevel.FINE
 
 

@@ -206,9 +206,9 @@ class BarPainter:
         return (*full, f"{took}: {reasons[-1]}", *reasons, f"{verb} {took}", took)
 
     def _took(self, interval: Interval) -> str:
-        """Return how long an interval has lasted at ``told``; its full length if it begins later."""
+        """Return how long an interval has lasted at ``told``; its full length if it begins there or later."""
         end = self.timeline.end if interval.end is None else interval.end
-        if interval.start <= self.told:
+        if interval.start < self.told:
             end = min(end, self.told)
         return duration(max(0, end - interval.start))
 

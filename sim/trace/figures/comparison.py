@@ -122,8 +122,10 @@ def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> 
 def first_difference(first: Timeline, second: Timeline, window: Window) -> Incremental[Nanoseconds | None]:
     """Return when the runs first differ in a window: a call begins or ends otherwise, or on one side only.
 
-    Callbacks match as for ``compare``; times that differ by less than 1 ms are the same. None: they do not.
+    Callbacks match as for ``compare``. Times are the same that differ by less than 1 ms, on the real clock by
+    less than 100 ms. None: they do not differ.
     """
+    is_real = any(each.started is not None and each.started.clock != "virtual" for each in (first, second))
     of_first, of_second = _entities_of(first), _entities_of(second)
     partners = _partners(of_first, of_second)
     found: list[Nanoseconds] = []
@@ -131,7 +133,7 @@ def first_difference(first: Timeline, second: Timeline, window: Window) -> Incre
         other = of_second.get(partners.get(key, key))
         within = Window(window.start, min([window.end, *found]))
         spans = first.spans_of(entity, within), () if other is None else second.spans_of(other, within)
-        differs = _first_different(*spans)
+        differs = _first_different(*spans, _ALIKE if is_real else _SAME)
         if differs is not None and differs < window.end:
             found.append(differs)
         yield
@@ -139,15 +141,17 @@ def first_difference(first: Timeline, second: Timeline, window: Window) -> Incre
 
 
 _SAME: Nanoseconds = 1_000_000
-"""Times of two runs that differ by less are the same."""
+"""Times of two virtual runs that differ by less are the same."""
+_ALIKE: Nanoseconds = 100_000_000
+"""The same on the real clock, on which a program starts sooner or later and sleeps longer or shorter."""
 
 
-def _first_different(first: Sequence[Span], second: Sequence[Span]) -> Nanoseconds | None:
+def _first_different(first: Sequence[Span], second: Sequence[Span], same: Nanoseconds) -> Nanoseconds | None:
     for one, other in zip(first, second, strict=False):
-        if abs(one.start - other.start) >= _SAME:
+        if abs(one.start - other.start) >= same:
             return min(one.start, other.start)
         ends = [span.end for span in (one, other) if span.end is not None]
-        if ends and (len(ends) == 1 or abs(ends[0] - ends[1]) >= _SAME):
+        if ends and (len(ends) == 1 or abs(ends[0] - ends[1]) >= same):
             return min(ends)
     return next((span.start for rest in (first[len(second) :], second[len(first) :]) for span in rest), None)
 

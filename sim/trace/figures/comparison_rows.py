@@ -11,7 +11,7 @@ from sim.quantities.plural import counted
 from sim.trace.figures.comparison import CallbackInRun, CallbackPair, Comparison, RunFigures
 from sim.trace.figures.statistics import Distribution
 from sim.trace.figures.summary import RobotFigures
-from sim.trace.model import Window
+from sim.trace.model import Nanoseconds, Window
 
 RUNS = ("run A", "run B")
 """Names of the runs in a table: single letters are callback groups."""
@@ -146,7 +146,9 @@ def _differences(comparison: Comparison) -> Iterator[_FigureDifference]:
         for name, first, second in pairs:
             if first is not None and second is not None:
                 one, other = figure(first), figure(second)
-                if abs(other - one) >= least:
+                lower, higher = (first, second) if one < other else (second, first)
+                tells = wording not in _OF_CALLS or 2 * lower.figures.calls >= higher.figures.calls
+                if tells and abs(other - one) >= least:
                     yield _FigureDifference(rank, f"{what} of {name}", one, other, wording)
     for rank, what, count in _DECIDING_RUNS:
         one, other = count(comparison.first), count(comparison.second)
@@ -160,6 +162,8 @@ _DECIDING_RUNS: tuple[tuple[int, str, Callable[[RunFigures], int]], ...] = (
     (1, "subscriptions that hear nothing", lambda run: run.mismatches),
     (1, "collisions", lambda run: run.collisions),
 )
+_OF_CALLS = (_LATENESS, _AGES)
+"""Figures of calls: lower ones of far fewer calls, as of a callback that hangs, speak for no run."""
 _NOTABLE = 10_000_000
 """Nanoseconds by which a wait or an age must differ."""
 
@@ -178,13 +182,12 @@ _DECIDING: tuple[tuple[str, Callable[[CallbackInRun], float], _Wording, float], 
 """Figures that decide a verdict, the most important first, and by how much they must differ."""
 
 
-def extent(comparison: Comparison) -> str:
-    """The compared part of the runs: ``0 to 12.4 s; run A goes on to 20 s``."""
-    window = comparison.window
+def extent(window: Window, *ends: Nanoseconds) -> str:
+    """The compared part of runs with these ends: ``0 to 12.4 s; run A goes on to 20 s``."""
     parts = [stretch(window)]
-    for name, run in zip(RUNS, (comparison.first, comparison.second), strict=True):
-        if run.end > window.end:
-            parts.append(f"{name} goes on to {_seconds(run.end)} s")
+    for name, end in zip(RUNS, ends, strict=True):
+        if end > window.end:
+            parts.append(f"{name} goes on to {_seconds(end)} s")
     return "; ".join(parts)
 
 
@@ -200,13 +203,22 @@ def _seconds(nanoseconds: int) -> str:
 def _whole(first: RunFigures, second: RunFigures) -> Iterator[ComparisonRow]:
     yield _row("threads used", first.threads_used, second.threads_used, _COUNTS)
     yield _row("at once", first.threads_at_once, second.threads_at_once, _COUNTS)
-    if first.robot is None and second.robot is None:
-        return
+    robots = [run.robot for run in (first, second) if run.robot is not None]
+    if len(robots) != 1 and all(map(_stands, robots)):
+        return  # it has no part in either run
     for label, figure, wording in _ROBOT_FIGURES:
         yield _row(label, _apply(figure, first.robot), _apply(figure, second.robot), wording)
     yield _row("collisions", _collisions(first), _collisions(second), _LOSSES)
     yield _place(first.robot, second.robot)
     yield _heading(first.robot, second.robot)
+
+
+_MOVES = 0.005
+"""The least metres or radians that are a movement."""
+
+
+def _stands(robot: RobotFigures) -> bool:
+    return not robot.turns and max(robot.travelled, robot.turned) < _MOVES
 
 
 def _collisions(run: RunFigures) -> Figure:

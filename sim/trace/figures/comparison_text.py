@@ -32,7 +32,7 @@ def comparison_text(comparison: Comparison, first: str, second: str, before: str
     lines = [
         f"{RUNS[0]}  {first}",
         f"{RUNS[1]}  {second}",
-        extent(comparison),
+        extent(comparison.window, comparison.first.end, comparison.second.end),
         f"{before} {verdict(comparison)}.".lstrip(),
         "",
         _line(head, widths),
@@ -65,7 +65,7 @@ def comparison_lines(comparison: Comparison, first: str, second: str, before: st
     """Yield the whole comparison as lines that can be listened to; the same, for the rest."""
     yield from (f"{run}: {name}" for run, name in zip(RUNS, (first, second), strict=True))
     yield f"{before} {verdict(comparison)}.".lstrip()
-    yield extent(comparison)
+    yield extent(comparison.window, comparison.first.end, comparison.second.end)
     for section in sections(comparison):
         yield section.title
         for row in section.rows:

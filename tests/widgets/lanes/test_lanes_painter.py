@@ -238,6 +238,14 @@ def test_a_wait_is_told_as_of_the_cursor() -> None:
     assert "waited 20.0 s: group A held by timer_callback" in after
 
 
+def test_a_wait_that_begins_at_the_cursor_is_told_in_full() -> None:
+    timeline = told(shared_group_run())
+    (wait, *_) = timeline.waits_of(next(iter(timeline.moment(ns(10)).waiting)), Window(ns(10), ns(11)))
+    at_first = plain(LanePainter().paint(timeline, Window(0, ns(30)), wait.start, 140, 7).rows)
+    assert "waits 0 s" not in at_first
+    assert "waits 20.0 s: group A held by timer_callback" in at_first
+
+
 def test_what_lies_after_the_cursor_is_drawn_later_in_ink() -> None:
     picture = LanePainter().paint(told(shared_group_run()), Window(0, ns(30)), ns(10), 140, 7)
     bars = [run for run in picture.rows[0] if run.ink.role is Role.BAR]
