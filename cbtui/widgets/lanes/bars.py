@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 from cbtui.looks.theme import Glyphs, Ink, Role, texture_of
 from cbtui.text.callback_names import short_name
@@ -43,8 +44,9 @@ class BarPainter:
         """Draw a thread's calls: bars with group letter and callback name, ticks for short ones."""
         for stretch in stretches(columns):
             number = self._number(stretch.top.entity)
-            self._columns(row, stretch, Ink(Role.BAR, number))
-            self._texture(row, stretch, number)
+            self._columns(row, stretch, _ink(Role.BAR, number))
+            if not stretch.is_short:
+                self._texture(row, stretch, number)
             if len(stretch.columns) > 1:
                 self._seam(row, stretch)
                 self._label(row, stretch, Ink(Role.LABEL, number))
@@ -161,7 +163,7 @@ class BarPainter:
         number = self._number(entity.id)
         for stretch in stretches(columns):
             if stretch.is_short:
-                self._columns(row, stretch, Ink(Role.BAR, number))
+                self._columns(row, stretch, _ink(Role.BAR, number))
             else:
                 self._line(row, stretch, Ink(Role.LINE, number))
                 span = stretch.top
@@ -232,8 +234,6 @@ class BarPainter:
 
     def _texture(self, row: CellRow, stretch: MergedColumns[Span], number: int) -> None:
         """Fill the bar's full columns, except at its ends, with the group's texture."""
-        if stretch.is_short:
-            return
         glyph, ink = texture_of(number, self.glyphs)
         if glyph == self.glyphs.left[8]:
             return
@@ -292,6 +292,11 @@ class BarPainter:
 
     def _number(self, entity: EntityId) -> int:
         return self.numbers[self.timeline.entities[entity].group]
+
+
+@lru_cache
+def _ink(role: Role, number: int) -> Ink:
+    return Ink(role, number)
 
 
 def _shows_wait(wait: LaneColumn[Wait], call: LaneColumn[Span] | None) -> bool:

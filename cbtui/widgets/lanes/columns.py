@@ -316,11 +316,13 @@ def stretches(columns: Sequence[LaneColumn[I] | None]) -> list[MergedColumns[I]]
     found: list[MergedColumns[I]] = []
     before: I | None = None
     for place, column in enumerate(columns):
-        top = None if column is None else column.top
-        if column is not None and top is not None:
-            if top is before or (before is not None and _key(top) == _key(before)):
-                found[-1].columns.append(column)
-            else:
-                found.append(MergedColumns(place, [column], top))
+        if column is None:
+            before = None
+            continue
+        top = column.top
+        if before is not None and top.start == before.start and top.entity == before.entity:
+            found[-1].columns.append(column)
+        else:
+            found.append(MergedColumns(place, [column], top))
         before = top
     return found
