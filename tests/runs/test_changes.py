@@ -270,6 +270,14 @@ def test_a_run_without_a_robot_has_no_sensors() -> None:
     assert not [row for row in rows_of(found) if row.aspect == "rate"]
 
 
+def test_a_program_that_uses_no_robot_has_no_sensors_and_a_release_from_the_start() -> None:
+    setup = msgspec.structs.replace(setup_for(SERVER), robot=RobotUse.WHEN_USED)
+    found = changeable(of_lesson(SERVER, lessons()), setup, Timeline())
+    rows = {(row.what, row.aspect): row.now for row in rows_of(found)}
+    assert ("robot's sensors", "rate") not in rows
+    assert rows["rclpy", "release"] == "jazzy@7.1.12"
+
+
 # numbers
 
 

@@ -17,6 +17,7 @@ from cbtui.runs.live.findings import ExplainedFinding, FindingsMonitor
 from cbtui.runs.setup.changes import Changes
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.replay import ReplayScreen
+from cbtui.screens.windows import diagnoses
 from cbtui.screens.windows.diagnoses import (
     ChosenStep,
     DiagnosesScreen,
@@ -315,6 +316,25 @@ async def test_a_cure_is_offered_once_it_was_found_to_help(keys: tuple[str, ...]
         assert chosen == []
         await press(pilot, "up", "up", *keys)
         assert chosen == [ChosenStep(findings[0], NextStep.CURE, EDIT)]
+
+
+async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Endless(Trial):
+        def helps(
+            self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
+        ) -> bool:
+            note(40)
+            return given_up.wait(10)
+
+    now = [100.0]
+    monkeypatch.setattr(diagnoses, "monotonic", lambda: now[0])
+    async with console() as (app, pilot):
+        screen = DiagnosesScreen(told_of(shared_group_run().until(TURNED)), Charset.BRAILLE, Endless())
+        await app.push_screen(screen)
+        await until(pilot, lambda: "A cure is being tried, for 0 s now: 20 %." in text_of(app))
+        now[0] += 7
+        await until(pilot, lambda: "A cure is being tried, for 7 s now: 20 %." in text_of(app))
+        await press(pilot, "escape")
 
 
 @pytest.mark.slow

@@ -7,7 +7,9 @@ from cbtui.runs.setup.quantities import USUAL_SENSOR_RATE, Quantity
 from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.text.callback_names import short_name
 from lessons.lesson import number_after
+from sim.engine.release import profile_of
 from sim.engine.setup import RobotUse, RunSetup
+from sim.releases.profile import Profile
 from sim.trace.descriptions import executor_label
 from sim.trace.events import EntityKind
 from sim.trace.model import EntityInfo, Nanoseconds
@@ -62,6 +64,7 @@ class ChangeableSetup:
 def changeable(subject: ShownProgram, setup: RunSetup, timeline: Timeline) -> ChangeableSetup:
     """Return what can be changed about a run, as far as its trace shows."""
     lesson, started = subject.lesson, timeline.started
+    has_robot = setup.robot is RobotUse.ALWAYS or timeline.arena is not None
     words = setup.programs[0].arguments if setup.programs else ()
     arguments = [
         ChangeableArgument(each.argument, Quantity(each.name, each.unit, each.least, each.most), number)
@@ -74,9 +77,13 @@ def changeable(subject: ShownProgram, setup: RunSetup, timeline: Timeline) -> Ch
         None if lesson is None else lesson.setup.threads_argument,
         tuple(callbacks_of(timeline).values()),
         tuple(arguments),
-        None if setup.robot is RobotUse.NEVER else setup.sensor_rate or USUAL_SENSOR_RATE,
-        None if setup.real is not None else started.distro if started is not None else setup.distro,
+        (setup.sensor_rate or USUAL_SENSOR_RATE) if has_robot else None,
+        None if setup.real is not None else (started and started.distro) or str(_release_of(setup)),
     )
+
+
+def _release_of(setup: RunSetup) -> Profile:
+    return profile_of(setup, lambda _sentence: None)
 
 
 def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:

@@ -1,6 +1,6 @@
 """Following a chain of messages: its path at the moment on screen, and what took its time."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -12,6 +12,7 @@ from cbtui.screens.windows.chain import ChainScreen
 from sim.quantities.durations import duration, timestamp
 from sim.trace.figures.chains import Chain, ChainError, ChainRun, chain
 from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
 
 _GROWTH = 1.1
 """Factor by which a run has to grow until its chain is followed again."""
@@ -37,7 +38,7 @@ class ChainPath(ScreenPart):
         """Ask for the names."""
         timeline = self.runs.timeline
         follow = partial(chain, timeline)
-        screen = ChainScreen(self.names, list(timeline.names_sent), follow, self.host.charset)
+        screen = ChainScreen(self.names, list(_names_used(timeline)), follow, self.host.charset)
         self.host.ask(screen, self._take)
 
     def _take(self, names: tuple[str, ...] | None) -> None:
@@ -78,3 +79,11 @@ class ChainPath(ScreenPart):
             except ChainError:
                 self._found = None  # the names are of another run, or nothing was sent yet
         return self._found
+
+
+def _names_used(timeline: Timeline) -> Iterator[str]:
+    """Yield the topics and services that callbacks take from or send to; not all that a robot sends."""
+    received = {each.name for each in timeline.entities.values()}
+    for name in timeline.names_sent:
+        if name in received or any(each.sender for each in timeline.sent_on(name)[-1:]):
+            yield name

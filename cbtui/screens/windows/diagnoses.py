@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from functools import partial
 from threading import Event
+from time import monotonic
 from typing import Protocol
 
 from textual import on
@@ -114,6 +115,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         self._helpful: list[tuple[int, Cure]] = []
         self._percent: dict[int, int] = {}
         """The progress of the current trial, by the index of its finding."""
+        self._trying_since = monotonic()
         self._rows = tuple(self._list_rows())
         self._given_up.set()
         self._given_up = Event()
@@ -129,8 +131,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
     def on_mount(self) -> None:
         """Highlight the worst finding, and check for new ones regularly."""
         self._begin()
-        if self._latest is not None:
-            self.set_interval(_CHECK_INTERVAL, self._check_for_new)
+        self.set_interval(_CHECK_INTERVAL, self._check_for_new)
 
     def _begin(self) -> None:
         some = bool(self._findings)
@@ -141,8 +142,9 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             self.run_worker(partial(self._try_all, self._trial, self._given_up), thread=True)
 
     def _check_for_new(self) -> None:
-        assert self._latest is not None
-        findings = self._latest()
+        findings = self._findings if self._latest is None else self._latest()
+        if any(self._untried):
+            self._tell_highlighted()
         if not _problems(findings) <= _problems(self._findings):
             self._list(findings)
             self.query_one(".window").border_title = self.heading
@@ -239,7 +241,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         if left := self._untried[place]:
             of = sum(about == place for about, _ in self._cures)
             percent = (100 * (of - left) + self._percent.get(place, 0)) // of
-            return f"A cure is being tried in the background: {percent} %."
+            return f"A cure is being tried, for {monotonic() - self._trying_since:.0f} s now: {percent} %."
         return self._trial.refusal if self._trial and self._findings[place].is_problem else ""
 
     @on(OptionList.OptionHighlighted)
@@ -292,15 +294,15 @@ def step_row(text: str, charset: Charset) -> Content:
 
 
 def details_of(each: ExplainedFinding, charset: Charset, about_trial: str = "") -> Content:
-    """Return what happened, why, what to do, the sentence on trials of cures, and where and when."""
+    """Return what happened, the sentence on trials of cures, why, what to do, and where and when."""
     explained = each.explanation
-    parts = [
-        (f"{visible(explained.what, charset)}.", "bold"),
+    parts = [(f"{visible(explained.what, charset)}.", "bold")]
+    if about_trial:
+        parts.append((f"\n· {about_trial}", ""))
+    parts += [
         (f"\n{visible(sentence(explained.why), charset)}", ""),
         (f"\n→ {visible(explained.cure, charset)}.", "$text-success"),
     ]
-    if about_trial:
-        parts.append((f"\n· {about_trial}", ""))
     where = location_text(each.finding, explained)
     if where:
         parts.append((f"\n{visible(where, charset)}", "$text-muted"))

@@ -28,6 +28,7 @@ def line() -> Line:
     run = Line()
     run.node("/sensor", sense="")
     run.node("/base", clean="/raw", steer="/good", slow="")
+    run.send(900, "/odom", 900)  # which the program does not use
     for start, wait in ((1000, 0), (2000, 300)):
         run.starts(start, "sense")
         run.send(start, "/raw", start, "sense")
