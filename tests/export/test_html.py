@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from sim.export.html import page
+from sim.trace.events import Logged, Printed
 from tests.export.examples import NASTY, small_run, timeline_of
 from tests.support.lesson_runs import shared_group_run
 from tests.web.chromium import PROGRAM
@@ -39,22 +40,38 @@ def test_what_a_program_prints_stays_data_and_nothing_comes_from_outside() -> No
     assert not re.search(r"https?:|src=|href=|import\(|fetch\(", text)
 
 
+def shown_by_browser(text: str, moment: str, folder: Path) -> str:
+    """The document of a page, as a browser has made it at a moment of the run."""
+    file = folder / "run.html"
+    file.write_text(text, encoding="utf-8")
+    command = [str(PROGRAM), "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"]
+    address = f"{file.as_uri()}#{moment}"
+    return subprocess.run([*command, address], capture_output=True, text=True, check=True, timeout=60).stdout
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(PROGRAM is None, reason="there is no Chromium")
+def test_a_log_without_lines_says_so(tmp_path: Path) -> None:
+    quiet = [event for event in small_run() if not isinstance(event, Logged | Printed)]
+    assert "<span>nothing so far</span>" in shown_by_browser(page(timeline_of(quiet)), "0", tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(PROGRAM is None, reason="there is no Chromium")
+def test_a_narrow_page_is_no_wider_than_its_window(tmp_path: Path) -> None:
+    text = page(timeline_of(shared_group_run().events)).replace("</style>", "main { width: 320px; }</style>")
+    told = "const main = document.querySelector('main'); document.title = `${main.scrollWidth} wide`"
+    dom = shown_by_browser(text.replace("</body>", f"<script>{told}</script></body>"), "6.5", tmp_path)
+    assert "<title>320 wide</title>" in dom
+
+
 @pytest.mark.slow
 @pytest.mark.skipif(PROGRAM is None, reason="there is no Chromium")
 @pytest.mark.parametrize("width", ["auto", "0"])  # a frame or a tab that is not shown yet has none
 def test_a_browser_shows_what_waits_at_a_moment(width: str, tmp_path: Path) -> None:
-    file = tmp_path / "run.html"
     text = page(timeline_of(shared_group_run().events))
-    file.write_text(text.replace("</style>", f"main {{ width: {width}; }}</style>"), encoding="utf-8")
-    command = [
-        str(PROGRAM),
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--dump-dom",
-        f"{file.as_uri()}#6.5",
-    ]
-    dom = subprocess.run(command, capture_output=True, text=True, check=True, timeout=60).stdout
+    styled = text.replace("</style>", f"main {{ width: {width}; }}</style>")
+    dom = shown_by_browser(styled, "6.5", tmp_path)
     assert '<output id="now">6.500 s</output>' in dom
     assert re.search(
         r"<b>scan_callback</b><span class=\"waits\">waits 2\.\d+ s: group A held by timer_callback", dom
