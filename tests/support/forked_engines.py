@@ -11,7 +11,7 @@ from cbtui.engines import session
 from cbtui.engines.forking import forking_context
 
 _PRELOADED = (
-    "cbtui.cli",
+    "cbtui.cli_commands",
     "cbtui.grading.supervisor",
     "sim.engine.preloaded",
     __name__,

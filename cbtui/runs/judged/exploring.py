@@ -26,7 +26,7 @@ from sim.engine.setup import RunSetup
 from sim.trace.events import NoticeKind, Severity, ThreadChosen
 from sim.trace.model import Window
 
-PRELOADED = ["cbtui.cli", "sim.engine.preloaded"]
+PRELOADED = ["cbtui.cli_commands", "sim.engine.preloaded"]
 """Modules of an engine, imported once in the server that every run is forked from."""
 _STUCK = ("self-made-deadlock", "needs-one-more-worker", "still-computing", "service-never-comes")
 """Ids of the diagnosis rules on callbacks that wait for ever."""
