@@ -103,7 +103,7 @@ def ticks_on_time(timer: str, within: float) -> Check:
         passed = latest.age <= within * SECOND
         if not latest.age:
             return Verdict(True, expected, f"{counted(len(calls), 'call')}, none late")
-        return Verdict(passed, expected, f"{seconds(latest.age)} late", latest.start)
+        return Verdict(passed, expected, f"{seconds(latest.age, within)} late", latest.start)
 
     return Check(f"{timer} is called on time", judge)
 

@@ -36,7 +36,7 @@ def _within(
         if slowest is None:
             return Verdict(False, expected, "no message that went through")
         longest = max(slowest.steps, key=lambda step: step.length)
-        seen = f"{seconds(slowest.latency)}, of which {seconds(longest.length)}: {longest.words}"
+        seen = f"{seconds(slowest.latency, limit)}, of which {seconds(longest.length)}: {longest.words}"
         return Verdict(slowest.latency <= limit * SECOND, expected, seen, longest.start)
 
     return Check(f"{' to '.join(names)} never {what} too {'long' if what == 'takes' else 'old'}", judge)

@@ -50,7 +50,7 @@ def never_waits_longer_than(callback: str, limit: float) -> Check:
             return Verdict(True, expected, "no wait")
         length = _end(run, longest[-1]) - longest[0].since
         why = why_waiting(max(longest, key=lambda wait: _end(run, wait) - wait.start), run)
-        seen = f"a wait of {seconds(length)}, {why}"
+        seen = f"a wait of {seconds(length, limit)}, {why}"
         return Verdict(length <= limit * SECOND, expected, seen, longest[0].since)
 
     return Check(f"{callback} never waits too long", judge)
@@ -66,7 +66,9 @@ def never_runs_longer_than(callback: str, limit: float) -> Check:
             return Verdict(False, expected, f"no call of {callback}")
         longest = max(spans, key=lambda span: span.end_at(run.end) - span.start)
         length = longest.end_at(run.end) - longest.start
-        return Verdict(length <= limit * SECOND, expected, f"a call of {seconds(length)}", longest.start)
+        return Verdict(
+            length <= limit * SECOND, expected, f"a call of {seconds(length, limit)}", longest.start
+        )
 
     return Check(f"{callback} never takes too long", judge)
 
@@ -80,7 +82,7 @@ def never_takes_older_than(subscription: str, limit: float) -> Check:
         if not calls:
             return Verdict(False, expected, f"no call of {subscription}")
         oldest = max(calls, key=lambda span: span.age)
-        seen = f"a message {seconds(oldest.age)} old"
+        seen = f"a message {seconds(oldest.age, limit)} old"
         return Verdict(oldest.age <= limit * SECOND, expected, seen, oldest.start)
 
     return Check(f"{subscription} never takes an old message", judge)

@@ -81,8 +81,19 @@ def is_called(service: str) -> Stretch:
     return Stretch(f"{service} works on a request", windows)
 
 
-def seconds(length: Nanoseconds) -> str:
-    """Return a duration as short text: ``9.9 s``, ``35 ms``."""
+def seconds(length: Nanoseconds, unlike: float | None = None) -> str:
+    """Return a duration as short text: ``9.9 s``, ``35 ms``.
+
+    It has as many digits as tell it from ``unlike``, a limit in seconds: ``0.1003 s`` for one of 0.1.
+    """
+    limit = length if unlike is None else round(unlike * SECOND)
+    digits = 3
+    while limit != length and _rounded(length, digits) == _rounded(limit, digits):
+        digits += 1
+    return _rounded(length, digits)
+
+
+def _rounded(length: Nanoseconds, digits: int) -> str:
     if 0 < length < SECOND // 10:
-        return f"{length / 1e6:.3g} ms"
-    return f"{length / SECOND:.3g} s"
+        return f"{length / 1e6:.{digits}g} ms"
+    return f"{length / SECOND:.{digits}g} s"

@@ -34,7 +34,7 @@ def data_never_older(subscription: str, timer: str, limit: float) -> Check:
         if not ages:
             return Verdict(False, expected, f"no call of {timer} after a message of {subscription}")
         age, at = max(ages)
-        return Verdict(age <= limit * SECOND, expected, f"{seconds(age)} old", at)
+        return Verdict(age <= limit * SECOND, expected, f"{seconds(age, limit)} old", at)
 
     return Check(f"{subscription} data is fresh when {timer} decides", judge)
 

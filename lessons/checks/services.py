@@ -25,7 +25,9 @@ def replies_within(service: str, limit: float) -> Check:
                 return Verdict(False, expected, waited, call.sent)
         slowest = max(calls, key=lambda call: (call.replied or 0) - call.sent)
         took = (slowest.replied or 0) - slowest.sent
-        return Verdict(took <= limit * SECOND, expected, f"an answer after {seconds(took)}", slowest.sent)
+        return Verdict(
+            took <= limit * SECOND, expected, f"an answer after {seconds(took, limit)}", slowest.sent
+        )
 
     return Check(f"{service} answers in time", judge)
 

@@ -368,3 +368,13 @@ def test_a_callback_is_found_by_its_name_and_by_its_topic() -> None:
 )
 def test_lengths_are_said_in_short(length: float, words: str) -> None:
     assert seconds(ns(length)) == words
+
+
+@pytest.mark.parametrize(
+    ("length", "limit", "words"),
+    [(0.1, 0.1, "0.1 s"), (0.10003, 0.1, "0.10003 s"), (0.05002, 0.05, "50.02 ms"), (0.2, 0.1, "0.2 s")],
+)
+def test_a_length_beyond_its_limit_is_not_said_in_the_same_words(
+    length: float, limit: float, words: str
+) -> None:
+    assert seconds(ns(length), limit) == words
