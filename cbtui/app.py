@@ -165,6 +165,7 @@ class CbtuiApp(EndingApp):
 
     def on_mount(self) -> None:
         """Open what the command line named."""
+        self.app_resume_signal.subscribe(self, lambda _: self.refresh(layout=True))  # the terminal is blank
         for sentence in self._complaints:
             self.notify(sentence, severity="warning", timeout=12, markup=False)
         if self._start_lesson is not None:

@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -86,3 +87,23 @@ def test_a_console_that_was_stopped_goes_on_and_gives_the_terminal_back(tmp_path
         console.press("q")
         assert console.ended() == 0
         assert console.left_on() == set()
+
+
+@pytest.mark.slow
+def test_a_lesson_that_goes_on_after_a_stop_is_drawn_whole(tmp_path: Path) -> None:
+    with nothing_left(), opened(80, 24, tmp_path, "open", "split-groups") as console:
+        console.until("What do you expect?")
+        console.press(_ESCAPE)
+        console.until("LIVE")
+        console.press("2")
+        console.until("[2 Code]")
+        console.read_for(2.0)
+        drawn = console.drawn.count(b"[2 Code]")
+        console.process.send_signal(signal.SIGSTOP)
+        os.waitpid(console.process.pid, os.WUNTRACED)
+        time.sleep(2.0)
+        console.process.send_signal(signal.SIGCONT)
+        console.read_for(3.0)
+        assert console.drawn.count(b"[2 Code]") > drawn
+        console.process.send_signal(signal.SIGHUP)
+        assert console.ended() == HUNG_UP
