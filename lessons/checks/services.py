@@ -3,7 +3,7 @@
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import requests_of, seconds
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import EntityKind
+from sim.trace.events import EntityKind, Logged, Severity
 from sim.trace.timeline import Timeline
 
 
@@ -62,14 +62,21 @@ def _not_taken(run: Timeline) -> set[int]:
     return queued | {blocked.call for blocked in last.blocked.values()}
 
 
+_ERRORS = (Severity.ERROR, Severity.FATAL)
+
+
 def log_says(text: str, at_least: int = 1) -> Check:
-    """The log has lines with a text in them."""
+    """The log has lines with a text in them; if too few, the last error that was logged is told."""
     expected = "such a line" if at_least == 1 else f"at least {at_least} such lines"
 
     def judge(run: Timeline) -> Verdict:
         lines = [line for line in run.logs if text in line.text]
-        at = lines[0].t if lines else None
-        return Verdict(len(lines) >= at_least, expected, str(len(lines)) if lines else "none", at)
+        at, seen = lines[0].t if lines else None, str(len(lines)) if lines else "none"
+        logged = (line for line in reversed(run.logs) if isinstance(line, Logged))
+        error = next((line for line in logged if line.severity in _ERRORS), None)
+        if len(lines) >= at_least or error is None:
+            return Verdict(len(lines) >= at_least, expected, seen, at)
+        return Verdict(False, expected, f"{seen}; but the error: {error.text}", error.t)
 
     return Check(f"the log says '{text}'", judge)
 

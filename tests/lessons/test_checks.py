@@ -285,6 +285,16 @@ def test_a_check_tells_a_run_that_does_it_from_one_that_does_not(
     assert (failed.seen, failed.at) == (seen, None if at is None else ns(at))
 
 
+def test_where_a_line_is_missing_the_last_logged_error_is_told() -> None:
+    run = Run()
+    run.log("TICK", 1.0)
+    run.log("LookupException: no frame arm", 2.0, severity=Severity.ERROR)
+    run.over(10.0)
+    failed = log_says("TICK", at_least=2).judge(timeline(run))
+    assert (failed.seen, failed.at) == ("1; but the error: LookupException: no frame arm", ns(2.0))
+    assert log_says("TICK").judge(timeline(run)).passed
+
+
 @pytest.mark.parametrize(
     ("check", "good", "bad", "at"),
     [
