@@ -18,7 +18,7 @@ def searched(results: Iterable[Result], distro: str, runs: int) -> list[Result]:
     """The same results, but REACHED where at most so many runs of the model find what a real run said."""
     return [
         each._replace(outcome=Outcome.REACHED)
-        if each.outcome in DIFFERENT and Search(each, distro).finds(runs)
+        if each.outcome in (*DIFFERENT, Outcome.BUSY) and Search(each, distro).finds(runs)
         else each
         for each in results
     ]

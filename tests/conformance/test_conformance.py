@@ -55,6 +55,17 @@ def test_an_order_that_real_ros_2_took_is_found_where_one_place_of_some_hundred_
     assert Search(Result(case, Outcome.ORDER, (real,)), JAZZY).finds(240)
 
 
+@pytest.mark.slow
+def test_an_order_that_real_ros_2_took_is_found_where_a_wait_ends_with_what_came_first() -> None:
+    # Jazzy 7.1.5: the executor's wait is over when the second goal is accepted, before what that one sends.
+    (case,) = decided([("1717-176", drawn("1717-176"))], JAZZY)
+    first, rest = case.model.words[:9], case.model.words[9:]
+    assert first[-1] == "client_6_2 #1 awaits"
+    goes_on = (3, 4, 0, 1, 2, 5, 6, 9, 7, 8, 10, 11, 12)
+    real = case.model._replace(words=(*first, *(rest[place] for place in goes_on)))
+    assert Search(Result(case, Outcome.ORDER, (real,)), JAZZY).finds(48)
+
+
 @needs_ros
 @pytest.mark.slow
 def test_every_generated_program_runs_on_real_rclpy() -> None:

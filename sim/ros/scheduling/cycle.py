@@ -83,6 +83,8 @@ class Cycle:
         self._gathering = next(_gatherings)
         self._groups_left_out: set[CallbackGroup] = set()
         self._woken_in: int | None = None
+        self._found_first: deque[Entity] | None = None
+        """What the present wait would have found when the second callback since it began was begun."""
 
     @property
     def about_to_look(self) -> bool:
@@ -209,8 +211,7 @@ class Cycle:
             if self._take_tasks():
                 return True
         found = self._ready(now)
-        if following is _WAITING and not self._wait_ended_early():
-            awaited = self._awaited(found)
+        if following is _WAITING and (awaited := self._end_of_wait(self._awaited(found))) is not None:
             if awaited:
                 self._name(awaited)
                 self._found_all = len(awaited) == len(found)
@@ -220,14 +221,16 @@ class Cycle:
         # Tasks that came meanwhile end the waiting as it begins.
         return self._gather(found) or self._take_tasks()
 
-    def _wait_ended_early(self) -> bool:
-        """Whether the wait ended before one of its entities became ready.
+    def _end_of_wait(self, awaited: deque[Entity]) -> deque[Entity] | None:
+        """What the wait found, of all that it could; None: it ended before any of that became ready.
 
         The wake-up of the executor, for example by the start of a callback, races with what the callback
-        sends.
+        sends, and with what the callbacks do that the same thread runs next.
         """
-        is_race = self._woken_in is not None or len(self._tasks) > 0
-        return is_race and self._clock.choose(2) == 1
+        if self._woken_in is None and not self._tasks:
+            return awaited
+        first = self._found_first
+        return (awaited, None, first)[self._clock.choose(3 if first else 2)]
 
     def _ready(self, now: int) -> deque[Entity]:
         found = snapshot(self.view, now)
@@ -290,6 +293,8 @@ class Cycle:
 
     def entered(self, entity: Entity) -> None:
         """A handler starts: its entity was handed out, and the executor is woken."""
+        if self._woken_in == self._clock.turn and self.waits and self._found_first is None:
+            self._found_first = self._awaited(self._ready(self._clock.now()))
         self.woken()
         entity.entered_in = self._gathering
 
@@ -321,7 +326,7 @@ class Cycle:
         if self.may_serve is not None:
             self._gathering = next(_gatherings)
             self._groups_left_out.clear()
-            self._woken_in = None
+            self._woken_in = self._found_first = None
 
     # Tasks
 

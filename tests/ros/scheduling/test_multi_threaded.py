@@ -2,13 +2,16 @@
 
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Hashable, Sequence
 from typing import Any
 
 import pytest
 
 import sim.ros.rclpy as rclpy
+from sim.clock.schedule import NO_ACCESSES, Accesses
+from sim.clock.strategies import RandomWalk
 from sim.interfaces import message, service
+from sim.ros.entities.publisher import Publisher
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
@@ -406,3 +409,48 @@ def test_a_worker_takes_the_next_of_the_queue_before_any_other_thread_goes_on(di
 
     simulate(program, until=1.0, distro=distro)
     assert said == ["asks", "asks", "serves", "serves"]
+
+
+class _WaitsEnd(RandomWalk):
+    """Threads run first come, first served; what else is open is chosen at random."""
+
+    def next(self, ready: Sequence[Hashable]) -> int:
+        return 0
+
+    def yields(self, running: Hashable, ready: Sequence[Hashable], accesses: Accesses = NO_ACCESSES) -> bool:
+        return False
+
+
+@pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
+def test_a_wait_may_end_with_what_one_callback_sent_before_the_next_one_of_the_same_thread_sends() -> None:
+    # rcl_wait keeps what was ready as it returned, however late its thread gets the interpreter again.
+    def heard(seed: int) -> str:
+        topics: list[str] = []
+
+        def program(simulation: Simulation) -> None:
+            node = Node("n")
+            group = ReentrantCallbackGroup()
+
+            def hear(topic: str, *others: Publisher) -> Publisher:
+                def callback(_message: Any) -> None:
+                    topics.append(topic)
+                    for other in others:
+                        other.publish(Int32())
+
+                node.create_subscription(Int32, topic, callback, 10, callback_group=group)
+                return node.create_publisher(Int32, topic, 10)
+
+            early, late = hear("early"), hear("late")
+            begins = hear("begins", hear("first", late), hear("second", early))
+            simulation.at(0.3, lambda: begins.publish(Int32()))
+            executor = MultiThreadedExecutor(1)
+            executor.add_node(node)
+            executor.spin()
+
+        simulate(program, until=1.0, schedule=_WaitsEnd(seed), distro="jazzy@7.1.5")
+        return " ".join(topics)
+
+    assert {heard(seed) for seed in range(8)} == {
+        "begins first second early late",
+        "begins first second late early",
+    }
