@@ -43,6 +43,7 @@ from sim.trace.events import (
     RunStarted,
     ServiceReplied,
     TimeHalted,
+    TimePassed,
     encode,
 )
 from tests.engine.test_pausing import Console, console
@@ -129,7 +130,9 @@ def again(system: System, recorded: list[AnyEvent]) -> list[AnyEvent]:
 
 def of_the_run(events: list[AnyEvent]) -> list[AnyEvent]:
     """The events without what tells of the run's time."""
-    return [event for event in events if not isinstance(event, (CommandGiven, TimeHalted, Notice))]
+    return [
+        event for event in events if not isinstance(event, (CommandGiven, TimeHalted, TimePassed, Notice))
+    ]
 
 
 def tellings() -> st.SearchStrategy[list[Telling]]:
@@ -286,7 +289,7 @@ def _of_the_run(events: list[AnyEvent]) -> list[AnyEvent]:
     return [
         event
         for event in events
-        if not isinstance(event, (TimeHalted, LineCompleted))
+        if not isinstance(event, (TimeHalted, TimePassed, LineCompleted))
         and not (isinstance(event, CommandGiven) and event.text.startswith(paces))
         and not (isinstance(event, Notice) and event.text.startswith("time stands"))
     ]

@@ -11,7 +11,16 @@ from cbtui.engines.session import ProcessSession
 from sim.clock.recesses import RECESS
 from sim.engine.commands import CallService, InputCommand, Stop
 from sim.engine.inputs import inputs_of
-from sim.trace.events import AnyEvent, CommandGiven, InputGiven, Logged, Notice, RunEnded, TimeHalted
+from sim.trace.events import (
+    AnyEvent,
+    CommandGiven,
+    InputGiven,
+    Logged,
+    Notice,
+    RunEnded,
+    TimeHalted,
+    TimePassed,
+)
 from tests.support.engine_runs import SECOND, program_setup, run_to_end
 
 PATIENCE = 60.0
@@ -67,7 +76,9 @@ def live(folder: Path, *given: InputCommand) -> list[AnyEvent]:
 
 
 def without_notices(events: list[AnyEvent]) -> list[AnyEvent]:
-    return [event for event in events if not isinstance(event, (Notice, CommandGiven, TimeHalted))]
+    return [
+        event for event in events if not isinstance(event, (Notice, CommandGiven, TimeHalted, TimePassed))
+    ]
 
 
 def test_a_program_that_waits_without_time_takes_its_inputs_and_is_repeated_from_them(tmp_path: Path) -> None:
