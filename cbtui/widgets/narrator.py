@@ -159,7 +159,7 @@ def waiting(wait: Wait, timeline: Timeline, at: Nanoseconds) -> str:
     """Return why a callback that is ready does not run at a moment."""
     entity = timeline.entities[wait.entity]
     queued = timeline.queue(entity.id, at).depth
-    waits = f"{entity.spoken_name} waits" + (f" since {timestamp(wait.since)}" if wait.since < at else "")
+    waits = f"has waited since {timestamp(wait.since)}" if wait.since < at else "waits"
     ready = f", {queued} queued" if queued else ", due" if entity.kind is EntityKind.TIMER else ""
     match wait.reason:
         case Reason.GROUP_HELD:
@@ -170,7 +170,7 @@ def waiting(wait: Wait, timeline: Timeline, at: Nanoseconds) -> str:
             why = "others came before it, and its EventsExecutor asks no group"
         case Reason.NOBODY_SPINS:
             why = "nobody spins its node"
-    return f"{waits}{ready}: {why}"
+    return f"{entity.spoken_name} {waits}{ready}: {why}"
 
 
 def _at_rest(timeline: Timeline, at: Nanoseconds) -> str:

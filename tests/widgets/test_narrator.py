@@ -32,7 +32,7 @@ def test_a_start_tells_the_thread_the_reason_the_order_and_the_group() -> None:
 def test_who_waits_for_a_group_is_told_with_its_holder() -> None:
     told_at = narration(RUNS[0], ns(6.0))
     assert any(
-        "odom_callback waits since 4.0" in line and "group A held by timer" in line for line in told_at
+        "odom_callback has waited since 4.0" in line and "group A held by timer" in line for line in told_at
     )
     assert "loses its oldest message" in "".join(narration(RUNS[0], ns(8.0)))
 

@@ -67,7 +67,7 @@ def _who_runs(timeline: Timeline, span: Span) -> str:
 
 def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
     if span.end is None or span.end > now >= span.start:
-        yield f"runs since {timestamp(span.start)}, for {duration(max(0, now - span.start))}"
+        yield f"has run since {timestamp(span.start)}, for {duration(max(0, now - span.start))}"
     else:
         yield f"took {duration(span.end - span.start)} at {timestamp(span.start)}"
     if span.error:

@@ -50,7 +50,7 @@ async def test_enter_selects_what_runs_now_and_tells_of_it(size: tuple[int, int]
     async with console(size) as (app, pilot):
         assert "▸ A" not in text_of(app)
         await press(pilot, "enter")
-        assert "▸ A timer_callback on MainThread · runs since 4.000 s, for 8.9 s" in text_of(app)
+        assert "▸ A timer_callback on MainThread · has run since 4.000 s, for 8.9 s" in text_of(app)
         assert lanes_of(app).has_focus
 
 
@@ -114,7 +114,7 @@ async def test_a_click_on_a_lane_moves_the_cursor_there_and_selects_the_bar() ->
         await click(pilot, 13 + 5, 0)
         lanes = lanes_of(app)
         assert lanes.now == ns(4.0)
-        assert "▸ A timer_callback on MainThread · runs since 4.000 s" in text_of(app)
+        assert "▸ A timer_callback on MainThread · has run since 4.000 s" in text_of(app)
         assert "BACK" in lines_of(app)[0]
 
 

@@ -85,8 +85,8 @@ def test_an_earlier_calls_wait_is_not_told_again() -> None:
 def test_what_still_runs_is_measured_up_to_the_cursor() -> None:
     timeline = told(shared_group_run(), until=12.9)
     long = timeline.spans_on(1, Window(ns(5), ns(6)))[0]
-    assert "runs since 4.000 s, for 8.9 s" in details_of(timeline, long, ns(12.9)).facts
-    assert "runs since 4.000 s, for 2.0 s" in details_of(timeline, long, ns(6)).facts
+    assert "has run since 4.000 s, for 8.9 s" in details_of(timeline, long, ns(12.9)).facts
+    assert "has run since 4.000 s, for 2.0 s" in details_of(timeline, long, ns(6)).facts
 
 
 def test_a_timer_tells_its_period_and_how_late_it_was() -> None:
