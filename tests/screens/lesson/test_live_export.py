@@ -289,7 +289,7 @@ async def test_one_that_is_not_is_given_up_and_leaves_no_file(
         await press(pilot, "ctrl+q")
     assert list(folder.iterdir()) == []
     (sentence,) = app.saved
-    assert sentence.startswith("The export was cancelled, and shared-group-")
+    assert sentence.startswith("The export was cancelled, so shared-group-")
 
 
 @pytest.mark.slow

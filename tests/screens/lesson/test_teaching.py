@@ -272,7 +272,7 @@ async def test_a_run_that_shows_something_else_outdoes_the_lesson() -> None:
     async with console(observe=observed(split_groups_run().events)) as (app, pilot):
         await press(pilot, "1", "enter", "2", "enter", "a")
         await until_shown(pilot, app, "What the run showed: ")
-        assert "the run shows otherwise, and the run counts" in app.page
+        assert "the run shows something else, and the run counts" in app.page
         assert FIRST.because not in app.page
 
 
