@@ -136,12 +136,14 @@ def _doing(
     if running:
         threads = _threads(running, timeline)
         lasted = duration(moment.at - running[0].start)
-        texts = (f"▶ {threads} {lasted}", f"▶ {threads}", f"▶ {lasted}")
+        texts = (f"▶ {threads} {lasted}", f"▶ {lasted}")
         return CallbackActivity.RUNS, (*_blocked_text(running, moment, lasted), *texts), running[0].start
     wait = moment.waiting.get(entity.id)
     if wait is not None:
-        waited = f"{GLYPHS[Charset.BRAILLE].hatch[wait.reason]} waits {duration(moment.at - wait.since)}"
-        return CallbackActivity.WAITS, (f"{waited}: {why_waiting(wait, timeline)}", waited), wait.since
+        hatch, lasted = GLYPHS[Charset.BRAILLE].hatch[wait.reason], duration(moment.at - wait.since)
+        waited = f"{hatch} waits {lasted}"
+        whys = (f"{waited}: {why_waiting(wait, timeline)}", waited, f"{hatch} {lasted}")
+        return CallbackActivity.WAITS, whys, wait.since
     recent = timeline.spans_of(entity.id, Window(moment.at - JUST_NOW, moment.at + 1))
     if recent:
         return CallbackActivity.RAN, (f"· {_threads(recent[-1:], timeline)}",), recent[-1].start
