@@ -161,6 +161,14 @@ def test_what_a_loop_logs_while_it_waits_is_logged_before_the_return() -> None:
     ]
 
 
+def test_a_callback_that_returns_after_a_wait_in_vain_asks_instead() -> None:
+    wait = "if not self.client.wait_for_service(timeout_sec=5.0):  # here\n        return"
+    assert changed(node(f"def tick(self):\n    {wait}\n    self.go()"), look_again) == [
+        "-        if not self.client.wait_for_service(timeout_sec=5.0):  # here",
+        "+        if not self.client.service_is_ready():  # here",
+    ]
+
+
 @pytest.mark.parametrize(
     "wait",
     [
@@ -170,6 +178,7 @@ def test_what_a_loop_logs_while_it_waits_is_logged_before_the_return() -> None:
         "while not done:  # here\n    pass\ndone = 1",
         "for each in self.all:  # here\n    pass",
         "self.client.wait_for_service(1.0)  # here",
+        "if not self.client.wait_for_service(1.0):  # here\n    self.log('no')",
     ],
 )
 def test_a_loop_that_does_more_than_to_wait_stays(wait: str) -> None:

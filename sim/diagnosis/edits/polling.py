@@ -12,10 +12,13 @@ _WAIT = "wait_for_service"
 def look_again(source: SourceEditor, line: int) -> None:
     """Let a callback return instead of waiting at a line, if its condition does not hold yet.
 
-    Only for a statement of the callback's body that only waits, or logs while it waits.
+    Only for a statement of the callback's body that only waits, or logs while it waits, or that returns if a
+    wait for a service was in vain.
     """
     callback = source.callback_at(line)
     wait = _statement_at(callback, line)
+    if _asks_in_vain(source, wait):
+        return
     missing, meanwhile = _condition(source, wait)
     before = callback.body[: callback.body.index(wait)]
     if any(_stores(part) & _attributes(wait) for part in before):
@@ -28,6 +31,20 @@ def look_again(source: SourceEditor, line: int) -> None:
     step = " " * (wait.col_offset - callback.col_offset)
     logs = "".join(source.lines_behind(each.lineno - 1, each) for each in meanwhile)
     source.replace_lines(wait, wait, f"{blank}if {missing}:\n{logs}{blank}{step}return\n")
+
+
+def _asks_in_vain(source: SourceEditor, wait: ast.stmt) -> bool:
+    """Let a statement that waits for a service and returns without it only ask; return whether it is one."""
+    match wait:
+        case ast.If(
+            test=ast.UnaryOp(
+                op=ast.Not(), operand=ast.Call(func=ast.Attribute(value=client, attr=name)) as call
+            ),
+            body=[*_, ast.Return(value=None)],
+        ) if name == _WAIT:
+            source.replace(call, f"{source.code_of(client)}.service_is_ready()")
+            return True
+    return False
 
 
 def go_on_where_set(source: SourceEditor, line: int) -> None:
