@@ -7,8 +7,9 @@ of ros2/rclpy; its release notes name the patch that has them. Jazzy 7.1.5 and K
 source and release notes alone.
 
 Known, but not modelled: before #1469 a callback that waits for a worker is handed over again whenever the
-executor wakes. A program notices this only by chance: an exception comes out twice or earlier, or a second
-worker takes a single timer. No release here has Kilted's content filters of subscriptions, introspection of
+executor wakes; while a message waits for one, that is about 1,100 times a second. A program notices this only
+by chance: an exception comes out twice or earlier, a second worker takes a single timer, or other threads are
+late. No release here has Kilted's content filters of subscriptions, introspection of
 actions and ``rosout_qos_profile``; a program that uses one is told so.
 """
 
