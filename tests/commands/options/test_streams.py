@@ -79,7 +79,7 @@ def test_an_output_that_is_full_is_told_in_one_sentence(tmp_path: Path) -> None:
         for command in ("list", "--help", "--version", f"eject {tmp_path}"):
             done = _shell(f"{_CBTUI} {command} >/dev/full", **environment)
             assert done.returncode == 1
-            assert done.stderr == "cbtui: what it says cannot be written: No space left on device\n"
+            assert done.stderr == "cbtui: its output cannot be written: No space left on device\n"
 
 
 @pytest.mark.slow
