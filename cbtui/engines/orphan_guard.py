@@ -13,6 +13,8 @@ from cbtui.engines.process_tree import ProcessTree
 
 _MOST_FILES = 1 << 16
 """More descriptors than a starting engine has open."""
+_NUMBER = 8
+"""Bytes of a process's number."""
 ENDED_NORMALLY = b"."
 """What the console writes after a normal end of the engine."""
 
@@ -20,16 +22,21 @@ ENDED_NORMALLY = b"."
 def start_orphan_guard(tree: ProcessTree, console: Connection) -> None:
     """Start the process that waits until ``console``, a pipe that only the console writes to, is closed.
 
-    Called first of all in an engine, before it has threads. The process is forked twice, so that no program
-    can wait for it as its child, and closes all inherited descriptors.
+    Called first of all in an engine, before it has threads; ``tree`` is told the process. It is forked twice,
+    so that no program can wait for it as its child, and closes all inherited descriptors.
     """
     if not hasattr(os, "fork"):
         return
+    reads, writes = os.pipe()
     between = os.fork()
     if between:
         os.waitpid(between, 0)
+        tree.guard = int.from_bytes(os.read(reads, _NUMBER))
+        for end in (reads, writes):
+            os.close(end)
         console.close()
-    elif os.fork():
+    elif guard := os.fork():
+        os.write(writes, guard.to_bytes(_NUMBER))
         os._exit(0)
     else:
         _wait(tree, console.fileno())

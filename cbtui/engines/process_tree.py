@@ -33,6 +33,11 @@ class ProcessTree:
 
     def __init__(self, pid: int, mark: str) -> None:
         self.pid = pid
+        self.guard = 0
+        """The process that ends the tree once the console is gone, if the caller is the engine.
+
+        An engine that ends at the same time spares it: each would stop the other, and both stood for ever.
+        """
         self._mark = mark
         self._seen: list[Process] = []
 
@@ -71,10 +76,11 @@ class ProcessTree:
         system._exit = end_tree_on_exit
 
     def end(self) -> None:
-        """Kill all but the caller. Each is stopped first, so that none can start another process."""
+        """Kill all but the caller and the guard; each is stopped first, so that none can start another."""
         stopped: set[Process] = set()
         for _ in range(_SWEEPS):
-            found = {*self._seen, *self._marked(), *self.processes()} - stopped - {Process()}
+            spared = {Process(), *_processes([self.guard])}
+            found = {*self._seen, *self._marked(), *self.processes()} - stopped - spared
             if not found:
                 break
             for process in found:

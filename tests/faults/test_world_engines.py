@@ -16,6 +16,7 @@ from threading import Event
 import pytest
 
 from cbtui.engines.hang_detector import HangDetector
+from cbtui.engines.process_tree import MARK, ProcessTree
 from cbtui.engines.session import ProcessSession
 from cbtui.runs.live.live_run import RunState
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
@@ -191,6 +192,19 @@ def test_a_console_that_is_killed_takes_its_engine_and_what_it_started_along(
     assert list(recording.batches()) or recording.damage
     assert recording.damage is not None
     assert "breaks off" in recording.damage
+
+
+def test_an_engine_that_ends_spares_the_process_that_ends_it_with_the_console() -> None:
+    sleep, marked = ["sleep", "300"], os.environ | {MARK: "mine"}
+    engine, started, guard = (subprocess.Popen(sleep, env=marked, start_new_session=True) for _ in range(3))
+    tree = ProcessTree(engine.pid, "mine")
+    tree.guard = guard.pid
+    tree.end()
+    assert (engine.wait(), started.wait()) == (-signal.SIGKILL, -signal.SIGKILL)
+    assert guard.poll() is None
+    assert not is_stopped(guard.pid)
+    guard.kill()
+    guard.wait()
 
 
 def test_a_console_that_is_killed_leaves_what_others_run(folder: Path) -> None:
