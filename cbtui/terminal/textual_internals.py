@@ -14,6 +14,7 @@ from textual.await_complete import AwaitComplete
 from textual.command import CommandList, CommandPalette
 from textual.content import Content
 from textual.geometry import Region, Size
+from textual.screen import Screen
 from textual.widget import Widget
 
 if TYPE_CHECKING:
@@ -52,6 +53,11 @@ def paint_now(widget: Widget) -> None:
     screen = widget.screen
     screen._compositor.update_widgets({widget})
     screen.app._display(screen, screen._compositor.render_update())
+
+
+def update_now(screen: Screen[None]) -> None:
+    """Send what has been painted to the terminal now; Textual waits for its next sixtieth of a second."""
+    screen._on_timer_update()
 
 
 def resize_content(widget: Widget, size: Size) -> None:

@@ -61,6 +61,10 @@ WORKAROUNDS: dict[str, tuple[str, list[Callable[..., Any]]]] = {
         "a0d863d867bc",
         [Screen._compositor_refresh, App._display, Compositor.update_widgets],
     ),
+    "textual_internals.update_now: a picture waits for the next of sixty a second": (
+        "421401660de1",
+        [Screen._on_timer_update],
+    ),
     "textual_internals.set_title: a new title draws the whole widget": (
         "56fa711aecd9",
         [type(vars(Widget)["border_title"]).__set__],

@@ -10,6 +10,7 @@ from textual.screen import Screen
 from cbtui.runs.live.live_run import ShownRun
 from cbtui.screens.parts.runs import RunController
 from cbtui.terminal.processor import cpu_wait, time_off_cpu
+from cbtui.terminal.textual_internals import update_now
 
 FRAMES_A_SECOND = 15
 """About one frame for each step of a bar: a dot, half a column, is 60 ms in a window of ten seconds."""
@@ -138,9 +139,13 @@ class FrameLoop:
         due_in = self._schedule.due_in()
         if due_in == 0:
             self.draw(FrameContent.ALL_BUT_TEXTS)
-            self._screen.set_timer(_TEXTS_AFTER, lambda: self.draw(FrameContent.TEXTS))
+            self._screen.set_timer(_TEXTS_AFTER, self._draw_texts)
         elif due_in is not None:
             self._screen.set_timer(due_in, self._draw_at_once)
+
+    def _draw_texts(self) -> None:
+        update_now(self._screen)
+        self.draw(FrameContent.TEXTS)
 
     def _draw_if_due(self) -> None:
         if self._holds():
