@@ -56,8 +56,12 @@ def paint_now(widget: Widget) -> None:
 
 
 def update_now(screen: Screen[None]) -> None:
-    """Send what has been painted to the terminal now; Textual waits for its next sixtieth of a second."""
-    screen._on_timer_update()
+    """Send what has been painted to the terminal now; Textual waits for its next sixtieth of a second.
+
+    A new layout is left to Textual, as it takes long, and there may be several in a row.
+    """
+    if not screen._layout_required:
+        screen._on_timer_update()
 
 
 def resize_content(widget: Widget, size: Size) -> None:
