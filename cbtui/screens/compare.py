@@ -144,6 +144,7 @@ class CompareScreen(SizedScreen[None]):
     def laid_out(self) -> None:
         """Draw what the new layout shows."""
         self._drawn = ()
+        self.draw()
 
     def _draw_runs(self) -> None:
         at, shown = self.navigation.now, self.navigation.window
