@@ -85,7 +85,7 @@ class ComparisonTable(InkedView):
         width = self.scrollable_content_region.width
         if place >= len(self._lines):
             return Strip.blank(width, self.in_class(""))
-        line = Strip([Segment(run.text, self.in_ink(run.ink)) for run in self._lines[place]])
+        line = Strip([Segment(run.text, self.in_ink(run.ink)) for run in self._lines[place] if run.text])
         return line.adjust_cell_length(width, self.in_class(""))
 
     def _paint(self) -> None:
