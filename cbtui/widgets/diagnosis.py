@@ -85,25 +85,26 @@ def with_worst_problem(
 ) -> Diagnosis:
     """Replace a diagnosis without a problem by the worst problem that the rules found in the run.
 
-    A diagnosis that stays is kept, unless it is a stall; any other gives way to a wait that never ends.
-    ``how_to_continue`` is added to such a wait where there is room.
+    A diagnosis that stays is kept, unless it is a stall; any other gives way to a wait that never ends, or
+    only by its timeout. ``how_to_continue`` is added to a wait that never ends where there is room.
     """
     problems = [each for each in findings if each.is_problem]
-    endless = (each for each in problems if each.explanation.for_ever)
-    worst = next(endless, next(iter(problems), None))
+    endless = [each for each in problems if each.explanation.for_ever]
+    in_vain = [each for each in problems if each.explanation.until]
+    worst = next(iter((*endless, *in_vain, *problems)), None)
     if worst is None or (moment.stays and not (moment.is_stall and worst.explanation.for_ever)):
         return moment
-    if moment.level is not DiagnosisLevel.FINE and not worst.explanation.for_ever:
+    if moment.level is not DiagnosisLevel.FINE and worst not in (*endless, *in_vain):
         return moment
     explanation = worst.explanation
-    what = explanation.what
+    what, level = explanation.what, DiagnosisLevel.WAITS if worst in in_vain else DiagnosisLevel.TROUBLE
     if worst.at is None:
-        return Diagnosis(what, DiagnosisLevel.TROUBLE, at_length=worst.headline)
+        return Diagnosis(what, level, at_length=worst.headline)
     time = f"at {worst.at / 1e9:.1f} s: "
     text = f"{time}{what}"
     further = f"; {how_to_continue}" if how_to_continue and explanation.for_ever else ""
     at_length = f"{worst.name} {text}{further}".lstrip()
-    return Diagnosis(text, DiagnosisLevel.TROUBLE, at_length=at_length, time=time)
+    return Diagnosis(text, level, at_length=at_length, time=time)
 
 
 def _key(action: str, keymap: Keymap) -> str:

@@ -69,7 +69,9 @@ class Finding:
     thread: ThreadId = 0
     event: AnyEvent | None = None
     stuck: frozenset[EntityId] = frozenset()
-    """The callbacks that can never continue."""
+    """The callbacks that can never continue, or not before ``ends``."""
+    ends: Nanoseconds = 0
+    """When a timeout ends their wait; 0 if nothing does."""
     waited_for: frozenset[WaitedFor] = frozenset()
     """What those callbacks wait for that wait for each other."""
     ring: tuple[str, ...] = ()
@@ -91,7 +93,8 @@ class Explanation:
     """A finding in words: ``what`` happened (a line without a full stop), ``why``, and what to do.
 
     ``place`` is the learner's code in question; None if it is unknown. ``for_ever``: whether callbacks can
-    never continue. ``remedies`` are the parts of the cure that can be tried, each by itself.
+    never continue; ``until`` is when the timeout is over of callbacks that can continue no earlier, 0 for
+    none. ``remedies`` are the parts of the cure that can be tried, each by itself.
     """
 
     what: str
@@ -99,6 +102,7 @@ class Explanation:
     cure: str
     place: CodeLocation | None
     for_ever: bool = False
+    until: Nanoseconds = 0
     remedies: tuple[Remedy, ...] = ()
 
 

@@ -5,7 +5,7 @@ waits for the reply in a loop or for an event. The reply needs the service's cal
 worker for the future's done-callback. ``Rate.sleep`` needs the rate's timer, ``Clock.sleep_for`` on simulated
 time the subscription of ``/clock``, and a lock its holder. Each of these can wait for other callbacks: those
 that hold its group, those that occupy the threads, or the service's callback, which may be blocked itself. A
-callback is stuck if all callbacks that it waits for are stuck.
+callback is stuck if all callbacks that it waits for are stuck. With a timeout it is stuck until that is over.
 
 Source: the usual test of a wait-for graph in which a request for one of several equal resources waits for
 all their owners to be stuck (Holt, "Some Deadlock Properties of Computer Systems", 1972).
@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from sim.diagnosis.rule import WaitedFor, is_models
+from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import pool_of
 from sim.diagnosis.words import group_of, listed, who
 from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, Reason, ThreadId
@@ -73,12 +74,13 @@ class Obstacle:
 
 @dataclass(frozen=True, slots=True)
 class StuckCallback:
-    """A callback that can never continue: since when it waits, and for what."""
+    """A callback that waits for what cannot come: since when, for what, and until when (0: for ever)."""
 
     waiter: Waiter
     entity: EntityId
     since: Nanoseconds
     obstacle: Obstacle
+    until: Nanoseconds = 0
 
 
 def stands(position: Position, timeline: Timeline, at: Nanoseconds) -> bool:
@@ -91,7 +93,7 @@ def stands(position: Position, timeline: Timeline, at: Nanoseconds) -> bool:
 
 
 class WaitForGraph:
-    """The callbacks that can never continue at ``at``, as far as the trace shows."""
+    """The callbacks at ``at`` that wait for what cannot come while they wait, as far as the trace shows."""
 
     def __init__(self, timeline: Timeline, at: Nanoseconds) -> None:
         self._timeline = timeline
@@ -150,10 +152,12 @@ class WaitForGraph:
         for thread, blocked in self._moment.blocked.items():
             call = self._call(blocked.call)
             obstacle = None if call is None else self._obstacle(call)
+            position = self._timeline.position_on(thread, self._at)
+            until = 0 if position is None else position.until
             if obstacle is not None:
                 yield (
                     OnThread(thread),
-                    StuckCallback(OnThread(thread), blocked.entity, blocked.start, obstacle),
+                    StuckCallback(OnThread(thread), blocked.entity, blocked.start, obstacle, until),
                 )
         for thread, span in self._moment.running.items():
             position = self._timeline.position_on(thread, self._at)
@@ -163,7 +167,8 @@ class WaitForGraph:
             obstacle = self._obstacle_at(position, span) if is_still else None
             if obstacle is not None:
                 since = span.start if position.loop[0] else position.start
-                yield OnThread(thread), StuckCallback(OnThread(thread), span.entity, since, obstacle)
+                until = time_limit(position)
+                yield OnThread(thread), StuckCallback(OnThread(thread), span.entity, since, obstacle, until)
         for entity in self._suspended():
             calls = [call for call in self._outstanding() if call.caller == entity]
             obstacles = [self._obstacle(call) for call in calls]
@@ -207,7 +212,7 @@ class WaitForGraph:
             waits = position.doing is Doing.WAITS  # on simulated time
             clock = self._waiting_of_rclpy(EntityKind.SUBSCRIPTION, span, "/clock") if waits else None
             return None if clock is None else self._admission_obstacle(clock, WaitedFor.CLOCK, "/clock")
-        if position.doing is Doing.WAITS or position.loop[0]:
+        if position.doing is Doing.WAITS or (position.loop[0] and not ends_by_itself(*position.loop)):
             pending = (call for call in self._outstanding() if call.caller == span.entity)
             for call in pending:
                 if call.sent >= span.start:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable
 
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import Nanoseconds, Window
@@ -32,6 +33,11 @@ def listed(names: Iterable[str]) -> str:
 def often(count: int, what: str = "times in all") -> str:
     """Return a number of occurrences in brackets; empty for one."""
     return f" ({count} {what})" if count > 1 else ""
+
+
+def until_when(ends: Nanoseconds, timeline: Timeline) -> str:
+    """When a wait is over at the latest: `` until 9.0 s``; empty for 0, and for what should be over."""
+    return f" until {ends / SECOND:.1f} s" if ends > timeline.end else ""
 
 
 def thread_count(timeline: Timeline) -> int:

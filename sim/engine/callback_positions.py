@@ -23,6 +23,11 @@ LOCK = "Lock.acquire"
 """The name that a position gives to every way of taking a lock."""
 
 
+_TIMEOUTS = ("timeout_sec", "timeout", "time_to_wait")
+"""The parameters that limit a wait, in seconds; negative numbers, infinity and None do not."""
+_LONGEST = 1_000_000_000
+"""Seconds of the longest timeout that is recorded."""
+
 PositionFields: TypeAlias = tuple[Doing, str, tuple[tuple[str, str, int], ...], SourcePlace, int]
 
 
@@ -40,12 +45,16 @@ class CallbackPositions:
         running = self._probe.running()
         if not running:
             return
-        tops = sys._current_frames()
+        tops, now = sys._current_frames(), self._clock.now()
         for ident, callback in running.items():
-            position = position_of(tops.get(ident), running)
-            if position is not None and self._latest.get(ident) != (callback, position):
+            found = position_of(tops.get(ident), running)
+            if found is None:
+                continue
+            position, timeout = found
+            if self._latest.get(ident) != (callback, position):
                 self._latest[ident] = callback, position
-                self._record(CallbackAt(self._clock.now(), callback.entity, callback.thread, *position))
+                until = now + timeout if timeout else 0
+                self._record(CallbackAt(now, callback.entity, callback.thread, *position, until))
 
     def callback_on(self, ident: int) -> EntityId:
         """Take a sample, and return the callback that runs on a thread (0: none)."""
@@ -54,8 +63,13 @@ class CallbackPositions:
         return 0 if callback is None else callback.entity
 
 
-def position_of(top: FrameType | None, running: Mapping[int, RunningCallback]) -> PositionFields | None:
-    """Return where a thread is, inside its callback if it runs one; None outside the program's code."""
+def position_of(
+    top: FrameType | None, running: Mapping[int, RunningCallback]
+) -> tuple[PositionFields, int] | None:
+    """Return where a thread is, inside its callback if it runs one, and the timeout of its wait.
+
+    The timeout is in nanoseconds, 0 for none. None: the thread is outside the program's code.
+    """
     stack = list(takewhile(lambda frame: frame not in calls_the_program, outwards(top)))
     own = [place for place, frame in enumerate(stack) if is_own(frame) and _is_written(frame)]
     if not own:
@@ -67,7 +81,8 @@ def position_of(top: FrameType | None, running: Mapping[int, RunningCallback]) -
     loops = (loop_around(code.co_filename, line) for code, line in reversed(lines))
     frames = tuple((code.co_filename, code.co_name, line) for code, line in lines)
     thread = 0 if holder is None else holder.thread
-    return doing, call, frames, next(filter(None, loops), ("", 0)), thread
+    timeout = _timeout(inside[-1]) if inside and doing is not Doing.SLEEPS else 0
+    return (doing, call, frames, next(filter(None, loops), ("", 0)), thread), timeout
 
 
 def _is_written(frame: FrameType) -> bool:
@@ -96,6 +111,13 @@ def _activity(inside: list[FrameType]) -> tuple[Doing, str]:
 
 def _is_simulated(clock: object) -> bool:
     return getattr(clock, "ros_time_is_active", False) is True
+
+
+def _timeout(function: FrameType) -> int:
+    """Return the nanoseconds to which a function's arguments limit its wait; 0 for no limit."""
+    values = function.f_locals
+    seconds = next((values[name] for name in _TIMEOUTS if name in values), None)
+    return int(seconds * 1e9) if isinstance(seconds, int | float) and 0 < seconds <= _LONGEST else 0
 
 
 def _lock_holder(inside: list[FrameType]) -> int:

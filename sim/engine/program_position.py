@@ -47,8 +47,9 @@ class ProgramPosition:
         found = position_of(sys._current_frames().get(ident), {})
         if found is None:
             return None
-        doing, call, frames, loop, _ = found
+        (doing, call, frames, loop, _), timeout = found
         in_constructor = any(function == "__init__" for _, function, _ in frames)
         if process_of(self._main).spins and not in_constructor:
             frames = ()
-        return ProgramAt(self._clock.now(), doing, call, frames, loop)
+        now = self._clock.now()
+        return ProgramAt(now, doing, call, frames, loop, now + timeout if timeout else 0)

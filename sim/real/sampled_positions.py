@@ -25,7 +25,10 @@ def position_of(seen: At, t: int) -> CallbackAt | ProgramAt:
     doing, call = _called(seen.module, seen.function) if seen.module else _built_in(seen)
     loops = (loop_around(file, line) for file, _, line in reversed(seen.frames))
     position = doing, call, seen.frames, next(filter(None, loops), ("", 0))
-    return CallbackAt(t, seen.entity, seen.thread, *position) if seen.entity else ProgramAt(t, *position)
+    until = t + seen.until - seen.t if seen.until and doing is not Doing.SLEEPS else 0
+    if seen.entity:
+        return CallbackAt(t, seen.entity, seen.thread, *position, until=until)
+    return ProgramAt(t, *position, until)
 
 
 def _called(module: str, function: str) -> tuple[Doing, str]:

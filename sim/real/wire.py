@@ -99,6 +99,8 @@ class At(msgspec.Struct, frozen=True, array_like=True, tag="at"):
     """Module of the function that the innermost has called; "" if it has called none in Python."""
     function: str
     """That function's qualified name."""
+    until: int = 0
+    """When the timeout that this function was given is over; 0 for none."""
 
 
 class Replied(msgspec.Struct, frozen=True, array_like=True, tag="replied"):

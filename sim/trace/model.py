@@ -196,6 +196,8 @@ class Position(Lasting):
     loop: tuple[str, int] = ("", 0)
     holder: ThreadId = 0
     """The thread whose callback has the lock that it waits for; 0 for none."""
+    until: Nanoseconds = 0
+    """When the timeout of its wait is over; 0 if it has none, or does not wait."""
 
     @property
     def waits_for_lock(self) -> bool:

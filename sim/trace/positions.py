@@ -16,10 +16,10 @@ _PositionCells: TypeAlias = tuple[Doing, str, tuple[Frame, ...], tuple[str, int]
 class Positions(Intervals):
     """The positions of all callbacks, by thread and by callback."""
 
-    THREAD, ENTITY, PLACE = range(2, 5)
+    THREAD, ENTITY, UNTIL, PLACE = range(2, 6)
 
     def __init__(self, spill: SpillFile) -> None:
-        super().__init__(spill, more=3)
+        super().__init__(spill, more=4)
         self._numbers: dict[_PositionCells, int] = {}
         self._places: list[_PositionCells] = []
         self._by_thread: defaultdict[ThreadId, IntervalLane] = defaultdict(lambda: IntervalLane(self))
@@ -38,7 +38,7 @@ class Positions(Intervals):
         number = self._numbers.setdefault(place, len(self._places))
         if number == len(self._places):
             self._places.append(place)
-        row = self.open(event.t, event.thread, event.entity, number)
+        row = self.open(event.t, event.thread, event.entity, event.until, number)
         self._by_thread[event.thread].add(row)
         self.threads.add(event.thread)
         self._by_entity[event.entity].add(row)
@@ -66,5 +66,5 @@ class Positions(Intervals):
         return self._position(rows[-1]) if rows else None
 
     def _position(self, row: RowId) -> Position:
-        start, end, thread, entity, number = self.table.row(row)
-        return Position(start, end_or_none(end), thread, entity, *self._places[number])
+        start, end, thread, entity, until, number = self.table.row(row)
+        return Position(start, end_or_none(end), thread, entity, *self._places[number], until)

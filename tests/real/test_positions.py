@@ -167,3 +167,27 @@ def test_a_program_that_never_gets_beyond_init_is_told_of_as_on_the_model(tmp_pa
     on_model = told("model")
     assert on_model
     assert told("ros2") == on_model
+
+
+CALLS_ITSELF = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.create_service(SetBool, "switch", self.serve)
+        self.client = self.create_client(SetBool, "switch")
+        self.create_timer(0.3, self.ask)
+
+    def ask(self):
+        self.client.call(SetBool.Request(data=True), timeout_sec=8.0)
+
+    def serve(self, request, response):
+        return response
+"""
+
+
+@programs.needs_ros
+def test_a_call_with_a_timeout_is_told_with_its_end(tmp_path: Path) -> None:
+    timeline = programs.run(tmp_path, CALLS_ITSELF, ground="ros2", seconds=1.5).timeline
+    (found,) = (each for each in diagnose(timeline) if each.rule.id == "self-made-deadlock")
+    assert 8.2 < found.ends / 1e9 < 8.7
+    assert not found.rule.explain(found, timeline).for_ever

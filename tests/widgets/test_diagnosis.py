@@ -287,6 +287,16 @@ def test_a_wait_that_never_ends_is_told_whatever_else_waits() -> None:
     assert with_worst_problem(stalled, [worst]) is stalled
 
 
+def test_a_wait_that_ends_by_its_timeout_is_told_calmly() -> None:
+    moment = said(shared_group_run(), 12.9)
+    (worst, *_) = told_of(shared_group_run(), 15.0)
+    explanation = replace(worst.explanation, what="tick waits in vain until 9.0 s", until=ns(9.0))
+    told = with_worst_problem(moment, [worst, replace(worst, explanation=explanation)], "R starts over")
+    assert told.text == "at 4.0 s: tick waits in vain until 9.0 s"
+    assert told.level is DiagnosisLevel.WAITS
+    assert "starts over" not in told.at_length
+
+
 def test_a_moment_that_is_not_well_is_told_of_itself() -> None:
     problems = told_of(shared_group_run(), 15.0)
     for moment in (12.9, 4.4):

@@ -8,7 +8,7 @@ from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, WaitedF
 from sim.diagnosis.rules.edits import edits_for_reply
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES, StuckCallback, WaitForGraph, stands
-from sim.diagnosis.words import often, threads_for, who, with_threads
+from sim.diagnosis.words import often, threads_for, until_when, who, with_threads
 from sim.trace.events import EntityId, EntityKind, Reason
 from sim.trace.model import Blocked, Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -140,17 +140,19 @@ def _explanation(
     found: Finding, why: str, cure: str, remedies: tuple[Remedy, ...], timeline: Timeline
 ) -> Explanation:
     subject, lasts = who(found.subject, timeline), found.until >= timeline.end
-    waits = (
-        f"deadlock: {subject} waits for {found.about} for ever"
-        if lasts
-        else f"{subject} waited in vain for {found.about}"
-    )
+    if not lasts:
+        waits = f"{subject} waited in vain for {found.about}"
+    elif found.ends:
+        waits = f"{subject} waits in vain for {found.about}{until_when(found.ends, timeline)}"
+    else:
+        waits = f"deadlock: {subject} waits for {found.about} for ever"
     return Explanation(
         f"{waits}; {found.detail}{often(found.count)}",
         why,
         cure,
         _line_of(found.subject, found, timeline),
-        for_ever=lasts,
+        for_ever=lasts and not found.ends,
+        until=found.ends if lasts else 0,
         remedies=remedies,
     )
 
@@ -223,6 +225,7 @@ def _found(
         size=len(deadlock),
         detail=detail,
         stuck=stuck,
+        ends=min((each.until for each in deadlock if each.until), default=0),
         waited_for=frozenset(each.obstacle.kind for each in deadlock),
         ring=(*ring, who(closing.entity, timeline)),
     )

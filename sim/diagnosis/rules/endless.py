@@ -6,6 +6,7 @@ from pathlib import Path
 from sim.diagnosis.cures import remedy_for_waits
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, line_location, line_of
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_waiting
+from sim.diagnosis.time_limits import time_limit
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, who
 from sim.quantities.durations import duration
@@ -108,7 +109,11 @@ def _at_locks(timeline: Timeline) -> list[Position]:
     told = {notice.entity for notice in timeline.notices}
     at_end = Window(timeline.end, timeline.end + 1)
     last = (each for thread in timeline.threads for each in timeline.positions_on(thread, at_end)[-1:])
-    waiting = (each for each in last if each.end is None and each.waits_for_lock and not each.holder)
+    waiting = (
+        each
+        for each in last
+        if each.end is None and each.waits_for_lock and not (each.holder or time_limit(each))
+    )
     untold = (each for each in waiting if each.entity not in told)
     return sorted(untold, key=lambda each: each.start)
 

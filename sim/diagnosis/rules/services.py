@@ -18,8 +18,9 @@ from sim.diagnosis.rule import (
 )
 from sim.diagnosis.rules.edits import edits_for_waiting
 from sim.diagnosis.rules.names import offer
+from sim.diagnosis.time_limits import time_limit
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import listed, often, who
+from sim.diagnosis.words import listed, often, until_when, who
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind
 from sim.trace.model import EntityInfo, Span, Window
@@ -144,8 +145,8 @@ class ServiceNeverComes(Rule):
             clients = {entity.name for entity in _unserved(view.timeline) if entity.node == node}
             if clients:
                 about = listed(sorted(clients))
-                stuck = frozenset([each.entity])
-                yield Finding(self, each.start, view.end, each.entity, about=about, stuck=stuck)
+                stuck, ends = frozenset([each.entity]), time_limit(each)
+                yield Finding(self, each.start, view.end, each.entity, about=about, stuck=stuck, ends=ends)
         yield from self._of_program(view)
 
     def _of_program(self, view: TimelineView) -> Iterator[Finding]:
@@ -155,7 +156,7 @@ class ServiceNeverComes(Rule):
             return
         missing = [each.name for each in _unserved(view.timeline)]
         if missing:
-            yield Finding(self, at.t, view.end, about=listed(sorted(missing)))
+            yield Finding(self, at.t, view.end, about=listed(sorted(missing)), ends=time_limit(at))
 
     def _explained_of_program(self, found: Finding, timeline: Timeline) -> Explanation:
         at = timeline.program_at(found.at)
@@ -164,12 +165,15 @@ class ServiceNeverComes(Rule):
         clients = _unserved(timeline)
         differs, cure, remedies = offer(clients[0], timeline) if clients else ("", "", ())
         wrong = differs or "which nobody offers"
+        until = until_when(found.ends, timeline)
         return Explanation(
-            f"the program waits in wait_for_service() for {found.about}, {wrong}, and comes to no spin()",
+            f"the program waits in wait_for_service(){until} for {found.about}, {wrong}, "
+            f"and comes to no spin(){' before that' if until else ''}",
             "callbacks run only inside spin()",
             cure or f"check the service's name, and start the node that offers {found.about} before this one",
             CodeLocation(file, line, line),
-            for_ever=found.until >= timeline.end,
+            for_ever=found.until >= timeline.end and not found.ends,
+            until=found.ends,
             remedies=remedies,
         )
 
@@ -179,12 +183,14 @@ class ServiceNeverComes(Rule):
         subject = who(found.subject, timeline)
         place = line_of(found.subject, Window(found.at, found.until + 1), timeline)
         return Explanation(
-            f"{subject} waits in wait_for_service() for {found.about}, which nobody offers",
+            f"{subject} waits in wait_for_service(){until_when(found.ends, timeline)} for {found.about}, "
+            "which nobody offers",
             "while it waits, it keeps its thread and its group, for ever without a timeout or in a loop",
             f"start the node that offers {found.about}; wait for it in __init__, before spin(), or ask "
             f"service_is_ready() in {subject} and return",
             place,
-            for_ever=found.until >= timeline.end,
+            for_ever=found.until >= timeline.end and not found.ends,
+            until=found.ends,
             remedies=edits_for_waiting(place, found.subject, timeline),
         )
 

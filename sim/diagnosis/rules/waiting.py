@@ -190,9 +190,9 @@ class NodeNeverSpins(Rule):
         place, at = place_of(found.subject, timeline), timeline.program_at(found.until)
         if at is not None and not ever:
             place = CodeLocation(*at.place, at.place[1])
-            where = f"in the loop of line {place.first_line}" if at.loop[0] else f"at line {place.first_line}"
-            what = f"the program is {where}, and comes to no spin()"
+            what = f"the program is at line {place.first_line}, and has come to no spin() so far"
             if at.loop[0]:
+                what = f"the program is in the loop of line {place.first_line}, and comes to no spin()"
                 cure = "do one step of the loop in a timer's callback, and call rclpy.spin(node)"
         return Explanation(
             f"{subject} of {found.about} has been ready for {duration(found.lasted)} "

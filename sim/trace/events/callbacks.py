@@ -145,6 +145,9 @@ class CallbackAt(TraceEvent, frozen=True, tag="callback_at"):
     """The ``while`` around the innermost of them that has one."""
     holder: LockHolderId = 0
     """Name of the thread whose callback has the lock that it waits for."""
+    until: Maybe[Nanoseconds] = 0
+    """When the timeout of its wait is over, of the first of several at one line; none if it waits without
+    one, or sleeps."""
 
 
 class ProgramAt(TraceEvent, frozen=True, tag="program_at"):
@@ -161,6 +164,8 @@ class ProgramAt(TraceEvent, frozen=True, tag="program_at"):
     """The lines of the program's own on its stack; none once it spins as it should."""
     loop: Maybe[SourcePlace] = ("", 0)
     """The ``while`` around the innermost of them that has one."""
+    until: Maybe[Nanoseconds] = 0
+    """As in ``callback_at``."""
 
     @property
     def place(self) -> tuple[str, int]:

@@ -25,6 +25,10 @@ _CALLBACKS = "cbtui_probe.callbacks"
 _DEEPEST = 20
 """The most lines of one stack that are reported, the innermost ones."""
 _UNKNOWN = (0, 0, 0, 0)
+_TIMEOUTS = ("timeout_sec", "timeout", "time_to_wait")
+"""The arguments that limit a wait, in seconds; negative numbers, infinity and None do not."""
+_LONGEST = 1_000_000_000
+"""Seconds of the longest timeout that is reported."""
 _EVERY = 250_000_000
 """Nanoseconds between two looks at the program's main thread."""
 
@@ -86,7 +90,10 @@ def _stack(top: FrameType | None, until: str) -> list[FrameType]:
 
 
 def _position(stack: list[FrameType]) -> tuple[Any, ...] | None:
-    """The program's own lines, the innermost last; the instruction there, and the function that it called."""
+    """The program's own lines, the innermost last; the instruction there, and the function that it called.
+
+    That is followed by when the function's timeout is over, 0 for none.
+    """
     own = [
         place
         for place, frame in enumerate(stack)
@@ -99,10 +106,18 @@ def _position(stack: list[FrameType]) -> tuple[Any, ...] | None:
         for frame in (stack[place] for place in reversed(own[:_DEEPEST]))
     ]
     if own[0] == 0:
-        return lines, _place(stack[0].f_code, stack[0].f_lasti), "", ""
+        return lines, _place(stack[0].f_code, stack[0].f_lasti), "", "", 0
     inside = reversed(stack[: own[0]])
     called = next((frame for frame in inside if not _module(frame).startswith("cbtui_probe")), stack[0])
-    return lines, _UNKNOWN, _module(called), getattr(called.f_code, "co_qualname", called.f_code.co_name)
+    name = getattr(called.f_code, "co_qualname", called.f_code.co_name)
+    return lines, _UNKNOWN, _module(called), name, _until(called)
+
+
+def _until(function: FrameType) -> int:
+    values = function.f_locals
+    seconds = next((values[name] for name in _TIMEOUTS if name in values), None)
+    is_limit = isinstance(seconds, (int, float)) and 0 < seconds <= _LONGEST
+    return now() + int(seconds * 1e9) if is_limit else 0
 
 
 def _module(frame: FrameType) -> str:
