@@ -8,6 +8,7 @@ from time import monotonic
 
 import pytest
 from textual.pilot import Pilot
+from textual.widgets import OptionList
 
 from cbtui.app import CbtuiApp
 from cbtui.keys.keymap import STANDARD, Keymap
@@ -274,6 +275,21 @@ async def test_a_problem_that_comes_while_the_window_is_open_is_listed() -> None
         await until(
             pilot, lambda: "A mutually exclusive group lets one callback in at a time" in text_of(app)
         )
+
+
+async def test_what_the_window_tells_follows_the_run_and_nothing_moves() -> None:
+    latest = [told_of(shared_group_run().until(9.0))]
+    async with console() as (app, pilot):
+        screen = DiagnosesScreen(latest[0], Charset.BRAILLE, latest=lambda: latest[0])
+        await app.push_screen(screen)
+        await settle(pilot)
+        await press(pilot, "down")
+        assert "waited up to 5.0 s" in text_of(app)
+        assert text_of(app).count("odom_callback lost 90 messages") == 2  # in the list and below it
+        latest[0] = told_of(shared_group_run().until(12.0))
+        await until(pilot, lambda: "waited up to 8.0 s" in text_of(app))
+        assert text_of(app).count("odom_callback lost 150 messages") == 2
+        assert screen.query_one(OptionList).highlighted == 1
 
 
 EDIT = Cure(

@@ -1,6 +1,6 @@
 """The window with a run's diagnosis: what happened, why, what to do, and where."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 from functools import partial
@@ -31,7 +31,7 @@ from sim.quantities.plural import counted
 _ALL_IS_WELL = "✓ Nothing has gone wrong so far: no rule has found a problem."
 _TIME = 10
 _CHECK_INTERVAL = 0.5
-"""Seconds between two checks for new findings."""
+"""Seconds between two looks at the current findings."""
 
 
 class Trial(Protocol):
@@ -83,7 +83,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
     """Lists findings with their steps, problems first; the result is the chosen step, None to stay.
 
     A cure is offered once ``trial`` has found that it helps. ``lesson_on`` returns the lesson that shows a
-    problem. ``latest`` returns the current findings: the list begins again when there is a new problem.
+    problem. ``latest`` returns the current findings: the list follows them, and begins again when there is a
+    new problem.
     """
 
     SCOPE = Scope.DIAGNOSES
@@ -106,7 +107,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
     def _list(self, findings: Sequence[ExplainedFinding]) -> None:
         """Begin with these findings."""
         trial = self._trial
-        self._findings = findings
+        self._findings: Sequence[ExplainedFinding] = findings
         self._lessons = [self._lesson_on(each) for each in findings]
         cures = [() if trial is None else trial.cures(each) for each in findings]
         self._untried = [len(each) for each in cures]
@@ -143,13 +144,22 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
 
     def _check_for_new(self) -> None:
         findings = self._findings if self._latest is None else self._latest()
-        if any(self._untried):
-            self._tell_highlighted()
         if not _problems(findings) <= _problems(self._findings):
             self._list(findings)
             self.query_one(".window").border_title = self.heading
             self._show_options()
             self._begin()
+        else:
+            self._follow({each.finding.key: each for each in findings})
+
+    def _follow(self, latest: Mapping[object, ExplainedFinding]) -> None:
+        """Show the latest figures of the findings in place: nothing moves."""
+        self._findings = [latest.get(each.finding.key, each) for each in self._findings]
+        listed = self.query_one(OptionList)
+        for place, option in enumerate(self._options()):
+            if listed.get_option_at_index(place).prompt != option.prompt:
+                listed.replace_option_prompt_at_index(place, option.prompt)
+        self._tell_highlighted()
 
     def on_unmount(self) -> None:
         """Stop trying cures."""

@@ -6,7 +6,15 @@ from enum import Enum, auto
 from functools import cached_property
 
 from cbtui.widgets.lanes.names import short_thread
-from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, ThreadLane, all_lanes, ever_ran
+from cbtui.widgets.lanes.rows import (
+    GroupLane,
+    MemberLane,
+    SoleLane,
+    ThreadLane,
+    all_lanes,
+    ever_ran,
+    never_ran,
+)
 from sim.diagnosis.words import thread_count
 from sim.trace.events import EntityKind, GroupKind, ThreadId
 from sim.trace.figures.waiting import waits_for_others
@@ -24,6 +32,8 @@ class WorkerState(Enum):
     """What a worker is doing."""
 
     NEVER = auto()
+    """The run is over, and did not need it."""
+    NOT_YET = auto()
     IDLE = auto()
     COMES = auto()
     WORKS = auto()
@@ -159,7 +169,8 @@ class _SceneBuilder:
                     members[group.id].append(entity)
         hired = thread_count(self._timeline)
         workers += [
-            FactoryWorker(f"worker {number + 1}", WorkerState.NEVER) for number in range(len(workers), hired)
+            FactoryWorker(f"worker {number + 1}", self._before_work())
+            for number in range(len(workers), hired)
         ]
         areas = tuple(self._area(group, members[group.id], workers) for group in groups.values())
         more = roster_of(self._timeline).groups - len(areas)
@@ -178,9 +189,12 @@ class _SceneBuilder:
             return FactoryWorker(
                 name, WorkerState.LEAVES, span, self._step(self._now - span.end_at(self._now))
             )
-        return FactoryWorker(
-            name, WorkerState.IDLE if ever_ran(self._timeline, thread, self._now) else WorkerState.NEVER
-        )
+        ran = ever_ran(self._timeline, thread, self._now)
+        return FactoryWorker(name, WorkerState.IDLE if ran else self._before_work(thread))
+
+    def _before_work(self, thread: ThreadId = 0) -> WorkerState:
+        """The state of a thread that has run nothing yet; 0 for one that has not been started."""
+        return WorkerState.NEVER if never_ran(self._timeline, thread) else WorkerState.NOT_YET
 
     def _step(self, since: Nanoseconds) -> int:
         return min(STEPS - 1, STEPS * since // self._glance)

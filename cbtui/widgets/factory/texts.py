@@ -166,6 +166,8 @@ def activity_texts(worker: FactoryWorker, timeline: Timeline) -> tuple[str, ...]
     match worker.stay:
         case WorkerState.NEVER:
             return ("never needed", "unused", "unused")
+        case WorkerState.NOT_YET:
+            return ("not used yet", "unused", "unused")
         case WorkerState.IDLE:
             return ("waits for work", "waits", "waits")
         case _:

@@ -8,6 +8,8 @@ from cbtui.widgets.factory.large_seats import draw_figure
 from cbtui.widgets.factory.scene import FactoryScene, FactoryWorker, WorkerState
 from cbtui.widgets.factory.texts import activity_texts
 
+_UNUSED = (WorkerState.NEVER, WorkerState.NOT_YET)
+
 
 def draw_yard(canvas: Canvas, scene: FactoryScene, column: int, first: int, after: int) -> None:
     """Draw the workers below each other from ``column`` on, in the rows ``first`` to before ``after``."""
@@ -57,13 +59,13 @@ def _crowd(canvas: Canvas, scene: FactoryScene, line: int) -> None:
 
 def _counted(workers: Sequence[FactoryWorker]) -> str:
     busy = sum(worker.inside for worker in workers)
-    never = sum(worker.stay is WorkerState.NEVER for worker in workers)
-    parts = ((busy, "busy"), (len(workers) - busy - never, "idle"), (never, "unused"))
+    unused = sum(worker.stay in _UNUSED for worker in workers)
+    parts = ((busy, "busy"), (len(workers) - busy - unused, "idle"), (unused, "unused"))
     return ", ".join(f"{number} {what}" for number, what in parts if number)
 
 
 def _at_home(worker: FactoryWorker) -> bool:
-    return worker.stay in (WorkerState.IDLE, WorkerState.NEVER)
+    return worker.stay in (WorkerState.IDLE, *_UNUSED)
 
 
 def _ink(worker: FactoryWorker) -> Ink:

@@ -94,6 +94,11 @@ def ever_ran(timeline: Timeline, thread: ThreadId, at: Nanoseconds) -> bool:
     return bool(timeline.spans_on(thread, Window(0, at + 1)))
 
 
+def never_ran(timeline: Timeline, thread: ThreadId) -> bool:
+    """Whether a run is over in which a thread ran no callback."""
+    return timeline.ended is not None and not ever_ran(timeline, thread, timeline.end)
+
+
 def choose_lanes(
     lanes: list[Lane], room: int, timeline: Timeline, window: Window, selected: Lane | None = None
 ) -> list[Lane]:

@@ -4,7 +4,16 @@ from dataclasses import dataclass
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.text.callback_names import short_name
-from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane, ever_ran
+from cbtui.widgets.lanes.rows import (
+    GroupLane,
+    Lane,
+    MemberLane,
+    ServiceLane,
+    SoleLane,
+    ThreadLane,
+    ever_ran,
+    never_ran,
+)
 from cbtui.widgets.lanes.service_calls import LatestCalls
 from sim.quantities.durations import duration
 from sim.trace.events import EntityKind, GroupKind
@@ -53,7 +62,8 @@ class LaneStatus:
         if share == 0 and not ever_ran(self.timeline, thread.id, self.moment.at):
             if thread.executor == 0:
                 return TextRun("no callbacks" if self.width >= _WIDE else "own thread", FAINT)
-            return TextRun("  0%  never needed" if self.width >= _WIDE else "  0% unused", FAINT)
+            unused = "never needed" if never_ran(self.timeline, thread.id) else "not used yet"
+            return TextRun(f"  0%  {unused}" if self.width >= _WIDE else "  0% unused", FAINT)
         return TextRun(f"{share:4.0%} busy", PLAIN if share else FAINT)
 
     def _caller(self, span: Span) -> str:

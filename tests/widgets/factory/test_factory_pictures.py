@@ -346,3 +346,9 @@ def test_a_client_is_told_from_the_service_of_its_name_by_the_replies_that_wait_
     assert "weigh client " in factory(timeline, 1.5, 64, 12)
     assert "weigh 1 reply " in factory(timeline, 2.2, 64, 12)
     assert "weigh 2 replies " in factory(timeline, 2.7, 64, 12)
+
+
+def test_before_a_run_is_over_no_worker_was_never_needed() -> None:
+    first_step = told(split_groups_run(), until=1.0)
+    assert "not used yet" in factory(first_step, 1.0, 140, 16)
+    assert "never needed" not in factory(first_step, 1.0, 140, 16)

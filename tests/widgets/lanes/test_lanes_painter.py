@@ -135,7 +135,7 @@ def test_a_timer_that_found_no_worker_is_marked_late() -> None:
 def test_a_wide_picture_names_threads_as_rclpy_does_and_tells_more() -> None:
     picture = plain(LanePainter().paint(told(split_groups_run(), until=9.412), *last(10, 9.412), 138, 9).rows)
     assert "ThreadPoolExecutor-0_0 │" in picture
-    assert "  0%  never needed" in picture
+    assert "  0%  not used yet" in picture
     assert "A timer 5.4 s" in picture
     assert "queue 0/10 · age 1.0 ms" in picture
 
@@ -300,6 +300,17 @@ def test_a_main_thread_that_only_hands_out_work_has_no_lane() -> None:
     assert "MainThread" not in plain(LanePainter().paint(told(run), *last(10, 10), 80, 20).rows)
 
 
+def test_a_thread_was_never_needed_once_the_run_is_over() -> None:
+    run = Run()
+    first, second = (run.thread(name) for name in POOL)
+    timer = run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0)
+    run.callback(timer, first, 1.0, 1.0)
+    run.callback(timer, second, 3.0, 1.0)
+    run.over(5.0, "its time was up", failed=False)
+    shown = plain(LanePainter().paint(told(run), *last(10, 2.5), 120, 20).rows)
+    assert [word in shown for word in ("never needed", "not used yet")] == [False, True]
+
+
 def test_a_thread_of_the_programs_own_is_not_said_to_be_unneeded() -> None:
     run = Run()
     own, worker, _ = (run.thread(name) for name in ("beeper", *POOL))
@@ -309,8 +320,8 @@ def test_a_thread_of_the_programs_own_is_not_said_to_be_unneeded() -> None:
     shown = plain(LanePainter().paint(told(run), *last(10, 10), 120, 20).rows).splitlines()
     (beeper,) = (line for line in shown if "beeper" in line)
     (unused,) = (line for line in shown if POOL[1] in line)
-    assert "never needed" in unused
-    assert "never needed" not in beeper
+    assert "not used yet" in unused
+    assert "not used yet" not in beeper
     assert "0%" not in beeper
     assert "no callbacks" in beeper
 
