@@ -9,9 +9,12 @@ import pytest
 
 from cbtui.learning.lesson_lint import faults_of
 from cbtui.learning.lesson_scaffold import TEMPLATE
-from lessons.catalogue import lessons
+from cbtui.runs.setup.lesson_setup import setup_to_judge
+from lessons.catalogue import find, lessons
+from lessons.judge import Judge
 from lessons.lesson import Lesson, read_lesson
 from tests.support.daily import first_daily
+from tests.support.engine_runs import run_to_end
 
 every_lesson = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
 EXERCISES = [lesson for lesson in (read_lesson(TEMPLATE), *lessons()) if lesson.exercise is not None]
@@ -66,3 +69,21 @@ def test_the_files_of_an_exercise_fit_an_80_column_pane(lesson: Lesson) -> None:
     for path in (lesson.starter_path, lesson.solution_path):
         assert path is not None
         assert all(len(line) <= 79 for line in path.read_text(encoding="utf-8").splitlines())
+
+
+def test_a_lamp_that_stands_still_for_three_seconds_does_not_blink_all_the_time(tmp_path: Path) -> None:
+    lesson = find("spin-inside-a-callback")
+    assert lesson.solution_path is not None
+    text = lesson.solution_path.read_text(encoding="utf-8")
+    for cured, still in (
+        ("SEARCH_TIME = 1.0", "STILL = [3.0]\nSEARCH_TIME = 1.0"),
+        ("self.blink_callback, callback_group=self.group", "self.blink_callback"),
+        ('info("BLINK")', 'info("BLINK")\n        time.sleep(STILL.pop() if STILL else 0)'),
+    ):
+        assert cured in text
+        text = text.replace(cured, still)
+    path = tmp_path / "node.py"
+    path.write_text(text, encoding="utf-8")
+    judged = Judge(lesson).verdicts(run_to_end(setup_to_judge(lesson, path)).timeline)
+    failed = [each.check.asks for each in judged if not each.verdict.passed]
+    assert "blink_callback never waits too long" in failed
