@@ -90,7 +90,8 @@ class Agenda:
             entity.become_idle()
             self._probe.entity_gone(entity)
             self.wake_executor()
-            entity.removed()
+            if self.executor is None or not self.executor._keeps(entity):
+                entity.removed()
         return True
 
     def add_polled(self, entity: WaitableEntity) -> None:

@@ -287,6 +287,10 @@ class Executor:
         if self._waiting and not entity.handed_out and entity.callback_group.can_execute(entity):
             self._work_arrived()
 
+    def _keeps(self, entity: Entity) -> bool:
+        """Whether the executor uses a destroyed entity until its next update, and has it leave then."""
+        return False
+
     def _entity_has_more(self, entity: Entity) -> None:
         """Another item arrived for an entity that is ready already."""
 

@@ -463,6 +463,33 @@ def test_what_is_queued_for_a_destroyed_subscription_is_still_heard() -> None:
     trace.timeline()
 
 
+def test_what_a_callback_destroys_gets_messages_until_the_queue_is_at_its_update() -> None:
+    def program(bench: Bench) -> None:
+        def first(number: Any) -> None:
+            bench.said.append(("first", number.data))
+            if number.data == 1:
+                bench.node.destroy_subscription(second)
+                bench.node.destroy_service(service)
+                publisher.publish(Int32(data=2))
+                client.call_async(SetBool.Request())
+                bench.said.append((publisher.get_subscription_count(), client.service_is_ready()))
+
+        bench.node.create_subscription(Int32, "a", first, 10)
+        second = bench.node.create_subscription(
+            Int32, "a", lambda number: bench.said.append(("second", number.data)), 1
+        )
+        service = bench.node.create_service(SetBool, "s", lambda _, response: bench.said.append("serves"))
+        client = bench.node.create_client(SetBool, "s")
+        publisher = bench.node.create_publisher(Int32, "a", 10)
+        bench.register()
+        publisher.publish(Int32(data=1))
+        bench.spin_for(1.0)
+        bench.said.append((publisher.get_subscription_count(), client.service_is_ready()))
+
+    said, _ = on_bench(program)
+    assert said == [("first", 1), (2, True), ("second", 2), ("first", 2), (1, False)]
+
+
 def test_shutdown_of_the_context_lets_the_queue_run_out_first() -> None:
     def program(bench: Bench) -> None:
         a = bench.hear("a")
