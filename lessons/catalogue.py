@@ -5,6 +5,7 @@ packages that are registered under the entry-point group ``cbtui.lessons``.
 """
 
 import os
+import sys
 from collections.abc import Iterator
 from functools import cache
 from itertools import zip_longest
@@ -107,6 +108,8 @@ def _elsewhere(folders: str) -> Iterator[tuple[str, Path]]:
 
 
 def _announced() -> Iterator[tuple[str, Path]]:
+    if not _names_the_group():
+        return
     from importlib.metadata import entry_points
 
     for point in entry_points(group=ENTRY_POINTS):
@@ -116,6 +119,18 @@ def _announced() -> Iterator[tuple[str, Path]]:
             raise BadLesson(f"{source}: there is no package {point.value!r}")
         for location in locations:
             yield source, Path(location)
+
+
+def _names_the_group() -> bool:
+    """Whether an installed package names the entry-point group.
+
+    To import ``importlib.metadata``, and have it read all that is installed, takes ten times as long.
+    """
+    return any(
+        ENTRY_POINTS.encode() in file.read_bytes()
+        for folder in dict.fromkeys(sys.path)
+        for file in Path(folder).glob("*-info/entry_points.txt")
+    )
 
 
 def _locations(package: str) -> list[str]:

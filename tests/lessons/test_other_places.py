@@ -1,7 +1,5 @@
 """Lessons that do not come with the package: in folders that are named, and in packages that announce any."""
 
-import sys
-from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
@@ -25,10 +23,13 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def announce(monkeypatch: pytest.MonkeyPatch, value: str) -> None:
-    """Have one entry point of the group, and read the lessons anew."""
-    point = EntryPoint("theirs", value, catalogue.ENTRY_POINTS)
-    monkeypatch.setattr("importlib.metadata.entry_points", lambda group: [point])
+def announce(monkeypatch: pytest.MonkeyPatch, installed: Path, value: str) -> None:
+    """Have a distribution in a folder with one entry point of the group, and read the lessons anew."""
+    info = installed / "theirs-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: theirs\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(f"[{catalogue.ENTRY_POINTS}]\ntheirs = {value}\n")
+    monkeypatch.syspath_prepend(str(installed))
     monkeypatch.setattr(catalogue, "_lessons", catalogue._lessons.__wrapped__)
 
 
@@ -91,14 +92,15 @@ def test_a_package_announces_its_lessons_by_an_entry_point(
     package = tmp_path / "their_lessons"
     make_lesson(package / "their-thing")
     (package / "__init__.py").write_text("raise RuntimeError('nobody has to import this')\n")
-    monkeypatch.setattr(sys, "path", [str(tmp_path), *sys.path])
-    announce(monkeypatch, "their_lessons")
+    announce(monkeypatch, tmp_path, "their_lessons")
     assert find("their-thing").folder == package / "their-thing"
 
 
 @pytest.mark.parametrize("value", ["no_such_package", "no_such.package", "json.decoder", ""])
-def test_an_entry_point_that_names_no_package_is_refused(monkeypatch: pytest.MonkeyPatch, value: str) -> None:
-    announce(monkeypatch, value)
+def test_an_entry_point_that_names_no_package_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, value: str
+) -> None:
+    announce(monkeypatch, tmp_path, value)
     with pytest.raises(BadLesson) as caught:
         lessons()
     assert str(caught.value) == f"the entry point 'theirs' of cbtui.lessons: there is no package {value!r}"
