@@ -8,6 +8,7 @@ from textwrap import wrap
 from rich.cells import cell_len
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
+from cbtui.text.ascii_filter import in_ascii
 
 BLANK = Ink(Role.TEXT)
 
@@ -37,7 +38,7 @@ def visible(text: str, charset: Charset) -> str:
     """Return text that a terminal displays and never acts on.
 
     Control characters become their pictures (␛ for escape), other invisible characters and lone surrogates
-    the replacement character; in ASCII all of these become ``?``.
+    the replacement character; in ASCII these become ``?``, and letters and signs similar ones.
     """
     if text.isascii() and text.isprintable():
         return text
@@ -57,7 +58,7 @@ def _shown(character: str, charset: Charset) -> str:
     if character.isascii() and character.isprintable():
         return character
     if charset is Charset.ASCII:
-        return "?"
+        return "?" if character.isascii() else in_ascii(character) or "?"
     if character in _PICTURES:
         return _PICTURES[character]
     unshowable = unicodedata.category(character) in _UNSHOWABLE or cell_len(character) == 0

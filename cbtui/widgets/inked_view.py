@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from rich.color import Color
 from rich.segment import Segment
 from rich.style import Style
 from textual.message import Message
@@ -10,6 +11,7 @@ from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
 from cbtui.looks.colour_themes import palette_of
+from cbtui.looks.contrast import legible
 from cbtui.looks.theme import Ink, style_of
 from sim.quantities.plural import counted
 from sim.trace.model import Nanoseconds
@@ -53,12 +55,23 @@ class InkedView(ScrollView):
 
     def set_off(self, line: Strip, component: str) -> Strip:
         """Return a line with a component's background where it has none of its own."""
-        usual, ground = self.in_class("").bgcolor, Style(bgcolor=self.in_class(component).bgcolor, bold=True)
+        usual, bold = self.in_class("").bgcolor, Style(bold=True)
         parts = [
-            Segment(text, style + ground) if style and style.bgcolor == usual else Segment(text, style)
+            Segment(text, self.on_ground(style, component) + bold)
+            if style and style.bgcolor == usual
+            else Segment(text, style)
             for text, style, _ in line
         ]
         return Strip(parts, line.cell_length)
+
+    def on_ground(self, style: Style, component: str) -> Style:
+        """Return a style on a component's background, its colour moved until it is readable there."""
+        ground = self.in_class(component).bgcolor
+        if ground is None or ground.is_default or style.color is None or style.color.is_default:
+            return style + Style(bgcolor=ground)
+        least = palette_of(self.app.current_theme).words
+        colour = legible(style.color.get_truecolor(), ground.get_truecolor(), least)
+        return style + Style(color=Color.from_triplet(colour), bgcolor=ground)
 
     def copy(self, lines: Sequence[str]) -> None:
         """Copy lines to the terminal's clipboard (OSC 52, which works over ssh), and report their number."""

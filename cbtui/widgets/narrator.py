@@ -50,13 +50,17 @@ class Narrator(PaintedWidget):
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the sentences, each on as many rows as it takes."""
         width = max(20, size.width)
-        rows: list[list[TextRun]] = []
+        glyphs = GLYPHS[self.charset]
+        lines: list[tuple[str, Ink]] = []
         for place, text in enumerate(narration(self.timeline, self.now)):
-            sign = f" {GLYPHS[self.charset].forth} " if place == 0 else "   "
-            for line in lines_of_text(text, width - 4, self.charset):
-                rows.append([TextRun(fit(f"{sign}{line}", width, self.charset), _NEXT if place else _FIRST)])
+            sign = f" {glyphs.forth} " if place == 0 else "   "
+            for line in lines_of_text(text, width - 6, self.charset):
+                lines.append((f"{sign}{line}", _NEXT if place else _FIRST))
                 sign = "     "
-        return rows[: size.height]
+        if len(lines) > size.height > 0:
+            last, ink = lines[size.height - 1]
+            lines[size.height - 1 :] = [(f"{last} {glyphs.ellipsis}", ink)]
+        return [[TextRun(fit(line, width, self.charset), ink)] for line, ink in lines]
 
 
 def narration(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:

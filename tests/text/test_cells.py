@@ -14,7 +14,8 @@ def test_escape_sequences_become_pictures() -> None:
 
 
 def test_ascii_shows_nothing_but_ascii() -> None:
-    assert visible("\x1b[2J rückruf 回", Charset.ASCII) == "?[2J r?ckruf ?"
+    assert visible("\x1b[2J rückruf 回", Charset.ASCII) == "?[2J ruckruf ??"
+    assert visible("pick → /gripper", Charset.ASCII) == "pick > /gripper"
 
 
 @given(st.text(), st.sampled_from(Charset))

@@ -2,8 +2,11 @@
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from textual.geometry import Size
 
-from cbtui.widgets.narrator import narration
+from cbtui.looks.theme import GLYPHS, Charset
+from cbtui.text.cells import visible
+from cbtui.widgets.narrator import ROWS, Narrator, narration
 from sim.trace.events import Reason
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
@@ -35,6 +38,19 @@ def test_who_waits_for_a_group_is_told_with_its_holder() -> None:
         "odom_callback has waited since 4.0" in line and "group A held by timer" in line for line in told_at
     )
     assert "loses its oldest message" in "".join(narration(RUNS[0], ns(8.0)))
+
+
+@given(st.sampled_from(Charset), st.integers(0, ns(14.0)), st.integers(40, 120))
+@settings(deadline=None, max_examples=60)
+def test_what_has_no_room_is_told_of_by_an_ellipsis(charset: Charset, at: int, width: int) -> None:
+    narrator = Narrator()
+    narrator.timeline, narrator.now, narrator.charset = RUNS[0], at, charset
+    whole, shown = (
+        [row[0].text.rstrip() for row in narrator.rows(Size(width, height))] for height in (99, ROWS)
+    )
+    words = visible(" ".join(narration(RUNS[0], at)), charset).split()
+    assert " ".join(whole).split()[1:] == words, "nothing is cut but by the height"
+    assert shown == whole or shown[-1].endswith(GLYPHS[charset].ellipsis)
 
 
 def test_nothing_has_happened_in_an_empty_run() -> None:

@@ -42,6 +42,8 @@ class _HelpRow(NamedTuple):
     meaning: str
     is_refused: bool = False
     """Whether real ROS 2 rules it out."""
+    labels: str = ""
+    """The words of the footer, which a search finds too."""
 
 
 class _Section(NamedTuple):
@@ -111,7 +113,7 @@ class HelpScreen(WindowScreen[None]):
 
 
 def _has(row: _HelpRow, heading: str, words: Sequence[str]) -> bool:
-    text = f"{row.sign} {row.meaning} {heading}".casefold()
+    text = f"{row.sign} {row.meaning} {row.labels} {heading}".casefold()
     return all(word in text for word in words)
 
 
@@ -158,6 +160,7 @@ def _lane_signs(charset: Charset) -> _Section:
             _HelpRow(glyphs.double_line * 4, "several callbacks of a group run at once"),
             _HelpRow(glyphs.lost, "a message is lost: its queue was full"),
             _HelpRow(glyphs.cross, "a callback raised an exception"),
+            _HelpRow("excl reen", "a group's kind where names are short: exclusive, reentrant"),
             _HelpRow("late", "a timer was called later than its period says"),
             _HelpRow(glyphs.up, "what you did: a call of a service, a reset, a ros2 command"),
             _HelpRow(glyphs.cursor, "the moment on screen, which every pane shows"),
@@ -190,5 +193,14 @@ def _keys(
 ) -> _Section:
     groups = group_by(keymap.of(actions), "line")
     return _Section(
-        heading, [_HelpRow(signs_of(group, charset), group[0].line, is_refused(group[0])) for group in groups]
+        heading,
+        [
+            _HelpRow(
+                signs_of(group, charset),
+                group[0].line,
+                is_refused(group[0]),
+                " ".join(action.label for action in group),
+            )
+            for group in groups
+        ],
     )

@@ -30,7 +30,7 @@ class ThreadsScreen(ChoiceScreen[int]):
 
     def content(self) -> ComposeResult:
         """Lay out the question."""
-        yield Static("How many threads should the executor have?\nThe run starts again.")
+        yield Static("How many threads should the executor have? The run starts again.")
         own = f"  the program's own: {self._about.executor}"
         texts = [own, *(f"  {counted(number, 'thread')}" for number in range(1, MOST + 1))]
         yield PageableOptionList(*(self.option(number, text) for number, text in enumerate(texts)))

@@ -5,7 +5,6 @@ from functools import partial
 from typing import ClassVar
 
 from rich.segment import Segment
-from rich.style import Style
 from textual.binding import BindingType
 from textual.events import Click
 from textual.geometry import Offset, Size
@@ -143,6 +142,8 @@ class ChecksView(InkedView):
             return Strip.blank(width, self.in_class(""))
         line = self._lines[number]
         picked = line.row is not None and line.row == self.picked
-        ground = Style(bgcolor=self.in_class(_PICKED).bgcolor) if picked else Style()
-        pieces = [Segment(text, self.in_class(kind.value) + ground) for text, kind in line.pieces]
-        return Strip(pieces).adjust_cell_length(width, self.in_class("") + ground)
+        ground = _PICKED if picked else ""
+        pieces = [
+            Segment(text, self.on_ground(self.in_class(kind.value), ground)) for text, kind in line.pieces
+        ]
+        return Strip(pieces).adjust_cell_length(width, self.on_ground(self.in_class(""), ground))

@@ -275,7 +275,10 @@ class LogLines(FollowingView):
         text = Strip([Segment(line_of(event), self._text_style(event))])
         parts = self._parts(text, event, width, whole=place == self.picked)
         ground = self._ground(place, row)
-        return Strip([Segment(part, style and style + ground) for part, style, _ in parts], width)
+        bold = Style(bold=place == self.picked or None)
+        return Strip(
+            [Segment(part, style and self.on_ground(style, ground) + bold) for part, style, _ in parts], width
+        )
 
     def _parts(self, text: Strip, event: LogEvent, width: int, whole: bool) -> list[Segment]:
         """Return text, thread and group; a ``whole`` text that is long has the room of those as well."""
@@ -289,13 +292,11 @@ class LogLines(FollowingView):
             shown = Strip([*shown.crop(0, room - 1), Segment(cut, self.in_ink(Ink(Role.FAINT)))])
         return [*shown, *(self._columns(event) if beside else [])]
 
-    def _ground(self, place: int, row: int) -> Style:
-        """Return the component class of the picked line, and of the last line before the cursor."""
+    def _ground(self, place: int, row: int) -> str:
+        """Return the component class of the picked line, of the last before the cursor, or ""."""
         if place == self.picked:
-            return Style(bgcolor=self.in_class(_CURSOR).bgcolor, bold=True)
-        if row == self._count - 1 and self._now < self._search.timeline.end:
-            return Style(bgcolor=self.in_class(_MOMENT).bgcolor)
-        return Style()
+            return _CURSOR
+        return _MOMENT if row == self._count - 1 and self._now < self._search.timeline.end else ""
 
     def _columns(self, event: LogEvent) -> list[Segment]:
         if isinstance(event, Printed):

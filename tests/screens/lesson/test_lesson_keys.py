@@ -253,8 +253,18 @@ async def test_the_help_begins_with_the_signs_and_finds_words() -> None:
         await press(pilot, "slash", *"record")
         assert "Start or stop recording the run" in text_of(app)
         assert "another one holds its group" not in text_of(app)
+        await press(pilot, *["backspace"] * 6, *"zoom")
+        assert "Show a longer stretch of time" in text_of(app), "by the word that the footer has for it"
         await press(pilot, "escape")
         assert isinstance(app.screen, LessonScreen)
+
+
+@pytest.mark.parametrize("key", ["t", "p", "x", "G", "k"])
+async def test_a_window_leaves_the_lanes_in_sight(key: str) -> None:
+    async with console() as (app, pilot):
+        lanes = app.lesson_screen.query_one(Lanes).region
+        await press(pilot, key)
+        assert app.screen.query_one(".window").region.y >= lanes.bottom
 
 
 async def test_a_key_that_does_nothing_here_says_why() -> None:

@@ -9,6 +9,7 @@ from cbtui.looks.contrast import contrast
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.daily import first_daily
 from tests.support.fake_session import FakeEngines
+from tests.support.pictures import text_of
 from tests.support.runs import shared_group_run
 
 LEAST = {theme.name: palette_of(theme).words for theme in THEMES}
@@ -47,6 +48,25 @@ async def test_a_lesson_and_its_windows_are_readable(theme: str) -> None:
             await pilot.press(*keys)
             await settle(pilot)
             assert hard_to_read(app, LEAST[theme]) == {}, keys
+
+
+@THEME
+async def test_lines_that_are_set_off_are_readable(theme: str) -> None:
+    app = RecordedConsole("shared-group", shared_group_run().events, 12.4, theme=theme)
+    async with app.run_test(size=WIDE) as pilot:
+        for keys in (("2",), ("down", "down"), ("5", "up", "up")):
+            await pilot.press(*keys)
+            await settle(pilot)
+            assert hard_to_read(app, LEAST[theme]) == {}, keys
+
+
+@THEME
+async def test_a_question_is_readable_to_its_last_word(theme: str) -> None:
+    app = CbtuiApp(theme=theme, start_lesson="shared-group", open_session=FakeEngines([], 0))
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        assert "your answer is final" in text_of(app)
+        assert hard_to_read(app, LEAST[theme]) == {}
 
 
 @pytest.mark.slow
