@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from sim.export.svg_elements import GROUP_COLOURS, OTHER_COLOUR
+from sim.export.group_colours import GROUP_COLOURS, OTHER_COLOUR
 
 
 @dataclass(frozen=True, eq=False)

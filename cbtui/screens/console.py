@@ -1,16 +1,19 @@
 """The interface of the app that screens use."""
 
-from typing import Any, Protocol, cast
+from __future__ import annotations
 
-from textual.screen import Screen
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
-from cbtui.learning.outcome import Observe
-from cbtui.runs.setup.changes import Changes
-from cbtui.runs.setup.recent import RecentEntry
-from lessons.lesson import Lesson
-from lessons.progress import Progress
-from lessons.puzzles import Puzzle
-from sim.engine.setup import RealRos
+if TYPE_CHECKING:
+    from textual.screen import Screen
+
+    from cbtui.learning.outcome import Observe
+    from cbtui.runs.setup.changes import Changes
+    from cbtui.runs.setup.recent import RecentEntry
+    from lessons.lesson import Lesson
+    from lessons.progress import Progress
+    from lessons.puzzles import Puzzle
+    from sim.engine.setup import RealRos
 
 
 class LessonOpener(Protocol):

@@ -5,12 +5,10 @@ Colour is never the only sign: groups also have a texture and their letter, reas
 
 from dataclasses import dataclass
 
+from sim.export.group_colours import group_colour
 from sim.export.texts import xml
 from sim.trace.events import Reason
 
-GROUP_COLOURS = ("#040457", "#570404", "#278686", "#C63DF4", "#F2460C")
-OTHER_COLOUR = "#5A5A5A"
-"""Of paper, and of the console on a light background."""
 TEXT = "#1C1C1C"
 FAINT = "#6B7075"
 RULE = "#D5D8DA"
@@ -49,11 +47,6 @@ class Box:
     height: float
 
 
-def colour(number: int) -> str:
-    """The colour of a group, by its place in the order of letters."""
-    return GROUP_COLOURS[number] if 0 <= number < len(GROUP_COLOURS) else OTHER_COLOUR
-
-
 def definitions(groups: int) -> str:
     """The patterns of all groups and reasons."""
     patterns = [_group_pattern(number) for number in range(groups)]
@@ -68,7 +61,7 @@ def definitions(groups: int) -> str:
 
 def bar(box: Box, number: int, about: str) -> str:
     """A call of a group's callback."""
-    ink = colour(number)
+    ink = group_colour(number)
     return (
         f'<rect {_place(box)} fill="url(#group-{number})" stroke="{ink}" stroke-width="0.8">'
         f"<title>{xml(about)}</title></rect>"
@@ -124,7 +117,7 @@ def shortened(text: str, room: float) -> str:
 
 
 def _group_pattern(number: int) -> str:
-    ink = colour(number)
+    ink = group_colour(number)
     texture = _TEXTURES[number % len(_TEXTURES)].format(ink=ink)
     return (
         f'<pattern id="group-{number}" width="6" height="6" patternUnits="userSpaceOnUse">'

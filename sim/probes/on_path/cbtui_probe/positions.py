@@ -116,8 +116,9 @@ def _position(stack: list[FrameType]) -> tuple[Any, ...] | None:
 def _until(function: FrameType) -> int:
     values = function.f_locals
     seconds = next((values[name] for name in _TIMEOUTS if name in values), None)
-    is_limit = isinstance(seconds, (int, float)) and 0 < seconds <= _LONGEST
-    return now() + int(seconds * 1e9) if is_limit else 0
+    if isinstance(seconds, (int, float)) and 0 < seconds <= _LONGEST:
+        return now() + int(seconds * 1e9)
+    return 0
 
 
 def _module(frame: FrameType) -> str:
