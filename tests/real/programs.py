@@ -242,14 +242,19 @@ def run(
     *calls: float,
     ground: str = "ros2",
     seconds: float = 3.3,
+    threads: int | None = None,
 ) -> Run:
-    """Run a program on a ground for some of its seconds; its service is called at the times given."""
+    """Run a program on a ground for some of its seconds; its service is called at the times given.
+
+    ``threads`` replaces the number of threads of its executor.
+    """
     path = folder / "tried.py"
     path.write_text(HEAD + body + TAIL.format(executor=executor))
     return run_to_end(
         msgspec.structs.replace(
             program_setup(path, seconds, clock="real" if ground == "ros2" else "virtual"),
             real=RealRos() if ground == "ros2" else None,
+            threads=threads,
             calls=tuple(TimedCall(round(at * SECOND), data=True) for at in calls),
         )
     )

@@ -226,3 +226,27 @@ def test_what_sleeps_by_a_rate_whose_timer_needs_its_thread_is_told_as_on_the_mo
     on_model, on_ros = ([each.rule.explain(each, of).what for each in diagnose(of)] for of in timelines)
     assert "needs the only thread" in on_model[0]
     assert on_ros == on_model
+
+
+RATE = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.create_timer(0.3, self.walk)
+
+    def walk(self):
+        rate = self.create_rate(5.0)
+        rate.sleep()
+        self.destroy_rate(rate)
+"""
+
+
+@pytest.mark.parametrize("ground", ["model", "ros2"])
+def test_a_single_threaded_executor_is_given_more_threads(tmp_path: Path, ground: str) -> None:
+    timeline = programs.run(tmp_path, RATE, ground=ground, seconds=1.5, threads=2).timeline
+    assert [(each.kind, each.threads) for each in timeline.executors.values()] == [
+        ("MultiThreadedExecutor", 2)
+    ]
+    assert "tick" in {each.callback for each in timeline.entities.values()}
+    walk = entity_named("walk", timeline)
+    assert timeline.calls_of(walk, whole(timeline)) >= 2

@@ -184,8 +184,11 @@ class Entities:
         callback: Callable[..., Any] | None,
         name: str = "",
         place: tuple[str, int] = ("", 0),
+        known_as: str = "",
     ) -> None:
+        """Record an entity; ``known_as`` is the callback's name if that of its function says little."""
         recorder = self._recorder
+        callback_name, *written = written_at(callback)
         group = self._group_id(made.callback_group, self.node_made(node))
         number = entity.number = recorder.new_id()
         depth = getattr(getattr(made, "qos_profile", None), "depth", 0)
@@ -199,7 +202,8 @@ class Entities:
             group,
             entity.kind,
             name or _name_of(entity.kind, made),
-            *written_at(callback),
+            known_as or callback_name,
+            *written,
             0 if entity.kind == "timer" else depth,
             entity.period,
             _type_of(made),
@@ -267,7 +271,7 @@ class Entities:
                 rate = make(node, *args, **kwargs)
             timer, entity = rate._timer, WatchedEntity("timer")
             timer.callback = self._traced(entity, timer.callback)
-            self._know(node, timer, entity, rate.sleep, place=_place(sys._getframe(1)))
+            self._know(node, timer, entity, rate.sleep, place=_place(sys._getframe(1)), known_as="tick")
             return rate
 
         node_class.create_rate = create_rate

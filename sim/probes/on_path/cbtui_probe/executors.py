@@ -115,6 +115,7 @@ class Executors:
         base.__init__ = init
         base.add_node = add_node
         pool_class.__init__ = init_pool
+        self._give_threads(executors.SingleThreadedExecutor, pool_class)
         base.wait_for_ready_callbacks = wait_for_ready_callbacks
         self._watch_spinning(base, "spin", _itself)
         self._watch_spinning(base, "spin_until_future_complete", _itself)
@@ -131,6 +132,15 @@ class Executors:
                 "spin_once_until_future_complete",
             ):
                 self._watch_spinning(rclpy_implementation.EventsExecutor, name, _itself)
+
+    def _give_threads(self, single: Any, pool_class: Any) -> None:
+        """Make a MultiThreadedExecutor of each SingleThreadedExecutor if the run is to have more threads."""
+
+        def new(made: Any, *args: Any, **kwargs: Any) -> Any:
+            return pool_class(*args, **kwargs) if made is single else object.__new__(made)
+
+        if (self._tuning.threads or 1) > 1:
+            single.__new__ = staticmethod(new)
 
     def _watch_spinning(self, owner: Any, name: str, executor_of: Callable[..., Any]) -> None:
         """Note that an executor is spun while a spinning function runs; a C++ executor shows no more."""

@@ -45,10 +45,10 @@ class Tuning:
             arguments["timer_period_sec"] = period / 1e9
 
     def tell_of_single_thread(self) -> None:
-        """Report that the program's SingleThreadedExecutor cannot have another number of threads."""
+        """Report that an executor of the program's own class cannot have another number of threads."""
         if self.threads not in (None, 1):
             text = (
-                f"the program's SingleThreadedExecutor cannot have {self.threads} threads on real ROS 2: "
+                f"the program's own executor cannot have {self.threads} threads on real ROS 2: "
                 "make it a MultiThreadedExecutor in the code"
             )
             self._recorder.put("notice", now(), "WARN", text)
