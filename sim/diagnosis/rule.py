@@ -136,12 +136,12 @@ class Rule(ABC):
 
 
 _MODEL_FOLDER = str(Path(sim.__file__).parent)
-_RCLPYS_TIMER = "/rclpy/timer.py"
+_RCLPYS = ("/rclpy/timer.py", "/rclpy/time_source.py")
 
 
 def is_models(entity: EntityInfo) -> bool:
     """Return whether an entity belongs to the model or to rclpy, such as the timer of a rate."""
-    return entity.file.startswith(_MODEL_FOLDER) or entity.file.endswith(_RCLPYS_TIMER)
+    return entity.file.startswith(_MODEL_FOLDER) or entity.file.endswith(_RCLPYS)
 
 
 def place_of(entity: EntityId, timeline: Timeline) -> CodeLocation | None:

@@ -22,7 +22,7 @@ _FUNCTIONS = {
 
 def position_of(seen: At, t: int) -> CallbackAt | ProgramAt:
     """The event of the trace; who holds a lock is not known."""
-    doing, call = _called(seen.module, seen.function) if seen.module else _built_in(seen)
+    doing, call = _called(seen) if seen.module else _built_in(seen)
     loops = (loop_around(file, line) for file, _, line in reversed(seen.frames))
     position = doing, call, seen.frames, next(filter(None, loops), ("", 0))
     until = t + seen.until - seen.t if seen.until and doing is not Doing.SLEEPS else 0
@@ -31,11 +31,14 @@ def position_of(seen: At, t: int) -> CallbackAt | ProgramAt:
     return ProgramAt(t, *position, until)
 
 
-def _called(module: str, function: str) -> tuple[Doing, str]:
+def _called(seen: At) -> tuple[Doing, str]:
     """What a callback does in a function of Python's library or rclpy, by its qualified name."""
+    module, function = seen.module, seen.function
     if module.partition(".")[0] == "rclpy":
         is_pause = function.rpartition(".")[2].startswith("sleep") and not function.startswith("Rate.")
-        return (Doing.SLEEPS if is_pause else Doing.CALLS_ROS), function
+        if is_pause:  # simulated time comes as messages, which somebody has to take in
+            return (Doing.WAITS if seen.is_simulated else Doing.SLEEPS), function
+        return Doing.CALLS_ROS, function
     return (Doing.WAITS, function) if module.startswith(_WAITING) else _COMPUTES
 
 

@@ -101,6 +101,8 @@ class At(msgspec.Struct, frozen=True, array_like=True, tag="at"):
     """That function's qualified name."""
     until: int = 0
     """When the timeout that this function was given is over; 0 for none."""
+    is_simulated: bool = False
+    """Whether it is a function of a clock that goes by simulated time."""
 
 
 class Replied(msgspec.Struct, frozen=True, array_like=True, tag="replied"):

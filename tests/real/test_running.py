@@ -250,3 +250,46 @@ def test_a_single_threaded_executor_is_given_more_threads(tmp_path: Path, ground
     assert "tick" in {each.callback for each in timeline.entities.values()}
     walk = entity_named("walk", timeline)
     assert timeline.calls_of(walk, whole(timeline)) >= 2
+
+
+SIM_TIME = """
+from threading import Thread
+
+from rclpy.duration import Duration
+from rclpy.parameter import Parameter
+from rosgraph_msgs.msg import Clock
+
+
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried", parameter_overrides=[Parameter("use_sim_time", value=True)])
+        self.create_service(SetBool, "bake", self.bake)
+        world = rclpy.create_node("world")
+        publisher = world.create_publisher(Clock, "/clock", 10)
+        start = time.time()
+
+        def tick():
+            message = Clock()
+            message.clock.sec, message.clock.nanosec = divmod(int((time.time() - start) * 1e9), 10**9)
+            publisher.publish(message)
+
+        world.create_timer(0.05, tick)
+        executor = SingleThreadedExecutor()
+        executor.add_node(world)
+        Thread(target=executor.spin, daemon=True).start()
+
+    def bake(self, request, response):
+        self.get_clock().sleep_for(Duration(seconds=1))
+        return response
+"""
+
+
+@pytest.mark.parametrize("ground", ["model", "ros2"])
+def test_a_sleep_by_simulated_time_that_stops_its_clock_is_a_deadlock(tmp_path: Path, ground: str) -> None:
+    call = 0.5
+    timeline = programs.run(
+        tmp_path, SIM_TIME, "SingleThreadedExecutor()", call, ground=ground, seconds=2.0
+    ).timeline
+    (found,) = (each for each in diagnose(timeline) if each.rule.id == "self-made-deadlock")
+    assert found.rule.kind(found) == "deadlock-over-the-clock"
+    assert "clock_callback" in {each.callback for each in timeline.entities.values()}

@@ -92,7 +92,8 @@ def _stack(top: FrameType | None, until: str) -> list[FrameType]:
 def _position(stack: list[FrameType]) -> tuple[Any, ...] | None:
     """The program's own lines, the innermost last; the instruction there, and the function that it called.
 
-    That is followed by when the function's timeout is over, 0 for none.
+    That is followed by when the function's timeout is over, 0 for none, and whether it sleeps by simulated
+    time.
     """
     own = [
         place
@@ -106,11 +107,12 @@ def _position(stack: list[FrameType]) -> tuple[Any, ...] | None:
         for frame in (stack[place] for place in reversed(own[:_DEEPEST]))
     ]
     if own[0] == 0:
-        return lines, _place(stack[0].f_code, stack[0].f_lasti), "", "", 0
+        return lines, _place(stack[0].f_code, stack[0].f_lasti), "", "", 0, False
     inside = reversed(stack[: own[0]])
     called = next((frame for frame in inside if not _module(frame).startswith("cbtui_probe")), stack[0])
     name = getattr(called.f_code, "co_qualname", called.f_code.co_name)
-    return lines, _UNKNOWN, _module(called), name, _until(called)
+    is_simulated = getattr(called.f_locals.get("self"), "ros_time_is_active", False) is True
+    return lines, _UNKNOWN, _module(called), name, _until(called), is_simulated
 
 
 def _until(function: FrameType) -> int:
