@@ -1,5 +1,7 @@
 """Contrast ratios by WCAG 2, and colours that reach a given contrast."""
 
+from functools import lru_cache
+
 from rich.color import blend_rgb
 from rich.color_triplet import ColorTriplet
 
@@ -19,6 +21,7 @@ def readable_on(ground: ColorTriplet) -> ColorTriplet:
     return max(BLACK, WHITE, key=lambda colour: contrast(colour, ground))
 
 
+@lru_cache(maxsize=1024)
 def legible(colour: ColorTriplet, ground: ColorTriplet, least: float) -> ColorTriplet:
     """Return the colour, blended with black or white until it reaches the ``least`` contrast."""
     towards = readable_on(ground)

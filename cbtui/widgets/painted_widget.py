@@ -139,8 +139,9 @@ class PaintedWidget(Widget):
         self._stale = False
         if is_being_removed(self):
             return
-        before, self._rows = self._rows, self.rows(self.size)
-        same_size, self._rows_size = self._rows_size == self.size, self.size
+        size = self.size
+        before, self._rows = self._rows, self.rows(size)
+        same_size, self._rows_size = self._rows_size == size, size
         if not same_size or len(before) != len(self._rows):
             self.refresh()
             return

@@ -139,21 +139,21 @@ class LaneColumns(Generic[I]):
         Columns beyond the budget are None, and listed in ``unseen``.
         """
         past = self._past_of(scale, edge)
-        self._forget_what_changed(past)
+        running = self._forget_what_changed(past)
         kept = past.kept
         first = max(scale.first, 0)
         after = min(scale.first + scale.columns, edge // scale.per_column + 1)
         missing = [number for number in range(first, after) if number not in kept]
         fresh, left = self._newest_of(missing, edge, ration or IntervalBudget())
         self.unseen = tuple(number - scale.first for number in missing[:left])
-        past.settled = max(0, (edge - _SETTLED_AFTER) // scale.per_column)
+        before, past.settled = past.settled, max(0, (edge - _SETTLED_AFTER) // scale.per_column)
         for number, column in fresh.items():
             if number < past.settled:
                 kept[number] = column
                 if column is not None and column.top.end is None:
                     key = _key(column.top)
                     past.lasting[key] = min(number, past.lasting.get(key, number))
-        past.told = set(self._running_at(past.settled))
+        past.told = set(running if past.settled == before else self._running_at(past.settled))
         columns = list(map(kept.get, range(scale.first, scale.first + scale.columns)))
         for number, column in fresh.items():
             columns[number - scale.first] = column
@@ -171,13 +171,12 @@ class LaneColumns(Generic[I]):
             del self._pasts[next(iter(self._pasts))]
         return past
 
-    def _forget_what_changed(self, past: _SettledColumns[I]) -> None:
+    def _forget_what_changed(self, past: _SettledColumns[I]) -> "dict[_Key, I]":
         """Drop cached columns in which an interval ended, or one began that was unknown then.
 
-        A wait is often reported late: once it is clear that the callback has to wait.
+        A wait is often reported late: once it is clear that the callback has to wait. Returns what runs where
+        the settled past ends.
         """
-        if not past.kept:
-            return
         running = self._running_at(past.settled)
         ended = [key for key in past.lasting if key not in running or running[key].end is not None]
         changed = [key[0] // self._per_column for key in running.keys() - past.told]
@@ -186,6 +185,7 @@ class LaneColumns(Generic[I]):
             since = min(changed)
             past.kept = {number: column for number, column in past.kept.items() if number < since}
             past.lasting = {key: number for key, number in past.lasting.items() if number < since}
+        return running
 
     def _newest_of(
         self, missing: Sequence[int], edge: Nanoseconds, ration: IntervalBudget
