@@ -18,8 +18,8 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 
 from .recorder import Recorder, now
 
-_TO_APPEAR = 2.0
-"""Seconds for which a call waits until its service is there."""
+_TO_APPEAR = 5.0
+"""Seconds for which a call waits until its service is there: Fast DDS repeats a lost announcement after 3."""
 
 
 class _Caller:
