@@ -12,8 +12,8 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.terminal.processor import cpu_wait, time_off_cpu
 from cbtui.terminal.textual_internals import update_now
 
-FRAMES_A_SECOND = 15
-"""About one frame for each step of a bar: a dot, half a column, is 60 ms in a window of ten seconds."""
+FRAMES_A_SECOND = 12
+"""Some frames move a bar by two steps: a dot, half a column, is 60 ms in a window of ten seconds."""
 
 _SOONEST = 0.01
 """Least seconds between two frames with all panes that keys cause."""

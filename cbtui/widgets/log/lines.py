@@ -274,7 +274,8 @@ class LogLines(FollowingView):
         event = self._search.timeline.logs[place]
         text = Strip([Segment(line_of(event), self._text_style(event))])
         parts = self._parts(text, event, width, whole=place == self.picked)
-        ground = self._ground(place, row)
+        if not (ground := self._ground(place, row)):
+            return Strip(parts, width)
         bold = Style(bold=place == self.picked or None)
         return Strip(
             [Segment(part, style and self.on_ground(style, ground) + bold) for part, style, _ in parts], width
