@@ -81,7 +81,8 @@ class OfferedKeys:
         on_lanes = (*_ON_LANES, "enlarge") if lanes.has_focus and not framed else ()
         bar.first = _ON_SHELL if isinstance(self.screen.focused, ShellOutput) else on_lanes
         bar.offered = tuple(bar.working())
-        lanes.hint = hint([action for action in bar.offered if action.label in _ON_LANES], self.charset)
+        of_screen = (action for action in bar.offered if action.scope is Scope.LESSON)
+        lanes.hint = hint([action for action in of_screen if action.label in _ON_LANES], self.charset)
 
     def follow_focus(self) -> None:
         """Show the keys of the widget with the focus."""

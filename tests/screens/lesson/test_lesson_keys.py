@@ -259,6 +259,15 @@ async def test_the_help_begins_with_the_signs_and_finds_words() -> None:
         assert isinstance(app.screen, LessonScreen)
 
 
+async def test_the_frame_of_the_lanes_names_no_key_of_another_pane() -> None:
+    async with console(WIDE) as (app, pilot):
+        lanes = app.lesson_screen.query_one(Lanes)
+        assert "copy" in lanes.hint
+        await press(pilot, "5")
+        assert "zoom" in lanes.hint
+        assert "copy" not in lanes.hint, "y copies lines of the log now"
+
+
 @pytest.mark.parametrize("key", ["t", "p", "x", "G", "k"])
 async def test_a_window_leaves_the_lanes_in_sight(key: str) -> None:
     async with console() as (app, pilot):
