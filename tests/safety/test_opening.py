@@ -3,7 +3,6 @@
 import pickle
 import stat
 from collections.abc import Callable
-from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
@@ -24,6 +23,7 @@ from sim.packages import PackageError, find_packages
 from sim.recording import Recording, RecordingError, RecordingMetadata, RecordingWriter, read
 from sim.ros.context.arguments import ArgumentsError, parse_arguments
 from sim.ros.parameters.yaml_files import ParameterYamlError, read_nodes
+from tests.lessons.test_other_places import announce
 from tests.safety import hostile
 from tests.shell.test_completion import completed
 from tests.support.console import WIDE, settle
@@ -150,10 +150,7 @@ def test_packages_that_announce_lessons_are_looked_into_and_not_imported(
     for folder in (tmp_path / "trap_pkg", tmp_path / "trap_pkg/inner", tmp_path / "trap_pkg/inner/deep"):
         folder.mkdir(parents=True, exist_ok=True)
         (folder / "__init__.py").write_text(marks.trap)
-    monkeypatch.syspath_prepend(tmp_path)
-    point = EntryPoint("theirs", value, catalogue.ENTRY_POINTS)
-    monkeypatch.setattr("importlib.metadata.entry_points", lambda group: [point])
-    monkeypatch.setattr(catalogue, "_lessons", catalogue._lessons.__wrapped__)
+    announce(monkeypatch, tmp_path, value)
     assert lessons()[-1].folder == place / "bad-lesson"
     assert marks.none_left()
 
