@@ -90,7 +90,7 @@ class Agenda:
             entity.become_idle()
             self._probe.entity_gone(entity)
             self.wake_executor()
-            if self.executor is None or not self.executor._keeps(entity):
+            if self.executor is None or entity not in self.executor._registered:
                 entity.removed()
         return True
 

@@ -192,7 +192,7 @@ class EventsExecutor(Executor):
             self._register_entity(each)
         for each in [each for each in self._registered if each not in wanted]:
             del self._registered[each]
-            if each.destroyed:
+            if each.destroyed:  # its handle was in use: others knew it, and it got messages
                 each.become_idle()
                 each.removed()
             if each.kind is EntityKind.TIMER:
@@ -215,10 +215,6 @@ class EventsExecutor(Executor):
             self._timer_set(entity)
 
     # Notifications, with the host's lock held
-
-    def _keeps(self, entity: Entity) -> bool:
-        """Its handle is in use, so others know a destroyed entity, and it gets messages, until the update."""
-        return entity in self._registered
 
     def _entity_ready(self, entity: Entity) -> None:
         """Queue an event for an item that arrived. Timers are checked when due, and when time jumps."""

@@ -6,7 +6,7 @@ threads. Code that makes something ready wakes a waiting executor.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine, Generator, Iterable
+from collections.abc import Callable, Collection, Coroutine, Generator, Iterable
 from contextlib import contextmanager
 from typing import Any, TypeVar
 
@@ -37,6 +37,8 @@ class Executor:
 
     threads = 1
     """How many callbacks can run at the same time."""
+    _registered: Collection[Entity] = ()
+    """The entities that it keeps in use until its next update, though they are destroyed before."""
     already_spinning = "Executor is already spinning"
     """The message of the RuntimeError for a nested or second spin."""
 
@@ -286,10 +288,6 @@ class Executor:
     def _entity_ready(self, entity: Entity) -> None:
         if self._waiting and not entity.handed_out and entity.callback_group.can_execute(entity):
             self._work_arrived()
-
-    def _keeps(self, entity: Entity) -> bool:
-        """Whether the executor uses a destroyed entity until its next update, and has it leave then."""
-        return False
 
     def _entity_has_more(self, entity: Entity) -> None:
         """Another item arrived for an entity that is ready already."""
