@@ -24,8 +24,8 @@ _TEXTS_AFTER = 0.005
 _LANES_A_PANE = 3
 """Lane frames per frame of the other panes: their words and figures are read slower than lanes move."""
 
-_LANES_A_TEXT = 8
-"""Lane frames per frame of log and code, whose scrolling lines are read slower still."""
+_LANES_A_TEXT = 9
+"""Lane frames per frame of log and code, whose scrolling lines are read slower still: a multiple of those."""
 
 _REST_FACTOR = 2.0
 """Seconds of rest per second that a frame waited for a CPU."""
@@ -53,7 +53,6 @@ class FrameSchedule:
     def __init__(self, clock: Callable[[], float] = monotonic) -> None:
         self._clock = clock
         self._frames = 0
-        self._panes_in = self._texts_in = -_LANES_A_TEXT
         self._stale = True
         self._grown = False
         self._texts_behind = False
@@ -73,13 +72,11 @@ class FrameSchedule:
         if self._clock() < self._rests_until and not self._stale:
             return FrameContent.NOTHING
         self._frames += 1
-        changed = self._grown or self._texts_behind
-        if self._stale or (changed and self._frames - self._texts_in >= _LANES_A_TEXT):
+        if self._stale or ((self._grown or self._texts_behind) and self._frames % _LANES_A_TEXT == 0):
             return FrameContent.ALL
         if not self._grown:
             return FrameContent.NOTHING
-        panes_are_due = self._frames - self._panes_in >= _LANES_A_PANE
-        return FrameContent.ALL_BUT_TEXTS if panes_are_due else FrameContent.LANES
+        return FrameContent.ALL_BUT_TEXTS if self._frames % _LANES_A_PANE == 0 else FrameContent.LANES
 
     def due_in(self) -> float | None:
         """Return the seconds until everything is to be drawn, frame or no frame; None if that need not be."""
@@ -90,10 +87,7 @@ class FrameSchedule:
     def drawn(self, extent: FrameContent) -> None:
         """Note what is being drawn: everything, all but the texts, or these."""
         self._texts_behind = extent is FrameContent.ALL_BUT_TEXTS
-        if not self._texts_behind:
-            self._texts_in = self._frames
         if extent is not FrameContent.TEXTS:
-            self._panes_in = self._frames
             self._stale = self._grown = False
             self._drawn_at = self._clock()
 
