@@ -30,7 +30,6 @@ class Outcome(Enum):
     SAME = "the same"
     REACHED = "the same, in another order of threads"
     """The model reaches it (``searching``), though not with the order that it takes by itself."""
-    OPEN = "not decided: the real runs part from each other as early as from the model"
     ORDER = "other lines, or in another order"
     TIMES = "at other times"
     BUSY = "not known, for the machine was too busy"

@@ -4,7 +4,7 @@ from collections import deque
 from collections.abc import Iterable
 from functools import partial
 from heapq import heappop, heappush
-from itertools import combinations, groupby
+from itertools import groupby
 from random import Random
 
 from sim.clock.moves import Moves
@@ -12,25 +12,16 @@ from tests.conformance.comparing import DIFFERENT, Outcome, Result, on_model, ou
 from tests.conformance.running import Said
 
 _RUNS_AT_ONCE = 12
-_FEWEST_TO_DIFFER = 4
-"""Real runs that show together that no order comes twice."""
 
 
 def searched(results: Iterable[Result], distro: str, runs: int) -> list[Result]:
-    """The same results, but REACHED where at most so many runs of the model find what a real run said.
-
-    OPEN where no two real runs are alike, and one of the model goes with one of them as far as any two do.
-    """
-    return [_searched(each, distro, runs) for each in results]
-
-
-def _searched(result: Result, distro: str, runs: int) -> Result:
-    if result.outcome not in (*DIFFERENT, Outcome.BUSY):
-        return result
-    search = Search(result, distro)
-    if search.finds(runs):
-        return result._replace(outcome=Outcome.REACHED)
-    return result._replace(outcome=Outcome.OPEN) if search.is_open else result
+    """The same results, but REACHED where at most so many runs of the model find what a real run said."""
+    return [
+        each._replace(outcome=Outcome.REACHED)
+        if each.outcome in (*DIFFERENT, Outcome.BUSY) and Search(each, distro).finds(runs)
+        else each
+        for each in results
+    ]
 
 
 class Search:
@@ -47,7 +38,6 @@ class Search:
         self._untried: list[tuple[int, float, float, Moves]] = [(0, 0.0, 0.0, {})]
         self._random = Random(1)
         self._followed: set[tuple[object, ...]] = set()
-        self._furthest = 0
 
     def finds(self, runs: int) -> bool:
         """Whether one of so many runs of the model goes as a real one."""
@@ -59,18 +49,10 @@ class Search:
                     return True
         return False
 
-    @property
-    def is_open(self) -> bool:
-        """Whether no real order came twice, and the model went with one as far as any two went together."""
-        pairs = [self._alike(one, other)[0] for one, other in combinations(self._real, 2)]
-        shortest = min((len(each.words) for each in self._real), default=0)
-        return len(self._real) >= _FEWEST_TO_DIFFER and max(pairs) <= min(self._furthest, shortest - 1)
-
     def _is_it(self, moves: Moves, model: Said) -> bool:
         if outcome(self._case._replace(model=model), list(self._real)) is Outcome.SAME:
             return True
         alike, place = max(self._alike(model, real) for real in self._real)
-        self._furthest = max(self._furthest, alike)
         last = max(moves, default=-1)
         behind = (model.words, model.choices[last + 1 :])
         if behind in self._followed:

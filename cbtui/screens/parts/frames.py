@@ -25,7 +25,7 @@ _LANES_A_PANE = 3
 """Lane frames per frame of the other panes: their words and figures are read slower than lanes move."""
 
 _LANES_A_TEXT = 9
-"""Lane frames per frame of log and code, whose scrolling lines are read slower still: a multiple of those."""
+"""Lane frames per frame of log and code, which are read slower still; a multiple of the number above."""
 
 _REST_FACTOR = 2.0
 """Seconds of rest per second that a frame waited for a CPU."""
