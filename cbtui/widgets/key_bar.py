@@ -66,8 +66,7 @@ class KeyBar(PaintedWidget):
 
     def say(self, words: str) -> None:
         """Show words instead of the keys, at once, until the current message has been handled."""
-        self._rows = [[TextRun(fit(f" {words}", self.size.width, self._charset), _KEY)]]
-        self.refresh()
+        self.show_rows([[TextRun(fit(f" {words}", self.size.width, self._charset), _KEY)]])
         paint_now(self)
         self.changed()
 

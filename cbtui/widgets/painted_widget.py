@@ -11,11 +11,10 @@ from textual.color import Color
 from textual.geometry import Region, Size
 from textual.reactive import reactive
 from textual.strip import Strip
-from textual.widget import Widget
 
 from cbtui.looks.colour_themes import palette_of
 from cbtui.looks.theme import Ink, TextRun, style_of
-from cbtui.terminal.textual_internals import is_being_removed
+from cbtui.terminal.late_painting import LatePaintedWidget
 from cbtui.text.cells import BLANK
 
 ValueT = TypeVar("ValueT")
@@ -41,10 +40,10 @@ class _PaintedAttribute(reactive[ValueT]):
             widget.changed()
 
 
-class PaintedWidget(Widget):
-    """Draws the rows that ``rows`` paints. ``changed`` schedules a new painting.
+class PaintedWidget(LatePaintedWidget):
+    """Draws the rows that ``rows`` paints. ``changed`` has it paint anew.
 
-    However often ``changed`` is called while a message is handled, it paints once.
+    However often ``changed`` is called before the screen's next picture, it paints once.
     """
 
     ALLOW_SELECT = False
@@ -66,10 +65,29 @@ class PaintedWidget(Widget):
         raise NotImplementedError
 
     def changed(self) -> None:
-        """Paint again after the current message has been handled."""
-        if self.is_running and not self._stale:
-            self._stale = True
-            self.call_next(self._paint)
+        """Paint again for the screen's next picture."""
+        self._stale = True
+        super().changed()
+
+    def show_rows(self, rows: Sequence[Sequence[TextRun]]) -> None:
+        """Show rows that come from elsewhere, until it paints again."""
+        self._rows, self._rows_size, self._stale = rows, self.size, False
+        self.refresh()
+
+    def changed_regions(self) -> Sequence[Region]:
+        """Paint if that is due, and return the regions that differ from the last picture."""
+        if not self._stale:
+            return ()
+        before, size = self._rows, self._rows_size
+        self._paint()
+        if size != self._rows_size or len(before) != len(self._rows):
+            return (self.size.region,)
+        return [
+            Region(start, y, end - start, 1)
+            for y, (old, new) in enumerate(zip(before, self._rows, strict=True))
+            for start, end in [changed_part(old, new)]
+            if start < end
+        ]
 
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return lines of the widget, its frame included.
@@ -117,9 +135,9 @@ class PaintedWidget(Widget):
         return self._background
 
     def _paint_for(self, size: Size) -> None:
-        """Paint, unless that was done already for this size."""
-        if self._rows_size != size:
-            self._rows, self._rows_size = self.rows(size), size
+        """Paint, unless what was painted is up to date and of this size."""
+        if self._stale or self._rows_size != size:
+            self._paint()
 
     def _style(self, ink: Ink) -> Style:
         if ink not in self._styles:
@@ -136,23 +154,10 @@ class PaintedWidget(Widget):
         return self._sides
 
     def _paint(self) -> None:
+        """Paint, whether that is due or not."""
         self._stale = False
-        if is_being_removed(self):
-            return
-        size = self.size
-        before, self._rows = self._rows, self.rows(size)
-        same_size, self._rows_size = self._rows_size == size, size
-        if not same_size or len(before) != len(self._rows):
-            self.refresh()
-            return
-        regions = [
-            Region(start, y, end - start, 1)
-            for y, (old, new) in enumerate(zip(before, self._rows, strict=True))
-            for start, end in [changed_part(old, new)]
-            if start < end
-        ]
-        if regions:
-            self.refresh(*regions)
+        self._rows_size = self.size
+        self._rows = self.rows(self._rows_size)
 
 
 def changed_part(before: Sequence[TextRun], after: Sequence[TextRun]) -> tuple[int, int]:

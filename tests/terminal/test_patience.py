@@ -205,7 +205,8 @@ async def test_keys_of_a_screen_that_goes_away_are_painted_no_more(monkeypatch: 
         lesson.dismiss(None)
         await until(pilot, lambda: is_being_removed(bar))
         monkeypatch.setattr(bar, "rows", lambda _: pytest.fail("the lanes, which it asks, may have gone"))
-        bar._paint()  # as a change does that came before
+        bar.changed()
+        bar._exchange_repaint_regions()  # as a screen does whose picture comes after
         assert app.screen is not lesson
 
 

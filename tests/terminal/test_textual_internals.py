@@ -36,6 +36,10 @@ WORKAROUNDS: dict[str, tuple[str, list[Callable[..., Any]]]] = {
         "0c0c18526abe",
         [Compositor.render_partial_update, Compositor._regions_to_spans],
     ),
+    "late_painting: each change of a widget takes two messages": (
+        "aa402358738b",
+        [Widget.refresh, Widget._set_dirty, Widget._exchange_repaint_regions, Screen._on_update],
+    ),
     "driver: SIGCONT after SIGSTOP takes the terminal twice; a closed terminal raises": (
         "6aaacb37cead",
         [LinuxDriver._sigcont_application, LinuxDriver.suspend_application_mode, LinuxDriver.write],

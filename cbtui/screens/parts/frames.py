@@ -12,8 +12,8 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.terminal.processor import cpu_wait, time_off_cpu
 from cbtui.terminal.textual_internals import update_now
 
-FRAMES_A_SECOND = 15
-"""About one frame for each step of a bar: a dot, half a column, is 60 ms in a window of ten seconds."""
+FRAMES_A_SECOND = 12
+"""The least step of a bar, a dot, half a column, is 60 ms in a window of ten seconds."""
 
 _SOONEST = 0.01
 """Least seconds between two frames with all panes that keys cause."""
@@ -26,6 +26,12 @@ _LANES_A_PANE = 3
 
 _LANES_A_TEXT = 9
 """Lane frames per frame of log and code, which are read slower still; a multiple of the number above."""
+
+_PAUSE = 0.5
+"""Seconds without growth after which a run begins to move."""
+
+_BEGINNING = 1.0
+"""Seconds from then on in which each frame draws the other panes, too: nobody waits for what comes first."""
 
 _REST_FACTOR = 2.0
 """Seconds of rest per second that a frame waited for a CPU."""
@@ -55,6 +61,8 @@ class FrameSchedule:
         self._frames = 0
         self._stale = True
         self._grown = False
+        self._grew_at = -inf
+        self._began_at = -inf
         self._texts_behind = False
         self._drawn_at = inf  # the timer draws the first frame
         self._rests_until = -inf
@@ -65,7 +73,10 @@ class FrameSchedule:
 
     def grow(self) -> None:
         """Note that the run has grown."""
-        self._grown = True
+        now = self._clock()
+        if now > self._grew_at + _PAUSE:
+            self._began_at = now
+        self._grown, self._grew_at = True, now
 
     def next(self) -> FrameContent:
         """Count a frame, and return what it draws."""
@@ -76,7 +87,9 @@ class FrameSchedule:
             return FrameContent.ALL
         if not self._grown:
             return FrameContent.NOTHING
-        return FrameContent.ALL_BUT_TEXTS if self._frames % _LANES_A_PANE == 0 else FrameContent.LANES
+        if self._frames % _LANES_A_PANE == 0 or self._clock() < self._began_at + _BEGINNING:
+            return FrameContent.ALL_BUT_TEXTS
+        return FrameContent.LANES
 
     def due_in(self) -> float | None:
         """Return the seconds until everything is to be drawn, frame or no frame; None if that need not be."""
@@ -139,12 +152,12 @@ class FrameLoop:
         due_in = self._schedule.due_in()
         if due_in == 0:
             self.draw(FrameContent.ALL_BUT_TEXTS)
+            update_now(self._screen)
             self._screen.set_timer(_TEXTS_AFTER, self._draw_texts)
         elif due_in is not None:
             self._screen.set_timer(due_in, self._draw_at_once)
 
     def _draw_texts(self) -> None:
-        update_now(self._screen)
         self.draw(FrameContent.TEXTS)
 
     def _draw_if_due(self) -> None:
@@ -154,9 +167,7 @@ class FrameLoop:
             self.redraw()
         content = self._schedule.next()
         if content is not FrameContent.NOTHING:
+            before = time_off_cpu()
             self.draw(content)
-            self._screen.call_after_refresh(self._rest, time_off_cpu())
-
-    def _rest(self, before: float) -> None:
-        """Rest for as long as the frame waited for a CPU."""
-        self._schedule.rest(cpu_wait(before))
+            update_now(self._screen)
+            self._schedule.rest(cpu_wait(before))

@@ -36,7 +36,7 @@ class RunController(Generic[RunT_co]):
     """
 
     @dataclass
-    class Delivered(Message):
+    class Delivered(Message, bubble=False):
         """A batch of events of the run with this number."""
 
         run: int
@@ -44,7 +44,7 @@ class RunController(Generic[RunT_co]):
         taken: threading.Event = field(default_factory=threading.Event, init=False)
 
     @dataclass
-    class Over(Message):
+    class Over(Message, bubble=False):
         """The run with this number delivers no more; ``trouble`` is a sentence if that was unexpected."""
 
         run: int

@@ -88,13 +88,15 @@ class RobotView(PaintedWidget):
     # drawing
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
-        """Paint everything except the picture."""
+        """Paint everything except the picture, which is requested."""
         if self.actors and not self.shows_robot:
             self._painting = RobotPainting(())
             return paint_scene(self.actors, self.timeline, self.now, size.width, size.height, self.charset)
         note = "" if self._fits() else self._failure or _STARTING
         painter = RobotPainter(self.charset)
         self._painting = painter.paint(self.timeline, self.now, size.width, size.height, self.look, note)
+        if self.is_running and self.look is not RobotViewMode.MAP:
+            self._request()
         return self._painting.rows
 
     def segments(self, y: int) -> list[Segment]:
@@ -105,12 +107,6 @@ class RobotView(PaintedWidget):
             return painted
         around, picture = Strip(painted, self.size.width), self._strips[y - place.y]
         return [*around.crop(0, place.x), *picture, *around.crop(place.right)]
-
-    def changed(self) -> None:
-        """Paint again and request another picture, after the current message."""
-        super().changed()
-        if self.is_running and self.look is not RobotViewMode.MAP:
-            self.call_next(self._request)
 
     def notify_style_update(self) -> None:
         """Draw the picture for the new theme."""

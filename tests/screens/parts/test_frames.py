@@ -1,6 +1,6 @@
 """How often what is drawn, by counted frames and a clock that stands until it is moved."""
 
-from cbtui.screens.parts.frames import FrameContent, FrameSchedule
+from cbtui.screens.parts.frames import FRAMES_A_SECOND, FrameContent, FrameSchedule
 
 
 class Clock:
@@ -10,10 +10,14 @@ class Clock:
         return self.now
 
 
-def drawing(schedule: FrameSchedule, frames: int, *, grows: bool) -> list[FrameContent]:
-    """What so many frames draw, of a run that has grown before each."""
+def drawing(
+    schedule: FrameSchedule, frames: int, *, grows: bool, clock: Clock | None = None
+) -> list[FrameContent]:
+    """What so many frames draw, of a run that has grown before each; a clock goes on by a frame before."""
     extents = []
     for _ in range(frames):
+        if clock is not None:
+            clock.now += 1 / FRAMES_A_SECOND
         if grows:
             schedule.grow()
         extents.append(schedule.next())
@@ -27,15 +31,23 @@ def test_the_first_frame_draws_everything_and_then_nothing_is_drawn_while_nothin
 
 
 def test_a_run_that_grows_is_drawn_on_the_lanes_in_each_frame_and_elsewhere_less_often() -> None:
-    extents = drawing(FrameSchedule(), 19, grows=True)[1:]
+    clock = Clock()
+    schedule = FrameSchedule(clock)
+    drawing(schedule, 18, grows=True, clock=clock)
+    extents = drawing(schedule, 18, grows=True, clock=clock)
     assert FrameContent.NOTHING not in extents
-    assert [
-        extents.count(extent) for extent in (FrameContent.LANES, FrameContent.ALL_BUT_TEXTS, FrameContent.ALL)
-    ] == [
-        12,
-        4,
-        2,
-    ]
+    kinds = (FrameContent.LANES, FrameContent.ALL_BUT_TEXTS, FrameContent.ALL)
+    assert [extents.count(kind) for kind in kinds] == [12, 4, 2]
+
+
+def test_what_comes_first_or_after_a_pause_is_drawn_in_all_panes_for_a_second() -> None:
+    clock = Clock()
+    schedule = FrameSchedule(clock)
+    drawing(schedule, 1, grows=False)
+    for _ in range(2):
+        assert FrameContent.LANES not in drawing(schedule, FRAMES_A_SECOND, grows=True, clock=clock)
+        assert FrameContent.LANES in drawing(schedule, 9, grows=True, clock=clock)
+        drawing(schedule, 9, grows=False, clock=clock)
 
 
 def test_texts_that_were_left_out_are_drawn_although_nothing_more_comes() -> None:
