@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.control import Control
-from textual._compositor import Compositor, CompositorUpdate
-from textual.geometry import Region
+from textual._compositor import Compositor, CompositorUpdate, ReflowResult
+from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
@@ -85,6 +85,19 @@ class PatchCompositor(Compositor):
         self._layout = None
         self._visible.clear()
         self._fronts.clear()
+
+    def reflow(self, parent: Widget, size: Size) -> ReflowResult:
+        """Arrange the widgets.
+
+        Textual compares the layout with the one before. If anything has looked at the new one already, it
+        finds no difference: nothing is drawn anew, and no widget is told of its new size.
+        """
+        found = super().reflow(parent, size)
+        differ = {each for each, place in self._full_map.items() if each.outer_size != place.region.size}
+        overlooked = differ - found.shown - found.resized
+        if overlooked:
+            self._dirty_regions = {size.region}
+        return found._replace(resized=found.resized | overlooked)
 
     def render_partial_update(self) -> PatchUpdate | None:  # type: ignore[override]  # an update of another kind
         """Return the changed part of the screen; None if nothing changed."""

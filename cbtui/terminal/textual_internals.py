@@ -56,12 +56,15 @@ def paint_now(widget: Widget) -> None:
 
 
 def update_now(screen: Screen[None]) -> None:
-    """Send what has been painted to the terminal now; Textual waits for its next sixtieth of a second.
+    """Send what has changed to the terminal now; Textual waits for its next sixtieth of a second.
 
-    A new layout is left to Textual, as it takes long, and there may be several in a row.
+    A new layout is left to Textual, as it takes long, and there may be several in a row; and so are callbacks
+    that wait for it.
     """
-    if not screen._layout_required:
-        screen._on_timer_update()
+    waits = screen._layout_required or screen._scroll_required or screen.app._batch_count
+    if screen.is_current and not waits:
+        screen._compositor.update_widgets(screen._dirty_widgets)
+        screen._compositor_refresh()
 
 
 def resize_content(widget: Widget, size: Size) -> None:

@@ -93,9 +93,10 @@ _LIMIT = 60.0
 async def settle(pilot: Pilot[None]) -> None:
     """Let everything that was delivered or pressed reach the screen; to be ``run_before`` of a snapshot."""
     await pilot.pause(0.02)  # after a key, the texts follow the other panes
-    if isinstance(pilot.app.screen, RunScreen):
-        pilot.app.screen.update_findings()
-        pilot.app.screen.draw()
+    for screen in pilot.app.screen_stack:
+        if isinstance(screen, RunScreen):
+            screen.update_findings()
+            screen.draw()
     await pilot.pause()
     async with asyncio.timeout(_LIMIT):
         for lanes in pilot.app.screen.query(Lanes):

@@ -8,6 +8,8 @@ from textual.widget import Widget
 
 from cbtui.terminal.compositing import PatchCompositor, PatchUpdate
 from cbtui.widgets.guide import Guide
+from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.log import LogLines
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.daily import first_daily
@@ -116,3 +118,20 @@ async def test_no_pane_is_asked_to_draw_by_a_screen_that_it_hides(asked: list[ty
         asked.clear()
         await settle(pilot)
         assert Guide in asked  # the help lies over it and lets it through
+
+
+async def test_a_widget_hears_of_its_new_size_although_the_new_layout_was_looked_at_before() -> None:
+    app = RecordedConsole("shared-group", EVENTS, 2.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        log = app.screen.query_one(LogLines)
+        assert log.scroll_offset.y == log.max_scroll_y > 0
+        height = log.size.height
+        lanes = app.screen.query_one(Lanes)
+        lanes.styles.height = 16
+        lanes._check_refresh()
+        app.screen._compositor._full_map_invalidated = True
+        assert app.screen._compositor.full_map
+        await pilot.pause()
+        assert log.size.height < height
+        assert log.scroll_offset.y == log.max_scroll_y

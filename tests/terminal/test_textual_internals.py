@@ -36,6 +36,10 @@ WORKAROUNDS: dict[str, tuple[str, list[Callable[..., Any]]]] = {
         "0c0c18526abe",
         [Compositor.render_partial_update, Compositor._regions_to_spans],
     ),
+    "compositing: a layout that was looked at before it is made counts as made": (
+        "2efd5e570c8f",
+        [Compositor.reflow, vars(Compositor)["full_map"].fget, Compositor.update_widgets],
+    ),
     "late_painting: each change of a widget takes two messages": (
         "aa402358738b",
         [Widget.refresh, Widget._set_dirty, Widget._exchange_repaint_regions, Screen._on_update],

@@ -24,7 +24,7 @@ _TEXTS_AFTER = 0.005
 _LANES_A_PANE = 3
 """Lane frames per frame of the other panes: their words and figures are read slower than lanes move."""
 
-_LANES_A_TEXT = 9
+_LANES_A_TEXT = 6
 """Lane frames per frame of log and code, which are read slower still; a multiple of the number above."""
 
 _PAUSE = 0.5

@@ -22,7 +22,7 @@ _SETTLED_AFTER: Nanoseconds = 100_000_000
 _LENGTHS_KEPT = 4
 """Number of column lengths for which the settled past is cached."""
 
-_NEWEST = 2
+_NEWEST = 4
 """The newest columns, in which the run goes on, are aggregated even without budget left."""
 _SUMMED_AT_ONCE = 12
 """Columns that are aggregated between two checks of the budget."""
@@ -213,7 +213,7 @@ class LaneColumns(Generic[I]):
         looks = len(numbers)
         summed: dict[int, LaneColumn[I] | None] = {}
         low = high = bisect_left(found, numbers[0] * length, key=_START)
-        running = self._running(numbers[0] * length)
+        running = list(found[:low])
         for number in numbers:
             window = Window(number * length, (number + 1) * length)
             low, high = high, _first_from(found, window.end, high, high - low)

@@ -117,10 +117,6 @@ class RobotView(PaintedWidget):
         """Paint in other glyphs."""
         self._render_picture()
 
-    def on_resize(self) -> None:
-        """Request a picture of the new size."""
-        self.changed()
-
     # the camera
 
     def _request(self) -> None:

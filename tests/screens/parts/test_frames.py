@@ -37,7 +37,7 @@ def test_a_run_that_grows_is_drawn_on_the_lanes_in_each_frame_and_elsewhere_less
     extents = drawing(schedule, 18, grows=True, clock=clock)
     assert FrameContent.NOTHING not in extents
     kinds = (FrameContent.LANES, FrameContent.ALL_BUT_TEXTS, FrameContent.ALL)
-    assert [extents.count(kind) for kind in kinds] == [12, 4, 2]
+    assert [extents.count(kind) for kind in kinds] == [12, 3, 3]
 
 
 def test_what_comes_first_or_after_a_pause_is_drawn_in_all_panes_for_a_second() -> None:
