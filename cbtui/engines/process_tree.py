@@ -9,9 +9,11 @@ session and an environment of its own, is not found.
 import ctypes
 import os
 import sys
+import threading
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from pathlib import Path
 from typing import Any, NoReturn, cast
 
 import psutil
@@ -24,6 +26,8 @@ _SWEEPS = 20
 """How often to look for processes that were started while others were being ended."""
 _PR_SET_CHILD_SUBREAPER = 36
 """Of Linux's ``prctl``: orphans below the caller become its children."""
+_CHILDREN_LISTED = Path(f"/proc/self/task/{threading.get_native_id()}/children").exists()
+"""Whether the kernel lists the children of each thread."""
 _ENDED = {psutil.STATUS_ZOMBIE, psutil.STATUS_DEAD}
 _STOPPED = {psutil.STATUS_STOPPED, psutil.STATUS_TRACING_STOP}
 
@@ -129,8 +133,18 @@ def _processes(pids: Iterable[int]) -> Iterator[Process]:
 
 
 def _below(process: Process) -> list[Process]:
-    with suppress(psutil.Error):
-        return process.children(recursive=True)
+    """All processes below another. ``psutil`` reads each process there is; Linux often lists children."""
+    if not _CHILDREN_LISTED:
+        with suppress(psutil.Error):
+            return process.children(recursive=True)
+        return []
+    pids = [int(pid) for path in Path(f"/proc/{process.pid}/task").glob("*/children") for pid in _words(path)]
+    return [below for child in _processes(pids) for below in (child, *_below(child))]
+
+
+def _words(path: Path) -> list[str]:
+    with suppress(OSError):  # the thread has ended
+        return path.read_text(encoding="ascii").split()
     return []
 
 

@@ -18,11 +18,11 @@ _real_sleep = time.sleep
 _real_lock = threading.Lock
 _monotonic = time.monotonic
 
-_PERIOD = 0.01
+_PERIOD = 0.02
 """Seconds between two batches."""
 _LOOK = 0.001
 """Seconds between two checks of a thread that is held up."""
-_QUIET = 10
+_QUIET = 5
 """Periods without a batch after which a heartbeat shows that the engine is alive."""
 _BATCH = 2048
 """Events of a full batch, which is sent at once."""
