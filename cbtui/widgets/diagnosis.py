@@ -11,7 +11,7 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
-from sim.diagnosis.words import thread_count
+from sim.diagnosis.words import thread_count, threads_needed
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of
@@ -257,5 +257,4 @@ def _threads_needed(timeline: Timeline, peak: int) -> str:
         return "one thread does all the work"
     if not peak:
         return "no callback has run yet"
-    were = "was" if peak == 1 else "were"
-    return f"{peak} of {count} threads {were} ever needed at once"
+    return threads_needed(peak, count, timeline)

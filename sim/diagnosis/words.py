@@ -40,6 +40,14 @@ def until_when(ends: Nanoseconds, timeline: Timeline) -> str:
     return f" until {ends / SECOND:.1f} s" if ends > timeline.end else ""
 
 
+def threads_needed(peak: int, count: int, timeline: Timeline) -> str:
+    """Return how many threads ran callbacks at once, in words that hold while the run goes on."""
+    was = "was" if peak == 1 else "were"
+    if timeline.ended is None:
+        return f"so far {peak} of {count} threads {was} needed at once"
+    return f"{peak} of {count} threads {was} ever needed at once"
+
+
 def thread_count(timeline: Timeline) -> int:
     """The total number of threads of a run's executors.
 

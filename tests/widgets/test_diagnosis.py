@@ -16,6 +16,7 @@ from cbtui.widgets.diagnosis import (
 from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
 from sim.diagnosis import RULES, Explanation, Finding
 from sim.diagnosis import Weight as RuleWeight
+from sim.diagnosis.words import threads_needed
 from sim.engine.setup import ProgramSetup, RunSetup
 from sim.trace.descriptions import executor_label
 from sim.trace.events import Reason, Severity
@@ -73,15 +74,23 @@ def test_a_hand_over_is_not_a_wait() -> None:
 
 
 def test_where_nothing_waits_the_threads_that_were_needed_are_told() -> None:
-    assert said(dummy_server_run(), 5.2).text == "nothing waits; 2 of 2 threads were ever needed at once"
-    assert said(split_groups_run(), 3.0).text == "nothing waits; 1 of 4 threads was ever needed at once"
+    assert said(dummy_server_run(), 5.2).text == "nothing waits; so far 2 of 2 threads were needed at once"
+    assert said(split_groups_run(), 3.0).text == "nothing waits; so far 1 of 4 threads was needed at once"
     assert said(shared_group_run(), 3.0).text == "nothing waits; one thread does all the work"
+
+
+def test_the_threads_of_a_run_that_is_over_were_ever_needed() -> None:
+    ended = Run()
+    ended.over(1.0, "its time was up", failed=False)
+    timeline = timeline_of(ended, 1.0)
+    assert threads_needed(1, 4, timeline) == "1 of 4 threads was ever needed at once"
+    assert threads_needed(2, 4, timeline) == "2 of 4 threads were ever needed at once"
 
 
 def test_a_timer_that_outlasts_its_period_waits_for_nobody_else() -> None:
     told = said(split_groups_run(), 9.4)
     assert told.text == "timer_callback, due again 4.9 s ago, still runs; nothing else waits"
-    assert told.at_length == f"{told.text}; 2 of 4 threads were ever needed at once"
+    assert told.at_length == f"{told.text}; so far 2 of 4 threads were needed at once"
     assert told.level is DiagnosisLevel.FINE
 
 

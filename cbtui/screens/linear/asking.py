@@ -17,7 +17,7 @@ from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
-from cbtui.screens.windows.chain import names_in
+from cbtui.screens.windows.chain import known_names, names_in
 from cbtui.screens.windows.export import CHOICES
 from cbtui.screens.windows.setup_rows import GroupRow, ValueRow, rows_of
 from sim.quantities.durations import duration, timestamp
@@ -59,8 +59,8 @@ class ChainPrompt(ScreenPart):
 
     def _ask(self) -> Dialogue:
         timeline = self.runs.timeline
-        known = ", ".join(timeline.names_sent)
-        names = names_in((yield f"From which to which, such as first:last? Here are {known}."))
+        known = known_names(timeline.names_sent)
+        names = names_in((yield f"From which to which, such as first:last? {known}"))
         if not names:
             return
         try:

@@ -1,6 +1,6 @@
 """The window that asks for a chain of messages to follow."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 from textual.app import ComposeResult
 from textual.widgets import Static
@@ -40,7 +40,7 @@ class ChainScreen(LineScreen[tuple[str, ...]]):
         )
         line = TypedLine(":".join(self._names), self._take, "first:last, such as /scan:/cmd_vel")
         yield line
-        yield Static(f"Here are {', '.join(self._known)}.", markup=False)
+        yield Static(known_names(self._known), markup=False)
         yield line.refusal
 
     def _take(self, text: str) -> None:
@@ -48,6 +48,11 @@ class ChainScreen(LineScreen[tuple[str, ...]]):
         if names:
             self._follow(names)
         self.dismiss(names)
+
+
+def known_names(names: Collection[str]) -> str:
+    """Return the sentence on which topics and services a run has."""
+    return f"Here {'are' if len(names) > 1 else 'is only'} {', '.join(names)}."
 
 
 def names_in(text: str) -> tuple[str, ...]:

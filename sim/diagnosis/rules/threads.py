@@ -5,7 +5,7 @@ from itertools import islice
 
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import listed, thread_count
+from sim.diagnosis.words import listed, thread_count, threads_needed
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind, GroupKind, NodeId
 from sim.trace.model import EntityInfo, ExecutorInfo, GroupInfo, Nanoseconds
@@ -31,9 +31,8 @@ class ThreadsNeverUsed(Rule):
             yield Finding(self, 0, view.end, size=needed, detail=str(threads))
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        were = "was" if found.size == 1 else "were"
         return Explanation(
-            f"{found.size} of {found.detail} threads {were} ever needed at once",
+            threads_needed(found.size, int(found.detail), timeline),
             "a thread is needed only while all the others run callbacks",
             f"num_threads={found.size} would have done for this run",
             None,
