@@ -74,6 +74,8 @@ class PatchCompositor(Compositor):
 
     def __init__(self) -> None:
         super().__init__()
+        self._arranged = self._full_map
+        """The last layout that was drawn."""
         self._layout: object = None
         """The layout for which the widgets in front are cached."""
         self._visible: list[_VisibleWidget] = []
@@ -82,22 +84,21 @@ class PatchCompositor(Compositor):
     def clear(self) -> None:
         """Remove all references to widgets."""
         super().clear()
+        self._arranged = self._full_map
         self._layout = None
         self._visible.clear()
         self._fronts.clear()
 
     def reflow(self, parent: Widget, size: Size) -> ReflowResult:
-        """Arrange the widgets.
+        """Arrange the widgets, and return what differs from the layout that was arranged before.
 
-        Textual compares the layout with the one before. If anything has looked at the new one already, it
-        finds no difference: nothing is drawn anew, and no widget is told of its new size.
+        Textual compares with what ``full_map`` has: if anything has looked at the new layout already, it finds
+        no difference, so that nothing is drawn anew, and no widget is told that it is shown or resized.
         """
+        self._full_map = self._arranged
         found = super().reflow(parent, size)
-        differ = {each for each, place in self._full_map.items() if each.outer_size != place.region.size}
-        overlooked = differ - found.shown - found.resized
-        if overlooked:
-            self._dirty_regions = {size.region}
-        return found._replace(resized=found.resized | overlooked)
+        self._arranged = self._full_map
+        return found
 
     def render_partial_update(self) -> PatchUpdate | None:  # type: ignore[override]  # an update of another kind
         """Return the changed part of the screen; None if nothing changed."""

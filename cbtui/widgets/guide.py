@@ -57,9 +57,13 @@ class Guide(VerticalScroll):
         part = next((part for part in staying if part.virtual_region.bottom > top), None)
         return None if top == 0 or part is None else (part, max(0, top - part.virtual_region.y))
 
+    def on_show(self) -> None:
+        """Scroll to the section that was asked for while the guide was hidden."""
+        self._keep_in_sight()
+
     def _keep_in_sight(self) -> None:
-        """Restore the scroll position of the text that was being read."""
-        if self._reading is not None:
+        """Restore the scroll position of the text that was being read, once it has a place."""
+        if self._reading is not None and self._reading[0].virtual_region:
             part, above = self._reading
             self._reading = None
             self.scroll_to(y=part.virtual_region.y + above, animate=False, immediate=True)

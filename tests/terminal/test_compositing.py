@@ -3,6 +3,8 @@
 import pytest
 from textual._compositor import LayoutUpdate
 from textual.app import App
+from textual.geometry import Size
+from textual.screen import Screen
 from textual.strip import Strip
 from textual.widget import Widget
 
@@ -120,6 +122,21 @@ async def test_no_pane_is_asked_to_draw_by_a_screen_that_it_hides(asked: list[ty
         assert Guide in asked  # the help lies over it and lets it through
 
 
+@pytest.fixture
+def looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let every layout be looked at before it is made, as Textual does now and then."""
+    makes = Screen._refresh_layout
+
+    def looks_and_makes(screen: Screen[None], size: Size | None = None, scroll: bool = False) -> None:
+        if isinstance(screen._compositor, PatchCompositor):
+            screen._compositor._full_map_invalidated = True
+            screen._compositor.full_map  # noqa: B018 a property that arranges the widgets
+        makes(screen, size, scroll)
+
+    monkeypatch.setattr(Screen, "_refresh_layout", looks_and_makes)
+
+
+@pytest.mark.usefixtures("looked_at")
 async def test_a_widget_hears_of_its_new_size_although_the_new_layout_was_looked_at_before() -> None:
     app = RecordedConsole("shared-group", EVENTS, 2.0)
     async with app.run_test(size=WIDE) as pilot:
@@ -127,11 +144,27 @@ async def test_a_widget_hears_of_its_new_size_although_the_new_layout_was_looked
         log = app.screen.query_one(LogLines)
         assert log.scroll_offset.y == log.max_scroll_y > 0
         height = log.size.height
-        lanes = app.screen.query_one(Lanes)
-        lanes.styles.height = 16
-        lanes._check_refresh()
-        app.screen._compositor._full_map_invalidated = True
-        assert app.screen._compositor.full_map
-        await pilot.pause()
+        app.screen.query_one(Lanes).styles.height = 16
+        await settle(pilot)
         assert log.size.height < height
         assert log.scroll_offset.y == log.max_scroll_y
+
+
+@pytest.mark.usefixtures("looked_at")
+async def test_a_pane_that_takes_the_place_of_another_counts_as_shown_and_is_drawn(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    terminal, shown = Terminal(), list[Widget]()
+    app = RecordedConsole("shared-group", EVENTS, 2.0)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        monkeypatch.setattr(App, "_display", lambda app, screen, update: terminal.take(update))
+        monkeypatch.setattr(Widget, "_on_show", lambda widget, event: shown.append(widget))
+        app.screen.refresh(layout=True)
+        await settle(pilot)
+        for key, pane in (("4", "robot"), ("5", "log"), ("4", "robot")):
+            shown.clear()
+            await pilot.press(key)
+            await settle(pilot)
+            assert app.screen.query_one(f"#{pane}") in shown
+            assert terminal.lines == list(map(cells, app.screen._compositor.render_strips()))
