@@ -192,6 +192,7 @@ class CbtuiApp(EndingApp):
 
         With ``tour`` it is shown round first.
         """
+        self.clear_notifications()  # of another lesson, over this one's keys
         say_at_once(self.screen, f"opening lesson {lesson.number}: {lesson.title} …")
         from cbtui.runs.setup.shown_program import of_lesson
 

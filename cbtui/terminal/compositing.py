@@ -92,8 +92,8 @@ class PatchCompositor(Compositor):
     def reflow(self, parent: Widget, size: Size) -> ReflowResult:
         """Arrange the widgets, and return what differs from the layout that was arranged before.
 
-        Textual compares with what ``full_map`` has: if anything has looked at the new layout already, it finds
-        no difference, so that nothing is drawn anew, and no widget is told that it is shown or resized.
+        Textual compares with what ``full_map`` has. If anything has looked at the new layout already, it
+        finds no difference: nothing is drawn anew, and no widget is told that it is shown or resized.
         """
         self._full_map = self._arranged
         found = super().reflow(parent, size)

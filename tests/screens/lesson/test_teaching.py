@@ -26,6 +26,7 @@ from sim.trace.timeline import Timeline
 from tests.support.builder import ns
 from tests.support.console import NARROW, observed, settle
 from tests.support.engine_runs import run_lesson
+from tests.support.exercises import until
 from tests.support.fake_session import FakeEngines
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import shared_group_run, split_groups_run
@@ -194,6 +195,34 @@ async def test_a_predicted_page_tells_what_to_watch_for_and_not_what_is_true() -
 
 
 # see and explain
+
+
+@pytest.mark.slow
+async def test_what_was_explained_is_gone_to_from_every_pane() -> None:
+    async with console(30.1, LESSON.id, observed(EVENTS), "1", "enter", "2", "enter") as (app, pilot):
+        await press(pilot, "a")
+        await until_shown(pilot, app, "You got")
+        guide = app.screen.query_one(Guide)
+        for pane in "2345":
+            guide.scroll_to(y=0, animate=False, immediate=True)
+            await press(pilot, pane, "a")
+            assert app.screen.query_one("#part-shown").virtual_region.y == guide.scroll_offset.y > 0, pane
+
+
+@pytest.mark.slow
+async def test_what_one_lesson_said_does_not_cover_the_keys_of_the_next() -> None:
+    app = Console(30.1)
+    async with app.run_test(size=NARROW, notifications=True) as pilot:
+        await press(pilot, "1", "enter", "2", "enter")
+        app.clear_notifications()
+        await until(pilot, lambda: not app.screen.query("Toast"))
+        app.notify("something that stays for a while", timeout=60)
+        await until(pilot, lambda: len(app._notifications) > 0 and len(app.screen.query("Toast")) > 0)
+        before = app.screen
+        app.open_lesson(WITH_EXERCISE)
+        await until(pilot, lambda: top(app) is PredictionScreen and app.screen is not before)
+        await pilot.pause(0.1)
+        assert not app.screen.query("Toast")
 
 
 @pytest.mark.slow
