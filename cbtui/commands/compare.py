@@ -7,20 +7,18 @@ from typing import TYPE_CHECKING
 
 from cbtui.commands.console import run_console
 from cbtui.commands.options import appearance, changes, inputs, values
-from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, refuse
+from cbtui.commands.options.targets import RECORDING, file_of, is_file_name, is_recording, lesson_of, refuse
 from cbtui.commands.run import DEFAULT_SECONDS
 
 if TYPE_CHECKING:
     from cbtui.runs.compared_runs import ComparedRun, ComparisonTerms
     from cbtui.runs.setup.changes import Changes
 
-_RECORDING = ".mcap"
-
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     for name in ("A", "B"):
-        parser.add_argument(name, help=f"a recording ({_RECORDING}), a lesson's id, or a node or launch file")
+        parser.add_argument(name, help=f"a recording ({RECORDING}), a lesson's id, or a node or launch file")
     appearance.add_options(parser)
     parser.add_argument("--text", action="store_true", help="print the table, as without a terminal")
     parser.add_argument(
@@ -50,7 +48,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     inputs.add_options(parser)
     parser.add_argument(
         "--inputs",
-        metavar=f"FILE{_RECORDING}",
+        metavar=f"FILE{RECORDING}",
         help="give what is run what a recorded run was given, at the same moments",
     )
 
@@ -79,9 +77,9 @@ def _check(options: argparse.Namespace) -> None:
             refuse(f"a run on real ROS 2 cannot be repeated; leave out --inputs, or --on-{letter}")
         given_options = {name: getattr(options, f"{name}_{letter}") for name in ("threads", "distro")}
         for option, given in (*given_options.items(), ("on", is_real)):
-            if given and _is_recording(name):
+            if given and is_recording(name):
                 refuse(f"{name} is a recording and stays as it is; leave out --{option}-{letter}")
-    if all(map(_is_recording, names)):
+    if all(map(is_recording, names)):
         for option, given in (
             ("--call", options.calls),
             ("--at", options.lines),
@@ -91,12 +89,8 @@ def _check(options: argparse.Namespace) -> None:
                 refuse(f"two recordings are compared and nothing is run; leave out {option}")
     if options.inputs is not None and (options.calls or options.lines):
         refuse("--inputs gives what is run all its inputs; leave out --call and --at")
-    if options.arguments and not any(is_file_name(name) for name in names if not _is_recording(name)):
+    if options.arguments and not any(is_file_name(name) for name in names if not is_recording(name)):
         refuse("only a file takes arguments; leave out what follows --")
-
-
-def _is_recording(name: str) -> bool:
-    return name.endswith(_RECORDING)
 
 
 def _changes(options: argparse.Namespace, letter: str) -> "Changes":
@@ -111,7 +105,7 @@ def _compared_run(name: str, changed: "Changes", arguments: list[str]) -> "Compa
     from cbtui.runs.compared_runs import ComparedRun
     from cbtui.runs.setup.lesson_setup import RunRequest
 
-    if _is_recording(name):
+    if is_recording(name):
         return ComparedRun(name, _readable(Path(name)))
     called = ", ".join(filter(None, (name, changed.words)))
     if is_file_name(name):

@@ -9,7 +9,15 @@ from cbtui.commands.in_lines import open_in_lines
 from cbtui.commands.options import changes
 from cbtui.commands.options.appearance import Appearance, add_options, appearance
 from cbtui.commands.options.seeds import add_seed, check_seed
-from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, need_terminal, puzzle_of, refuse
+from cbtui.commands.options.targets import (
+    file_of,
+    is_file_name,
+    is_recording,
+    lesson_of,
+    need_terminal,
+    puzzle_of,
+    refuse,
+)
 
 
 def add_open_options(parser: argparse.ArgumentParser) -> None:
@@ -17,7 +25,7 @@ def add_open_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "target",
         metavar="LESSON|PUZZLE|FILE.py",
-        help="a lesson's number or id, a puzzle's id, see cbtui list, or a file",
+        help="a lesson's number or id, a puzzle's id, see cbtui list, or a file: a program or a recording",
     )
     add_options(parser)
     changes.add_options(parser)
@@ -45,6 +53,10 @@ def open_console(options: argparse.Namespace) -> int:
     target: str | None = options.target
     if target is not None and options.exercise:
         return _open_exercise(options)
+    if target is not None and is_recording(target):
+        if changes.seeded_changes_of(options).words:
+            refuse("a recording is shown as it is: leave out the options on threads and such")
+        return _show_recording(options, target)
     start_file, lesson, puzzle = None, None, None
     if target is not None and is_file_name(target):
         check_seed(options.seed, options.clock)
@@ -91,10 +103,14 @@ def _read_lessons() -> None:
 
 def replay(options: argparse.Namespace) -> int:
     """Open the console on a recording; returns the exit code."""
+    return _show_recording(options, options.recording)
+
+
+def _show_recording(options: argparse.Namespace, name: str) -> int:
     from sim.recording import RecordingError, read
 
     try:
-        recording = read(Path(options.recording))
+        recording = read(Path(name))
     except (RecordingError, ValueError) as error:
         refuse(str(error))
     look = appearance(options)

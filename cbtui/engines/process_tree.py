@@ -138,14 +138,16 @@ def _below(process: Process) -> list[Process]:
         with suppress(psutil.Error):
             return process.children(recursive=True)
         return []
-    pids = [int(pid) for path in Path(f"/proc/{process.pid}/task").glob("*/children") for pid in _words(path)]
-    return [below for child in _processes(pids) for below in (child, *_below(child))]
+    return [below for child in _processes(_children(process.pid)) for below in (child, *_below(child))]
 
 
-def _words(path: Path) -> list[str]:
-    with suppress(OSError):  # the thread has ended
-        return path.read_text(encoding="ascii").split()
-    return []
+def _children(pid: int) -> list[int]:
+    found: list[int] = []
+    with suppress(OSError):  # the process has ended
+        for thread in Path(f"/proc/{pid}/task").iterdir():
+            with suppress(OSError):  # the thread has ended
+                found += map(int, (thread / "children").read_text(encoding="ascii").split())
+    return found
 
 
 def _status(pid: int) -> str:

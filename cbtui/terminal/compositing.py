@@ -93,7 +93,7 @@ class PatchCompositor(Compositor):
         """Arrange the widgets, and return what differs from the layout that was arranged before.
 
         Textual compares with what ``full_map`` has. If anything has looked at the new layout already, it
-        finds no difference: nothing is drawn anew, and no widget is told that it is shown or resized.
+        finds no difference: nothing is drawn anew, and no widget hears that it is shown or of another size.
         """
         self._full_map = self._arranged
         found = super().reflow(parent, size)

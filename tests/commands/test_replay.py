@@ -12,8 +12,12 @@ from tests.support.runs import shared_group_run
 
 def refused(path: Path, capsys: pytest.CaptureFixture[str]) -> str:
     """What is said of a file that is not shown."""
+    return refused_by("replay", path, capsys)
+
+
+def refused_by(command: str, path: Path, capsys: pytest.CaptureFixture[str]) -> str:
     with pytest.raises(SystemExit) as raised:
-        cli.main(["replay", str(path)])
+        cli.main([command, str(path)])
     assert raised.value.code == 2
     told = capsys.readouterr()
     assert told.out == ""
@@ -51,3 +55,14 @@ def test_without_a_terminal_another_command_is_named(
     path = tmp_path / "run.mcap"
     write(path, shared_group_run().events)
     assert "the console needs a terminal; use cbtui info" in refused(path, capsys)
+
+
+def test_a_recording_is_opened_as_such_and_run_by_no_command(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "run.mcap"
+    write(path, shared_group_run().events)
+    assert "the console needs a terminal; use cbtui info" in refused_by("open", path, capsys)
+    for command in ("run", "check", "explore"):
+        told = refused_by(command, path, capsys)
+        assert f"{path} is a recording, which nothing runs; cbtui replay {path} shows it" in told

@@ -15,11 +15,15 @@ if TYPE_CHECKING:
     from lessons.lesson import Lesson
     from lessons.puzzles import Puzzle
 
+RECORDING = ".mcap"
+"""The name ending of a recording."""
+
 
 def lesson_of(name: str) -> "Lesson":
     """Return the lesson with that id; exits with code 2 and one line if there is none."""
     from lessons.catalogue import UnknownLesson, find
 
+    _refuse_recording(name)
     try:
         return find(name)
     except UnknownLesson as error:
@@ -72,9 +76,20 @@ def is_file_name(target: str) -> bool:
     return target.endswith((".py", ".xml", ".yaml", ".yml")) or "/" in target
 
 
+def is_recording(name: str) -> bool:
+    """Whether a file is a recording, by its name."""
+    return name.endswith(RECORDING)
+
+
+def _refuse_recording(name: str) -> None:
+    if is_recording(name):
+        refuse(f"{name} is a recording, which nothing runs; cbtui replay {name} shows it")
+
+
 def file_of(name: str) -> Path:
     """Return the program file of that name; exits with code 2 and one line if there is none."""
     path = Path(name)
+    _refuse_recording(name)
     try:
         mode = mode_of(path)
         if S_ISDIR(mode):
