@@ -1,5 +1,6 @@
 """The rule on waits without a timeout, for notices with and without the fields that older recordings lack."""
 
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -11,6 +12,7 @@ from sim.engine.watchdogs import hung_callbacks, outside_time
 from sim.trace.events import (
     AnyEvent,
     CallbackAt,
+    CallbackEnded,
     CallbackStarted,
     Doing,
     Notice,
@@ -75,6 +77,44 @@ def test_who_waits_for_locks_is_told_with_the_lines_and_nothing_else_is_their_fa
     told = found.rule.explain(found, timeline)
     assert told.what == "odom_callback (node.py:60) has waited for a lock for 3.0 s"
     assert told.cure.startswith("take locks in the same order everywhere")
+
+
+def _in_a_loop(t: float, file: str = "node.py", line: int = 62) -> CallbackAt:
+    frames = ((file, "callback", line + 1),)
+    return CallbackAt(ns(t), 1, 1, Doing.COMPUTES, "", frames, loop=(file, line))
+
+
+def test_a_callback_that_has_been_in_a_loop_is_told_with_what_it_keeps_waiting() -> None:
+    begun, waits = (
+        CallbackStarted(5, 1, 1, 0, 0, 0),
+        WaitStarted(ns(0.5), 2, ns(0.5), Reason.GROUP_HELD, 1, True),
+    )
+    ((what, cure),) = explained(begun, _in_a_loop(0.2), waits, TimePassed(ns(2.2)), rule="stays-in-loop")
+    assert what.startswith("odom_callback has been in the loop of line 62 for 2.0 s; ")
+    assert what.endswith(" can run only when it is over")
+    assert cure.startswith("keep the state in self and return: odom_callback is called again")
+
+
+@pytest.mark.parametrize(
+    "later",
+    [
+        [TimePassed(ns(1.6))],
+        [_in_a_loop(1.0, line=70), TimePassed(ns(2.2))],
+        [CallbackEnded(ns(2.0), 1, 1), TimePassed(ns(2.2))],
+    ],
+    ids=["for less than 1.5 s", "now in another", "left"],
+)
+def test_a_loop_that_may_be_a_short_one_is_not_told(later: list[AnyEvent]) -> None:
+    begun = CallbackStarted(5, 1, 1, 0, 0, 0)
+    assert explained(begun, _in_a_loop(0.2), *later, rule="stays-in-loop") == []
+
+
+@pytest.mark.parametrize(("condition", "told"), [("time.monotonic() < end", 0), ("not self.done", 1)])
+def test_a_loop_that_a_clock_ends_is_not_told(condition: str, told: int, tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(f"while {condition}:\n    pass\n")
+    begun, at = CallbackStarted(5, 1, 1, 0, 0, 0), _in_a_loop(0.2, str(path), 1)
+    assert len(explained(begun, at, TimePassed(ns(2.2)), rule="stays-in-loop")) == told
 
 
 def test_of_a_callback_that_computes_it_is_said_how_long_and_not_that_it_never_ends() -> None:

@@ -2,7 +2,7 @@
 
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
-from sim.diagnosis.rules.endless import EndlessWait, StillComputing, WaitsForLock
+from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing, WaitsForLock
 from sim.diagnosis.rules.errors import ExceptionSwallowed, ProgramRaised
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
@@ -28,6 +28,7 @@ HANGS: tuple[Rule, ...] = (
 
 RULES: tuple[Rule, ...] = (
     *HANGS,
+    StaysInLoop(),
     ProgramRaised(),
     NodeNeverSpins(),
     NobodyOffers(),

@@ -6,18 +6,26 @@ from pathlib import Path
 from sim.diagnosis.cures import remedy_for_waits
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, line_location, line_of
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_waiting
-from sim.diagnosis.time_limits import time_limit
+from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import doing_of
-from sim.trace.events import Doing, EntityId, Notice, NoticeKind, Severity
-from sim.trace.model import Position, Window
+from sim.trace.events import Doing, EntityId, EntityKind, Notice, NoticeKind, Severity
+from sim.trace.model import Position, Span, Window
 from sim.trace.timeline import Timeline
 
 _ADVICE = "wait with a timeout, and make sure that something ends the wait"
 """For notices without advice, as of waits on the real clock, and in old recordings."""
+_KEPT = (
+    "while {0} runs, no other callback of its group or thread does: if it waits for what one of them brings, "
+    "that never comes"
+)
+_LEAVE = (
+    "keep the state in self and return: {0} is called again; or do one step of the loop at each call of a "
+    "timer"
+)
 
 
 class EndlessWait(Rule):
@@ -145,10 +153,8 @@ class StillComputing(Rule):
         where = f" in the loop of line {loop.first_line}" if loop else ""
         return Explanation(
             f"{subject} computes{where} and {how_long}",
-            f"while {subject} runs, no other callback of its group or thread does: if it waits for what one "
-            "of them brings, that never comes",
-            f"keep the state in self and return: {subject} is called again; or do one step of the loop at "
-            "each call of a timer",
+            _KEPT.format(subject),
+            _LEAVE.format(subject),
             place,
             for_ever=found.until >= timeline.end,
             remedies=(
@@ -160,6 +166,67 @@ class StillComputing(Rule):
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Irrelevant if it returned after all."""
         return self.weight if found.until >= timeline.end else None
+
+
+class StaysInLoop(Rule):
+    """A callback has been in a ``while`` for long that neither a clock nor a counter of its own ends.
+
+    Whether something else ends it, such as another thread, is unknown. An action's ``execute`` may loop.
+    """
+
+    id = "stays-in-loop"
+    summary = "a callback does not leave its loop"
+    threshold = 3 * SECOND // 2
+    is_effect = True
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each running call that was in one loop for all of the last seconds."""
+        told = {notice.entity for notice in view.timeline.notices}
+        for span in view.now.running.values():
+            since = _in_loop_since(span, view, self.threshold)
+            if since is not None and span.entity not in told:
+                stuck = frozenset([span.entity])
+                yield Finding(
+                    self, since, view.end, span.entity, span.entity, stuck=stuck, size=view.end - since
+                )
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        subject = who(found.subject, timeline)
+        at = timeline.positions_of(found.subject, _moment(found))[-1]
+        loop = line_location(*at.loop)
+        kept = _kept_waiting(found, timeline)
+        room = remedy_for_waits(kept, found.subject, Window(found.at, found.until + 1), timeline)
+        only = (
+            f"; {listed(who(each, timeline) for each in kept)} can run only when it is over" if kept else ""
+        )
+        return Explanation(
+            f"{subject} has been in the loop of line {at.loop[1]} for {duration(found.lasted)}{only}",
+            _KEPT.format(subject),
+            _LEAVE.format(subject),
+            loop,
+            remedies=(*((room,) if kept else ()), *edits_for_waiting(loop, found.subject, timeline)),
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant if it left the loop after all."""
+        return self.weight if found.until >= timeline.end else None
+
+
+def _in_loop_since(span: Span, view: TimelineView, least: int) -> int | None:
+    """When a running call came to the loop that it has been in for so long; None if it has not."""
+    entity = view.timeline.entities.get(span.entity)
+    if entity is None or entity.kind is EntityKind.WAITABLE:
+        return None
+    lately = Window(view.end - least, view.end + 1)
+    loops = {
+        each.loop for each in view.timeline.positions_of(span.entity, lately) if each.thread == span.thread
+    }
+    loop = loops.pop() if len(loops) == 1 else ("", 0)
+    if not loop[0] or ends_by_itself(*loop):
+        return None
+    all_of_it = view.timeline.positions_of(span.entity, Window(span.start, view.end + 1))
+    since = next(each.start for each in all_of_it if each.loop == loop)
+    return since if since <= lately.start else None
 
 
 def _kept_waiting(found: Finding, timeline: Timeline) -> list[EntityId]:
