@@ -192,7 +192,6 @@ class CbtuiApp(EndingApp):
 
         With ``tour`` it is shown round first.
         """
-        self.clear_notifications()  # of another lesson, over this one's keys
         say_at_once(self.screen, f"opening lesson {lesson.number}: {lesson.title} …")
         from cbtui.runs.setup.shown_program import of_lesson
 
@@ -272,8 +271,9 @@ class CbtuiApp(EndingApp):
         self._show_over_menu(LessonScreen(subject, self._open_session, self.charset, changes, tour=tour))
 
     def _show_over_menu(self, screen: Screen[Any]) -> None:
-        """Show a screen over the menu, in place of a lesson or a question for a file."""
+        """Show a screen over the menu, in place of a lesson or a question for a file, and of what these said."""
         if getattr(self.screen, "SCOPE", None) in (Scope.LESSON, Scope.OPENING):
+            self.clear_notifications()
             self.switch_screen(screen)
         else:
             self.push_screen(screen)

@@ -292,6 +292,16 @@ async def test_what_the_window_tells_follows_the_run_and_nothing_moves() -> None
         assert screen.query_one(OptionList).highlighted == 1
 
 
+async def test_the_window_closes_when_another_run_begins_as_of_a_saved_file() -> None:
+    async with console() as (app, pilot):
+        lesson = app.screen
+        assert isinstance(lesson, LessonScreen)
+        await press(pilot, "d")
+        assert isinstance(app.screen, DiagnosesScreen)
+        lesson.runs.begin(None)
+        await until(pilot, lambda: app.screen is lesson)
+
+
 EDIT = Cure(
     Changes(), "let it sleep less", "--- a.py\n+++ a.py, the copy\n@@ -1,1 +1,1 @@\n-sleep(9)\n+sleep(1)"
 )

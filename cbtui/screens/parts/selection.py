@@ -1,5 +1,6 @@
 """Keys and clicks that navigate between lanes, code and findings."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -109,9 +110,11 @@ class LaneSelection(ScreenPart):
         monitor.update()
         self.host.redraw()
         trial = None if self.cures is None else self.cures.begin()
-        screen = DiagnosesScreen(
-            monitor.findings, self.host.charset, trial, self._lesson_on, lambda: monitor.findings
-        )
+
+        def latest() -> Sequence[ExplainedFinding] | None:
+            return monitor.findings if self.runs.findings is monitor else None
+
+        screen = DiagnosesScreen(monitor.findings, self.host.charset, trial, self._lesson_on, latest)
         self.host.ask(screen, self._take)
 
     def _lesson_on(self, found: ExplainedFinding) -> Lesson | None:

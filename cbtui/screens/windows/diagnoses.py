@@ -83,8 +83,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
     """Lists findings with their steps, problems first; the result is the chosen step, None to stay.
 
     A cure is offered once ``trial`` has found that it helps. ``lesson_on`` returns the lesson that shows a
-    problem. ``latest`` returns the current findings: the list follows them, and begins again when there is a
-    new problem.
+    problem. ``latest`` returns the current findings, or None once another run has begun: the list follows
+    them, begins again when there is a new problem, and closes with its run.
     """
 
     SCOPE = Scope.DIAGNOSES
@@ -95,7 +95,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         charset: Charset,
         trial: Trial | None = None,
         lesson_on: Callable[[ExplainedFinding], Lesson | None] = lambda _: None,
-        latest: Callable[[], Sequence[ExplainedFinding]] | None = None,
+        latest: Callable[[], Sequence[ExplainedFinding] | None] | None = None,
     ) -> None:
         super().__init__(charset)
         self._trial = trial
@@ -144,7 +144,9 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
 
     def _check_for_new(self) -> None:
         findings = self._findings if self._latest is None else self._latest()
-        if not _problems(findings) <= _problems(self._findings):
+        if findings is None:
+            self.dismiss(None)
+        elif not _problems(findings) <= _problems(self._findings):
             self._list(findings)
             self.query_one(".window").border_title = self.heading
             self._show_options()

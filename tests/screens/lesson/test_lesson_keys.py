@@ -223,7 +223,7 @@ async def test_leaving_the_console_ends_the_run() -> None:
 
 @pytest.mark.slow
 async def test_the_help_lists_every_key() -> None:
-    async with console(size=(140, 240)) as (app, pilot):
+    async with console(size=(140, 400)) as (app, pilot):
         await press(pilot, "question_mark")
         text = text_of(app)
         missing = {
