@@ -271,7 +271,7 @@ class CbtuiApp(EndingApp):
         self._show_over_menu(LessonScreen(subject, self._open_session, self.charset, changes, tour=tour))
 
     def _show_over_menu(self, screen: Screen[Any]) -> None:
-        """Show a screen over the menu, in place of a lesson or a question for a file, and of what these said."""
+        """Show a screen over the menu, in place of a lesson or a question for a file and what they said."""
         if getattr(self.screen, "SCOPE", None) in (Scope.LESSON, Scope.OPENING):
             self.clear_notifications()
             self.switch_screen(screen)
