@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Protocol, cast
 
 if TYPE_CHECKING:
+    from collections.abc import Coroutine
+
     from textual.screen import Screen
 
     from cbtui.learning.outcome import Observe
@@ -50,6 +52,9 @@ class ConsoleApp(LessonOpener, Protocol):
 
     def tell_saved(self, sentence: str) -> None:
         """Report what was saved as a screen closed."""
+
+    def end_later(self, ending: Coroutine[None, None, None]) -> None:
+        """End in the background what a closed screen leaves."""
 
 
 def console_of(screen: Screen[Any]) -> ConsoleApp:

@@ -203,10 +203,10 @@ class LessonScreen(RunScreen[LiveRun]):
         if self._predictions is not None:
             await self._predictions.take(message)
 
-    async def on_unmount(self) -> None:
+    def on_unmount(self) -> None:
         """Leave no engine behind."""
         if self._predictions is not None:
-            await self._predictions.leave()
+            self.console.end_later(self._predictions.leave())
 
     # what is typed
 

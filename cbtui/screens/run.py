@@ -249,11 +249,14 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         """Start the first run."""
         self.tell(self.runs.run.start())
 
-    async def on_unmount(self) -> None:
+    def on_unmount(self) -> None:
         """End the run, every recording and every export, whatever way the screen is left."""
         self._exports.leave()
         self.finisher.tell = self.console.tell_saved
         unfreeze_screen()
+        self.console.end_later(self._end())
+
+    async def _end(self) -> None:
         saved = await asyncio.to_thread(self.runs.run.stop)
         if saved is not None:
             self.console.tell_saved(saved)

@@ -4,6 +4,7 @@ import asyncio
 import platform
 import sys
 import traceback
+from collections.abc import Coroutine
 from functools import partial
 from time import monotonic
 from typing import Any
@@ -13,6 +14,7 @@ from textual.css.query import NoMatches
 from textual.widget import MountError
 from textual.worker import WorkerFailed
 
+from cbtui.terminal.background import BackgroundTasks
 from cbtui.terminal.garbage_collector import survivors_frozen
 from cbtui.terminal.interrupts import Interruption, deferred_interrupt, ending_signals_on_loop
 from cbtui.terminal.pending_keys import MOUNT_TIMEOUT, PendingKeysApp
@@ -39,6 +41,7 @@ class EndingApp(PendingKeysApp):
         self.saved: list[str] = []
         """Sentences on files that were saved as screens closed."""
         self._fault: str | None = None
+        self._endings = BackgroundTasks()
 
     def run(self, *args: Any, **options: Any) -> Any:
         """Run to the end, then print what was saved and the fault that ended the app, if any.
@@ -65,6 +68,20 @@ class EndingApp(PendingKeysApp):
         else:
             self._leaving = True
             super().exit(result, return_code, message)
+
+    def end_later(self, ending: Coroutine[None, None, None]) -> None:
+        """End in the background what a closed screen leaves, as Textual takes no key until a screen is gone.
+
+        The app waits for it before it exits.
+        """
+        self._endings.begin(ending)
+
+    async def on_unmount(self) -> None:
+        """Wait for what closed screens have left."""
+        try:
+            await self._endings.wait()
+        except Exception as error:  # noqa: BLE001 - told as a fault of the console
+            self._handle_exception(error)
 
     def _handle_exception(self, error: Exception) -> None:
         cause = error.error if isinstance(error, WorkerFailed) else error

@@ -118,6 +118,16 @@ async def test_a_widget_that_is_never_mounted_keeps_nobody_from_leaving(
         app.told.set()
 
 
+async def test_what_a_closed_screen_left_and_could_not_end_is_a_fault() -> None:
+    async def fail() -> None:
+        raise OSError("as planned")
+
+    app = Console()
+    with pytest.raises(OSError, match="as planned"):
+        async with app.run_test():
+            app.end_later(fail())
+
+
 async def test_keys_right_behind_the_one_that_opens_a_lesson_are_the_lessons() -> None:
     app = RecordedConsole("exclusive-2-threads", split_groups_run().events, 4.0)
     async with app.run_test(size=WIDE) as pilot:

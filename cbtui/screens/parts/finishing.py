@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import Callable
 
 from cbtui.runs.live.live_recording import FinishFile
+from cbtui.terminal.background import BackgroundTasks
 
 
 class FileFinisher:
@@ -11,18 +12,16 @@ class FileFinisher:
 
     def __init__(self, tell: Callable[[str], None]) -> None:
         self.tell = tell
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._tasks = BackgroundTasks()
 
     def finish(self, finish: FinishFile | None) -> None:
         """Finish a file; does nothing for None."""
         if finish is not None:
-            task = asyncio.create_task(self._finish(finish))
-            self._tasks.add(task)
-            task.add_done_callback(self._tasks.discard)
+            self._tasks.begin(self._finish(finish))
 
     async def wait(self) -> None:
         """Wait until every file is finished."""
-        await asyncio.gather(*self._tasks)
+        await self._tasks.wait()
 
     async def _finish(self, finish: FinishFile) -> None:
         sentence = await asyncio.to_thread(finish)

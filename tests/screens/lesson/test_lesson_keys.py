@@ -1,3 +1,4 @@
+import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
@@ -12,6 +13,7 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.parts.frames import FrameContent, FrameLoop
 from cbtui.screens.windows.help import HelpScreen
+from cbtui.screens.windows.prediction import PredictionScreen
 from cbtui.screens.windows.threads import ThreadsScreen
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.factory import FactoryView
@@ -196,6 +198,28 @@ async def test_n_opens_the_next_lesson_and_ends_this_run() -> None:
         assert app.lesson_screen.subject.lesson == lessons()[2]
         assert app.engines.sessions[0].stopped
         assert not app.engines.latest.stopped
+
+
+async def test_the_next_lesson_takes_keys_while_the_engine_of_the_one_before_ends(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    may_end = threading.Event()
+    async with console() as (app, pilot):
+        engine = app.engines.latest
+        stop = engine.stop
+
+        def stop_slowly() -> None:
+            may_end.wait(timeout=30)
+            stop()
+
+        monkeypatch.setattr(engine, "stop", stop_slowly)
+        await press(pilot, "n")
+        assert isinstance(app.screen, PredictionScreen)
+        await press(pilot, "q")
+        assert isinstance(app.screen, MenuScreen)
+        assert not engine.stopped
+        threading.Timer(0.1, may_end.set).start()
+    assert engine.stopped
 
 
 @pytest.mark.slow
