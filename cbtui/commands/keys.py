@@ -41,7 +41,7 @@ def _lines(path: str, now: appearance.Appearance) -> Iterator[str]:
     yield f"[display]\ntheme = {json.dumps(now.theme)}\ncharset = {json.dumps(now.configured_charset)}"
     yield f'screen_reader = "{"on" if now.screen_reader else "off"}"\n'
     yield _KEYS
-    actions = now.keys.of(ACTIONS)
+    actions = now.keys.of(action for action in ACTIONS if not action.refused)
     entries = {action: f"{_entry(action)} " for action in actions}
     width = max(map(len, entries.values()))
     for scope in dict.fromkeys(action.scope for action in actions):

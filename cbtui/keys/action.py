@@ -69,6 +69,12 @@ class KeyAction(NamedTuple):
         return self.id.partition("(")[0]
 
     @property
+    def refused(self) -> str:
+        """The id of the action in whose place it says why that is not available; "" for most actions."""
+        name, _, argument = self.id.partition("(")
+        return (argument.strip("')") or name.removeprefix("no_")) if name.startswith("no_") else ""
+
+    @property
     def line(self) -> str:
         """The text in the help."""
         return self.series or self.help

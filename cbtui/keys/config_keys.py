@@ -89,7 +89,7 @@ def _neighbours(action: KeyAction) -> list[KeyAction]:
 def _clashes(keymap: Keymap) -> Iterator[tuple[str, str, str]]:
     """Yield pairs of actions that share a key where they do not share one in the registry."""
     for scope in Scope:
-        own = actions_of(scope)
+        own = [action for action in actions_of(scope) if not action.refused]
         keys = [
             (key_id(action), set(keys_of(action)), set(keys_of(now)))
             for action, now in zip(own, keymap.of(own), strict=True)

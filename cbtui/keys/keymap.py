@@ -51,7 +51,7 @@ class Keymap:
         return {key_id(action): action.key for action in self.of(remapped)}
 
     def _with_its_keys(self, action: KeyAction) -> KeyAction:
-        chosen = self._chosen.get(key_id(action))
+        chosen = self._chosen.get(key_id(action._replace(id=action.refused or action.id)))
         return action if chosen is None else action._replace(key=",".join(map(_name, chosen)))
 
 

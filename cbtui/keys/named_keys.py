@@ -43,7 +43,8 @@ def _quoted(key: str, keymap: Keymap) -> str:
 
 
 def _in_force(key: str, keymap: Keymap) -> list[str]:
-    meant = [action for action in ACTIONS if action.scope is Scope.LESSON and _sign(action, STANDARD) == key]
+    of_lessons = (action for action in ACTIONS if action.scope is Scope.LESSON and not action.refused)
+    meant = [action for action in of_lessons if _sign(action, STANDARD) == key]
     return list(dict.fromkeys(_sign(action, keymap) for action in meant))
 
 

@@ -80,7 +80,7 @@ class LessonScreen(RunScreen[LiveRun]):
         self.add_parts(
             PaceKeys(self, runs),
             RecordingKey(self, runs, self.finisher),
-            WorldKeys(runs),
+            WorldKeys(self, runs),
             TypingKeys(runs, self.panes, lambda: self.query_one(ShellView)),
             self.restarts,
             comparison,

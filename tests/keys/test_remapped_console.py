@@ -54,6 +54,15 @@ async def test_moving_one_of_two_that_share_a_key_leaves_the_other_its_key() -> 
         assert not app.lesson_screen.runs.run.paused
 
 
+async def test_what_says_why_an_action_is_not_available_has_the_key_of_the_action() -> None:
+    app = console('lesson.compare = "f9"', 'lesson.threads = "C"')
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        await pilot.press("f9")
+        await settle(pilot)
+        assert [note.message[:31] for note in app._notifications] == ["There is only one run so far: c"]
+
+
 async def test_keys_that_were_swapped_are_swapped() -> None:
     app = console('lesson.zoom_in = "<"', 'lesson.zoom_out = ">"')
     async with app.run_test(size=WIDE) as pilot:

@@ -146,9 +146,10 @@ class Run:
         depth: int = 10,
         file: str = "node.py",
         lines: tuple[int, int] = (1, 1),
+        interface_type: str = "std_srvs/srv/SetBool",
     ) -> EntityId:
         """Make a service."""
-        return self._entity(group, EntityKind.SERVICE, name, callback, file, lines, depth, 0)
+        return self._entity(group, EntityKind.SERVICE, name, callback, file, lines, depth, 0, interface_type)
 
     def client(self, group: GroupId, name: str, callback: str = "", depth: int = 10) -> EntityId:
         """Make a client."""
@@ -405,12 +406,14 @@ class Run:
         lines: tuple[int, int],
         depth: int,
         period: int,
+        interface_type: str = "",
     ) -> EntityId:
         entity = self._next("entity")
         self._sizes[entity] = depth
         self._names[entity] = name
         node = self._nodes[group]
-        self.add(EntityAppeared(0, entity, node, group, kind, name, callback, file, *lines, depth, period))
+        about = (kind, name, callback, file, *lines, depth, period, interface_type)
+        self.add(EntityAppeared(0, entity, node, group, *about))
         return entity
 
     def _arrive(self, entity: EntityId, message: MessageId, t: int, born: int) -> None:

@@ -103,6 +103,11 @@ def place_of(entity: EntityInfo, timeline: Timeline) -> CallbackPlace:
     return timeline.nodes.get(entity.node, ""), entity.callback or entity.name
 
 
+def is_set_bool(entity: EntityInfo) -> bool:
+    """Tell whether a callback is that of a SetBool service."""
+    return entity.kind is EntityKind.SERVICE and entity.interface_type == "std_srvs/srv/SetBool"
+
+
 def programs_own(entity: EntityInfo) -> bool:
     """Tell whether an entity was created by the programs' own code rather than by rclpy."""
     named = bool(entity.callback or entity.name)

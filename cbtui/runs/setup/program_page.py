@@ -3,15 +3,13 @@
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
-from cbtui.runs.setup.changeable import programs_own
+from cbtui.runs.setup.changeable import is_set_bool, programs_own
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted, plural
 from sim.trace.descriptions import executor_label
 from sim.trace.events import EntityKind
 from sim.trace.model import EntityInfo
 from sim.trace.timeline import Timeline
-
-_SET_BOOL = "std_srvs/srv/SetBool"
 
 MOST = 20
 """The most nodes, groups, and callbacks of one group that are listed: a program may create any number."""
@@ -79,7 +77,7 @@ def _tries(timeline: Timeline, problems: Sequence[str]) -> Iterator[str]:
         more = f", and {counted(len(problems) - 1, 'further problem')}" if len(problems) > 1 else ""
         yield f"{problems[0]}. `d` shows its line and a cure{more}."
     services = [each for each in own if each.kind is EntityKind.SERVICE]
-    calls = next((each.name for each in services if each.interface_type == _SET_BOOL), None)
+    calls = next((each.name for each in services if is_set_bool(each)), None)
     if calls is not None:
         yield f"`s` calls ``{calls}`` with true, `S` with false."
     elif services:

@@ -64,7 +64,7 @@ class LessonConsole(LinearConsole[LiveRun]):
         self._cures = CuresByNumber(self, trials)
         self._teaching = None if lesson is None else self._teaching_of(lesson, observe)
         take_over = TakeOver(self, runs, subject, self._open_choosing)
-        keys = (PaceKeys(self, runs), WorldKeys(runs), TypedLines(self), self.restarts, take_over)
+        keys = (PaceKeys(self, runs), WorldKeys(self, runs), TypedLines(self), self.restarts, take_over)
         exercise = None if lesson is None else ExerciseInLines(self, lesson, self.progress)
         self._opening_exercise = exercise if with_exercise else None
         recording = RecordingKey(self, runs, FinishInLines(self))

@@ -7,6 +7,7 @@ from typing import Protocol
 from cbtui.runs.live.live_recording import FinishFile
 from cbtui.runs.live.live_run import LiveRun, RunState, ShownRun, has_robot
 from cbtui.runs.recorded.recording_file import CannotRecordError
+from cbtui.runs.setup.changeable import is_set_bool
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import DrawnHost, RunHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
@@ -111,13 +112,16 @@ class RecordingKey(ScreenPart):
 class WorldKeys(ScreenPart):
     """Calls the service that the run was set up with, and puts the robot back."""
 
+    host: RunHost
     runs: RunController[LiveRun]
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer them while the engine lives; resetting the robot needs one that answers."""
         run = self.runs.run
-        can_reset = has_robot(run) and run.state is not RunState.SILENT
-        return run.alive and (can_reset or action != "reset_world")
+        if action == "reset_world":
+            return run.alive and has_robot(run) and run.state is not RunState.SILENT
+        can_call = run.setup.service is not None or any(map(is_set_bool, run.timeline.entities.values()))
+        return run.alive and can_call is not action.startswith("no_")
 
     def action_call_service(self) -> None:
         """Call the lesson's service with true."""
@@ -126,6 +130,17 @@ class WorldKeys(ScreenPart):
     def action_call_service_off(self) -> None:
         """Call the lesson's service with false."""
         self.runs.run.call(False)
+
+    def action_no_call_service(self) -> None:
+        """Say that the programs offer no SetBool service."""
+        key = self.host.key("prompt")
+        self.host.tell(
+            f"There is no SetBool service to call; {key} takes ros2 service call for any other one."
+        )
+
+    def action_no_call_service_off(self) -> None:
+        """Say the same."""
+        self.action_no_call_service()
 
     def action_reset_world(self) -> None:
         """Put the robot back to its start."""

@@ -91,15 +91,6 @@ class OfferedKeys:
         self.screen.query_one(KeyBar).show(next(scopes, Scope.LESSON))
 
 
-_REFUSED = {
-    "no_exercise": "exercise",
-    "no_hint": "hint",
-    "no_solution": "solution",
-    "no_comparison": "compare",
-}
-"""The actions that explain why another one is not available."""
-
-
 @dataclass
 class Refusals(ScreenPart):
     """Explains why an action does nothing; ``is_available`` tells whether it does something.
@@ -113,7 +104,7 @@ class Refusals(ScreenPart):
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer the refusal where the action itself is not offered."""
-        return not self.is_available(_REFUSED[action])
+        return not self.is_available(action.removeprefix("no_"))
 
     def action_no_exercise(self) -> None:
         """Say that there is no exercise."""
@@ -131,7 +122,7 @@ class Refusals(ScreenPart):
         """Say when there is a solution."""
         self._tell("The solution comes after the explanation: press {key}.")
 
-    def action_no_comparison(self) -> None:
+    def action_no_compare(self) -> None:
         """Say what makes a second run."""
         threads, group, set_up = map(self.host.key, ("threads", "group", "set_up"))
         self.host.tell(

@@ -47,6 +47,23 @@ async def test_in_a_file_s_calls_the_first_service_it_offers_and_real_time_can_b
         assert engines.latest.commands == [CallService(None, True), Pause()]
 
 
+async def test_without_a_set_bool_service_s_says_what_calls_another_one(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    run = Run()
+    run.service(run.exclusive(run.node("/n")), "/reset", "reset", interface_type="std_srvs/srv/Trigger")
+    engines = FakeEngines(run.events, ns(2.0))
+    app = CbtuiApp(start_file=(file, [], "real"), open_session=engines)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        assert "s service" not in text_of(app)
+        await pilot.press("S")
+        await settle(pilot)
+        [told] = [note.message for note in app._notifications]
+        assert told.startswith("There is no SetBool service to call; : takes ros2 service call")
+        assert engines.latest.commands == []
+
+
 async def test_the_guide_tells_what_was_found_and_what_to_try(tmp_path: Path) -> None:
     file = tmp_path / "my_node.py"
     file.write_text("")

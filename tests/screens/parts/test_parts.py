@@ -25,6 +25,8 @@ WITH_AN_ENGINE = {"run_again", "start_over", "record"}
 WITH_A_PERSON = {
     "call_service",
     "call_service_off",
+    "no_call_service",
+    "no_call_service_off",
     "prompt",
     "type",
     "reset_world",
@@ -35,7 +37,7 @@ WITH_A_PERSON = {
 }
 CHOSEN = {"undo"}
 TAUGHT = {"predict", "explain", "exercise"}
-REFUSED = {"no_exercise", "no_hint", "no_solution", "no_comparison", "no_take_over"}
+REFUSED = {"no_exercise", "no_hint", "no_solution", "no_compare", "no_take_over"}
 
 
 class Lamp(ScreenPart):
