@@ -187,15 +187,17 @@ class CbtuiApp(EndingApp):
 
             self.push_screen(ComparisonLoadingScreen(*self._start_comparison, self.charset))
 
-    def open_lesson(self, lesson: Lesson, changes: "Changes | None" = None, *, tour: bool = False) -> None:
+    def open_lesson(
+        self, lesson: Lesson, changes: "Changes | None" = None, *, tour: bool = False, over: bool = False
+    ) -> None:
         """Run a lesson on screen, in place of another that may be open, as it is or with changes.
 
-        With ``tour`` it is shown round first.
+        With ``tour`` it is shown round first; with ``over`` the screen below stays.
         """
         say_at_once(self.screen, f"opening lesson {lesson.number}: {lesson.title} …")
         from cbtui.runs.setup.shown_program import of_lesson
 
-        self._show_program(of_lesson(lesson, lessons()), changes, tour=tour)
+        self._show_program(of_lesson(lesson, lessons()), changes, tour=tour, over=over)
         self._remember(RecentKind.LESSON, lesson.id)
 
     def open_exercise(self, lesson: Lesson, real: "RealRos | None" = None) -> None:
@@ -264,11 +266,20 @@ class CbtuiApp(EndingApp):
             self.notify(sentence, severity="warning", markup=False)
 
     def _show_program(
-        self, subject: "ShownProgram", changes: "Changes | None", *, tour: bool = False
+        self,
+        subject: "ShownProgram",
+        changes: "Changes | None",
+        *,
+        tour: bool = False,
+        over: bool = False,
     ) -> None:
         from cbtui.screens.lesson import LessonScreen  # imported late: the menu must appear first
 
-        self._show_over_menu(LessonScreen(subject, self._open_session, self.charset, changes, tour=tour))
+        screen = LessonScreen(subject, self._open_session, self.charset, changes, tour=tour)
+        if over:
+            self.push_screen(screen)
+        else:
+            self._show_over_menu(screen)
 
     def _show_over_menu(self, screen: Screen[Any]) -> None:
         """Show a screen over the menu, in place of a lesson or a question for a file and what they said."""

@@ -172,6 +172,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("chain", "k", "chain", "Follow messages between topics: their path on the lanes"),
         ("take_over", "W", "choose", "From a paused moment on, choose which thread goes on"),
         ("leave", "q", "menu", "End the run and go back to the menu"),
+        ("go_back", "q", "back", "End the run and go back to the run that led here"),
     ),
     Scope.COMPARE: (
         ("window", "w", "whole or screen", "Let the table cover whole runs, or only what is on screen"),
@@ -321,7 +322,7 @@ ACTIONS = tuple(KeyAction(scope, *row) for scope, rows in _ROWS.items() for row 
 TASKS = {
     task: tuple(names.split())
     for task, names in {
-        "Learn": "predict explain exercise watch hint solution lesson next_lesson leave",
+        "Learn": "predict explain exercise watch hint solution lesson next_lesson leave go_back",
         "Act on the run": (
             "call_service call_service_off prompt type reset_world run_again start_over undo take_over"
         ),

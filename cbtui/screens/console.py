@@ -37,6 +37,11 @@ class ConsoleApp(LessonOpener, Protocol):
     observe: Observe
     """Runs a lesson in the background, to find the true answers to its predictions."""
 
+    def open_lesson(
+        self, lesson: Lesson, changes: Changes | None = None, *, tour: bool = False, over: bool = False
+    ) -> None:
+        """Run a lesson; with ``over`` the screen stays, and is come back to."""
+
     def open_exercise(self, lesson: Lesson, real: RealRos | None = None) -> None:
         """Run and check the learner's file for a lesson's exercise, on the model or on that ROS 2."""
 

@@ -360,10 +360,17 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the actions that are available now."""
+        if action in ("leave", "go_back"):
+            below = self.app.screen_stack[self.app.screen_stack.index(self) - 1]
+            return isinstance(below, RunScreen) is (action == "go_back")
         return self._keys.offer(action, parameters)
 
     def action_leave(self) -> None:
         """Go back to the menu."""
+        self.dismiss()
+
+    def action_go_back(self) -> None:
+        """Go back to the run that this one was opened from."""
         self.dismiss()
 
     # messages of widgets

@@ -22,7 +22,7 @@ from cbtui.widgets.painted_widget import PaintedWidget, painted
 _KEY = Ink(Role.STRONG)
 _LABEL = Ink(Role.FAINT)
 _GAP = "  "
-_ALWAYS = ("leave", "leave_prompt", "close", "help")
+_ALWAYS = ("leave", "go_back", "leave_prompt", "close", "help")
 
 
 @dataclass(frozen=True, slots=True)

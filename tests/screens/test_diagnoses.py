@@ -29,11 +29,13 @@ from cbtui.screens.windows.diagnoses import (
     row_of,
     title_of,
 )
+from cbtui.screens.windows.prediction import PredictionExit
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.rows import MemberLane
 from sim.diagnosis import Diagnoses, Finding
+from sim.engine.commands import Pause
 from sim.recording import RecordingMetadata, read
 from sim.trace.events import AnyEvent
 from sim.trace.timeline import Timeline
@@ -397,15 +399,23 @@ def test_lines_that_go_and_come_are_coloured_apart() -> None:
 
 
 @pytest.mark.slow
-async def test_enter_opens_the_lesson_that_shows_a_problem(tmp_path: Path) -> None:
+async def test_enter_opens_the_lesson_that_shows_a_problem_and_q_comes_back(tmp_path: Path) -> None:
     file = tmp_path / "mine.py"
     file.write_text("")
     engines = FakeEngines(shared_group_run().until(TURNED), ns(TURNED))
     app = CbtuiApp(start_file=(file, [], "real"), open_session=engines)
-    async with app.run_test(size=NARROW) as pilot:
+    async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
         await press(pilot, "d")
         assert "→ lesson 1 shows this" in text_of(app)
         await press(pilot, "down", "enter")
         assert "Single thread" in text_of(app)
-        assert engines.sessions[0].stopped
+        assert engines.sessions[0].commands == [Pause()]
+        app.screen.dismiss(PredictionExit.ON)
+        await settle(pilot)
+        assert "q back" in text_of(app)
+        assert len(engines.sessions) == 2
+        await press(pilot, "q")
+        assert "mine.py" in text_of(app).splitlines()[0]
+        assert "q menu" in text_of(app)
+        assert not engines.sessions[0].stopped

@@ -129,9 +129,16 @@ class LaneSelection(ScreenPart):
         if chosen.cure is not None and self.cures is not None:
             await self.cures.run(chosen.cure)
         elif chosen.step is NextStep.LESSON and lesson is not None:
-            self.host.console.open_lesson(lesson)
+            self._show_lesson(lesson)
         else:
             self._go_to_finding(chosen.finding)
+
+    def _show_lesson(self, lesson: Lesson) -> None:
+        """Open a lesson; a run of none waits below, paused if it can be."""
+        run, comes_back = self.runs.run, self.lesson is None
+        if comes_back and run.can_be_paced and not run.paused:
+            run.pause()
+        self.host.console.open_lesson(lesson, over=comes_back)
 
     def _go_to_finding(self, found: ExplainedFinding) -> None:
         """Go to a finding's moment and code, and select its callback's lane."""
