@@ -11,6 +11,7 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
+from sim.diagnosis import CodeLocation
 from sim.diagnosis.words import thread_count, threads_needed
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
@@ -38,7 +39,8 @@ class DiagnosisLevel(Enum):
 class Diagnosis:
     """A sentence about a moment, and its importance; ``at_length`` is shown instead if it fits.
 
-    ``time`` is the beginning of a sentence about another moment; it is left out if room is short.
+    ``time`` is the beginning of a sentence about another moment; it is left out if room is short. ``place``
+    is its line of code.
 
     A diagnosis that stays (a notice, the end of a run) may take several lines; the others change from moment
     to moment and take one line, so that the screen does not jump. ``is_stall``: nothing moves for an unknown
@@ -50,6 +52,7 @@ class Diagnosis:
     stays: bool = field(default=False, compare=False)
     at_length: str = ""
     time: str = field(default="", compare=False)
+    place: CodeLocation | None = None
     is_stall: bool = field(default=False, compare=False)
 
 
@@ -99,12 +102,12 @@ def with_worst_problem(
     explanation = worst.explanation
     what, level = explanation.what, DiagnosisLevel.WAITS if worst in in_vain else DiagnosisLevel.TROUBLE
     if worst.at is None:
-        return Diagnosis(what, level, at_length=worst.headline)
+        return Diagnosis(what, level, at_length=worst.headline, place=explanation.place)
     time = f"at {worst.at / 1e9:.1f} s: "
     text = f"{time}{what}"
     further = f"; {how_to_continue}" if how_to_continue and explanation.for_ever else ""
     at_length = f"{worst.name} {text}{further}".lstrip()
-    return Diagnosis(text, level, at_length=at_length, time=time)
+    return Diagnosis(text, level, at_length=at_length, time=time, place=explanation.place)
 
 
 def _key(action: str, keymap: Keymap) -> str:

@@ -1,7 +1,7 @@
 """The diagnosis line at the bottom, with the number of problems."""
 
 from collections.abc import Iterator, Sequence
-from re import finditer, sub
+from re import finditer, search, sub
 from textwrap import wrap
 
 from textual.events import Resize
@@ -89,7 +89,13 @@ def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) ->
     room = width - len(at_right) - gap
     sign = f" {_SIGNS[diagnosis.level]} "
     texts = (sign + each for each in _ways_to_say(diagnosis))
-    fitting = [each for each in texts if len(each) <= room] or [sign + diagnosis.text]
+    place = diagnosis.place
+    cut = (
+        diagnosis.text
+        if place is None
+        else f"line {place.first_line}: {diagnosis.text.removeprefix(diagnosis.time)}"
+    )
+    fitting = [each for each in texts if len(each) <= room] or [sign + cut]
     with_note = (each for each in fitting if _fitting(note, room - len(each) - _INDENT))
     text = next(with_note, fitting[0]) if diagnosis.level is DiagnosisLevel.FINE else fitting[0]
     shown_note = _fitting(note, room - len(text) - _INDENT)
@@ -102,6 +108,16 @@ def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) ->
 
 
 def _ways_to_say(diagnosis: Diagnosis) -> Iterator[str]:
+    """Yield texts of a diagnosis, the fullest first; those that name its place before all others."""
+    every = list(_texts(diagnosis))
+    if (place := diagnosis.place) is not None:
+        for where in (f" ({place})", f", line {place.first_line}"):
+            for text in every:
+                yield text if search(rf"(:|line ){place.first_line}\b", text) else text + where
+    yield from every
+
+
+def _texts(diagnosis: Diagnosis) -> Iterator[str]:
     """Yield texts of a diagnosis, the fullest first: with short names, without time, the first clauses."""
     yield from filter(None, (diagnosis.at_length, diagnosis.text))
     brief = [sub(r"\w+_callback\b(?!\.py)", lambda found: short_name(found[0]), diagnosis.text)]

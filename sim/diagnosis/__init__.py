@@ -1,13 +1,14 @@
 """Rules that find in a timeline why callbacks do not run as intended, with advice."""
 
 from sim.diagnosis.diagnoses import Diagnoses, diagnose
-from sim.diagnosis.rule import Explanation, Finding, Weight
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Weight
 from sim.diagnosis.rules import HANGS, RULES
 from sim.diagnosis.text import findings_text, location_text, sentence
 
 __all__ = [
     "HANGS",
     "RULES",
+    "CodeLocation",
     "Diagnoses",
     "Explanation",
     "Finding",

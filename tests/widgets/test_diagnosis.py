@@ -14,7 +14,7 @@ from cbtui.widgets.diagnosis import (
     with_worst_problem,
 )
 from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
-from sim.diagnosis import RULES, Explanation, Finding
+from sim.diagnosis import RULES, CodeLocation, Explanation, Finding
 from sim.diagnosis import Weight as RuleWeight
 from sim.diagnosis.words import threads_needed
 from sim.engine.setup import ProgramSetup, RunSetup
@@ -281,6 +281,29 @@ def test_a_sentence_that_does_not_fit_ends_with_a_clause() -> None:
     deadlock = Diagnosis(f"at 1.0 s: {what}", DiagnosisLevel.TROUBLE, time="at 1.0 s: ")
     assert line(deadlock, 80).rstrip().startswith(" ! at 1.0 s: deadlock: pick waits for /gripper for ever  ")
     assert "…" in line(deadlock, 40)
+
+
+@pytest.mark.parametrize(
+    ("width", "shown"),
+    [
+        (90, "at 1.0 s: deadlock: pick waits for /gripper for ever (node.py:51)"),
+        (60, "deadlock: pick waits for /gripper for ever (node.py:51)"),
+        (56, "deadlock: pick waits for /gripper for ever, line 51"),
+        (50, "deadlock: pick waits for /gripper for ever"),
+        (40, "line 51: deadlock: pick waits for /g…"),
+    ],
+)
+def test_a_problem_names_its_line_before_all_that_can_be_left_out(width: int, shown: str) -> None:
+    place = CodeLocation("/home/me/node.py", 51, 51)
+    text = "at 1.0 s: deadlock: pick waits for /gripper for ever"
+    problem = Diagnosis(text, DiagnosisLevel.TROUBLE, time="at 1.0 s: ", place=place)
+    assert line(problem, width, problems="").strip() == f"! {shown}"
+
+
+def test_a_line_that_the_sentence_names_is_not_named_again() -> None:
+    place = CodeLocation("/home/me/node.py", 51, 51)
+    problem = Diagnosis("tick is in the loop of line 51", DiagnosisLevel.TROUBLE, place=place)
+    assert line(problem, 90, problems="").strip() == "! tick is in the loop of line 51"
 
 
 def test_a_wait_that_never_ends_is_told_whatever_else_waits() -> None:
