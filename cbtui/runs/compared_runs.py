@@ -8,7 +8,7 @@ from typing import TypeAlias
 
 from cbtui.engines.follow import EngineLostError, FollowedRun, GivenUpError
 from cbtui.engines.session import ProcessSession
-from cbtui.runs.judged.hangs import ComparedHangs
+from cbtui.runs.judged.compared_problems import ComparedProblems
 from cbtui.runs.live.live_run import ShownRun
 from cbtui.runs.recorded.repeat import CannotRepeatError, repeated_setup
 from cbtui.runs.setup.changes import Changes
@@ -145,11 +145,11 @@ def compare_runs(
         return 2
     one, other = found.first, found.second
     compared = compare(one.timeline, other.timeline, found.window)
-    hang = ComparedHangs(one.timeline, other.timeline).told()
+    problems = ComparedProblems(one.timeline, other.timeline).told()
     if in_lines:
-        say("".join(f"{line}\n" for line in comparison_lines(compared, one.name, other.name, hang)))
+        say("".join(f"{line}\n" for line in comparison_lines(compared, one.name, other.name, problems)))
     else:
-        say(comparison_text(compared, one.name, other.name, hang))
+        say(comparison_text(compared, one.name, other.name, problems))
     failures = [side.failure for side in (one, other) if side.failure is not None]
     for sentence in dict.fromkeys([one.damage, other.damage, *failures]):
         if sentence is not None:

@@ -15,7 +15,7 @@ from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.compared_runs import ComparedSide
-from cbtui.runs.judged.hangs import ComparedHangs
+from cbtui.runs.judged.compared_problems import ComparedProblems
 from cbtui.runs.live.playhead import SPANS, Playhead
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.bars import BarSelection
@@ -97,8 +97,8 @@ class CompareScreen(SizedScreen[None]):
         self._compared: Window | None = None
         self._comparing = False
         self._rest_until = 0.0
-        self._hangs = ComparedHangs(first.timeline, second.timeline)
-        self._hang = ""
+        self._problems = ComparedProblems(first.timeline, second.timeline)
+        self._gone_or_new = ""
         self._verdict = ""
         self._is_tie = False
         self._first_difference: Nanoseconds | None = None
@@ -205,7 +205,7 @@ class CompareScreen(SizedScreen[None]):
         verdict = f"{where}; {self._verdict[0].lower()}{self._verdict[1:]}"
         if self._is_tie and any(side.alive() for side in self._sides):
             verdict = f"{where} so far; neither run is better yet: {_shorter(*self._sides)}"
-        self.query_one("#verdict", Static).update(f"{self._hang} {verdict}".strip())
+        self.query_one("#verdict", Static).update(f"{self._gone_or_new} {verdict}".strip())
         if at is not None and not self._has_moved:
             self.navigation.seek(at)
 
@@ -228,7 +228,7 @@ class CompareScreen(SizedScreen[None]):
             self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
             self._verdict, self._is_tie = verdict(compared), is_tie(compared)
             yield
-            self._hang = self._hangs.told()
+            self._gone_or_new = self._problems.told()
             return self._extent(asked), sections(compared)
         cut = asked.end < min(self._asked.end, self._end)
         after = f"; {_shorter(first, second)}" if cut else ""

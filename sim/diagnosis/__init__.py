@@ -2,11 +2,10 @@
 
 from sim.diagnosis.diagnoses import Diagnoses, diagnose
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Weight
-from sim.diagnosis.rules import HANGS, RULES
+from sim.diagnosis.rules import RULES
 from sim.diagnosis.text import findings_text, location_text, sentence
 
 __all__ = [
-    "HANGS",
     "RULES",
     "CodeLocation",
     "Diagnoses",

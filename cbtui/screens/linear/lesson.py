@@ -10,8 +10,8 @@ from typing import TypeAlias
 from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.learning.lesson_page import introduction
 from cbtui.learning.outcome import Observe
+from cbtui.runs.judged.compared_problems import ComparedProblems
 from cbtui.runs.judged.cures import Cure
-from cbtui.runs.judged.hangs import ComparedHangs
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
@@ -191,8 +191,8 @@ class LinearComparison(ScreenPart):
         self._due = None
         first, second = (side.timeline for side in both)
         window = Window(0, min(first.end, second.end))
-        compared, hang = compare(first, second, window), ComparedHangs(first, second).told()
-        for line in comparison_lines(compared, both[0].name, both[1].name, hang):
+        compared, problems = compare(first, second, window), ComparedProblems(first, second).told()
+        for line in comparison_lines(compared, both[0].name, both[1].name, problems):
             self.host.tell(line)
         at = run_to_end(first_difference(first, second, window))
         self.host.tell("no call differs" if at is None else f"they differ from {timestamp(at)}")

@@ -14,7 +14,7 @@ from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
 from sim.diagnosis.rules.timing import OverlappingCallback, OverrunTimer
 from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NodeNeverSpins, NoFreeWorker
 
-HANGS: tuple[Rule, ...] = (
+RULES: tuple[Rule, ...] = (
     SelfMadeDeadlock(),
     NeedsOneMoreWorker(),
     NestedSpin(),
@@ -23,11 +23,6 @@ HANGS: tuple[Rule, ...] = (
     EndlessWait(),
     WaitsForLock(),
     ServiceNeverComes(),
-)
-"""The rules that find what can never go on."""
-
-RULES: tuple[Rule, ...] = (
-    *HANGS,
     StaysInLoop(),
     ProgramRaised(),
     NodeNeverSpins(),

@@ -1,0 +1,80 @@
+"""Which problems of one of two runs are gone in the other, and which are new there."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+
+from cbtui.runs.judged.cures import Problem, problem_of
+from sim.diagnosis import Diagnoses, Weight, sentence
+from sim.quantities.nanoseconds import SECOND
+from sim.trace.figures.comparison_rows import RUNS
+from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
+
+_NOTICED: Nanoseconds = 2 * SECOND
+"""How long after it began a problem is known as one."""
+
+
+@dataclass(frozen=True)
+class _Known:
+    """A problem of a run: since when, what to call it, and whether something hangs for ever."""
+
+    at: Nanoseconds
+    name: str
+    hangs: bool
+
+
+@dataclass(frozen=True)
+class ComparedProblems:
+    """Tells of the problems of two runs, which may go on meanwhile. Not thread-safe, like their timelines."""
+
+    first: Timeline
+    second: Timeline
+    _diagnoses: tuple[Diagnoses, Diagnoses] = field(default_factory=lambda: (Diagnoses(), Diagnoses()))
+
+    def told(self) -> str:
+        """Return sentences, on what hangs first; "" if nothing is gone or new.
+
+        Nothing is said of a problem which the other run has not come to.
+        """
+        first, second = (
+            _problems_of(timeline, diagnoses)
+            for timeline, diagnoses in zip((self.first, self.second), self._diagnoses, strict=True)
+        )
+        return " ".join(filter(None, (self._hangs(first, second), *self._others(first, second))))
+
+    def _hangs(self, *problems: Mapping[Problem, _Known]) -> str:
+        first, second = ({key: each for key, each in own.items() if each.hangs} for own in problems)
+        names = [each.name for each in (*first.values(), *second.values())]
+        name = min(names, default="")
+        if not first:
+            is_new = second and _has_come_to(self.first, *second.values())
+            return sentence(f"{RUNS[1]} has a {name} that {RUNS[0]} has not") if is_new else ""
+        if first.keys() & second.keys():
+            return f"The {name} is still there."
+        if second:
+            return f"The {name} is gone, but {RUNS[1]} has another one."
+        return f"The {name} is gone." if _has_come_to(self.second, *first.values()) else ""
+
+    def _others(self, *problems: Mapping[Problem, _Known]) -> Iterator[str]:
+        first, second = ({each.name: each for each in own.values() if not each.hangs} for own in problems)
+        gone = [name for name in first if name not in second and _has_come_to(self.second, first[name])]
+        new = [name for name in second if name not in first and _has_come_to(self.first, second[name])]
+        for what, names in (("Gone", gone), ("New", new)):
+            if names:
+                yield f"{what} in {RUNS[1]}: {', '.join(names)}."
+
+
+def _has_come_to(timeline: Timeline, *problems: _Known) -> bool:
+    """Whether a run has come so far that it would have shown these problems of the other one."""
+    return timeline.end >= max(each.at for each in problems) + _NOTICED
+
+
+def _problems_of(timeline: Timeline, diagnoses: Diagnoses) -> Mapping[Problem, _Known]:
+    found: dict[Problem, _Known] = {}
+    for each in diagnoses.update(timeline):
+        if (each.rule.weigh(each, timeline) or each.rule.weight) is Weight.PROBLEM:
+            told = each.rule.explain(each, timeline)
+            hang = "deadlock" if each.waited_for or "deadlock" in told.what else "hang"
+            name = hang if told.for_ever else each.rule.id.replace("-", " ")
+            found[problem_of(each, timeline)] = _Known(each.at, name, told.for_ever)
+    return found

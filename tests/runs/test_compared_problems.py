@@ -1,0 +1,52 @@
+"""A comparison says which problems of one run the other has not; on runs of beginners' programs."""
+
+from functools import cache
+from pathlib import Path
+
+from cbtui.runs.judged.compared_problems import ComparedProblems
+from sim.trace.timeline import Timeline
+from tests.support.engine_runs import program_setup, run_lesson, run_to_end
+
+PROGRAMS = Path(__file__).parents[1] / "diagnosis" / "beginners"
+
+
+@cache
+def run_of(program: str, seconds: float = 6.0) -> Timeline:
+    return run_to_end(program_setup(PROGRAMS / f"{program}.py", seconds)).timeline
+
+
+@cache
+def well_run() -> Timeline:
+    return run_lesson("split-groups", 6.0).timeline
+
+
+def told(first: Timeline, second: Timeline) -> str:
+    return ComparedProblems(first, second).told()
+
+
+def test_a_deadlock_is_gone_or_still_there_or_new() -> None:
+    stuck, well = run_of("call_in_timer"), well_run()
+    assert told(stuck, well) == "The deadlock is gone."
+    assert told(stuck, stuck) == "The deadlock is still there."
+    assert told(well, stuck) == "Run B has a deadlock that run A has not."
+    assert told(well, well) == ""
+    assert told(stuck, run_of("lock_across_callbacks")) == "The deadlock is gone, but run B has another one."
+
+
+def test_a_wait_without_end_that_is_no_deadlock_is_a_hang() -> None:
+    well = well_run()
+    assert told(run_of("wait_for_service"), well) == "The hang is gone."
+
+
+def test_other_problems_are_gone_or_new_too() -> None:
+    starved, deaf = run_of("held_group"), run_of("qos_mismatch")
+    assert told(starved, starved) == ""
+    assert told(starved, deaf) == "Gone in run B: group starvation. New in run B: qos mismatch."
+    assert told(run_of("call_in_timer"), deaf) == "The deadlock is gone. New in run B: qos mismatch."
+
+
+def test_nothing_is_said_of_a_run_that_has_not_come_to_the_problem() -> None:
+    early = run_of("sleep_in_service", seconds=0.2)
+    for stuck in (run_of("call_in_timer"), run_of("held_group")):
+        assert told(stuck, early) == ""
+        assert told(early, stuck) == ""
