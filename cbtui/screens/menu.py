@@ -30,7 +30,7 @@ from cbtui.terminal.textual_internals import is_being_removed
 from cbtui.widgets.banner import Banner
 from cbtui.widgets.description_pane import DescriptionPane, EntryDescription, of_file, of_lesson, of_puzzle
 from cbtui.widgets.key_bar import KeyBar
-from cbtui.widgets.menu_list import MenuChoice, MenuList, MenuRows, WideMenuRows, with_words
+from cbtui.widgets.menu_list import MenuChoice, MenuList, MenuRows, WideMenuRows, id_of, with_words
 from cbtui.widgets.menu_search import MenuSearch
 from cbtui.widgets.miniature import Miniature, PreviewPicture
 from lessons.catalogue import find
@@ -75,6 +75,8 @@ class MenuScreen(SizedScreen[None]):
         self._previews = Previews(self, open_session, charset, lambda: self._previewed)
         self._filled_with: object = None
         self._words = ""
+        self._latest: RecentEntry | None = None
+        """What was opened last before the menu was left."""
 
     def compose(self) -> ComposeResult:
         """Lay out head, list, description and keys."""
@@ -88,15 +90,22 @@ class MenuScreen(SizedScreen[None]):
     def on_mount(self) -> None:
         """Focus the list, and import the lessons' screen in the background."""
         self._list.focus()
+        self._latest = self._recents.latest
         self.set_timer(_IDLE, self._import_lessons)
 
     def on_screen_resume(self) -> None:
-        """Refresh recent entries and progress, which other consoles may have changed."""
+        """Refresh recent entries and progress, which other consoles may have changed.
+
+        What was opened meanwhile, by whatever way, is highlighted.
+        """
         self._progress.refresh()
         if self._filled_with == self._contents:
             self._describe()
         else:
             self._fill()
+        latest, self._latest = self._latest, self._recents.latest
+        if self._latest is not None and self._latest != latest:
+            self._list.choose(id_of(self._latest))
 
     def on_screen_suspend(self) -> None:
         """Abort the preview."""

@@ -60,7 +60,7 @@ class MenuList(OptionList, inherit_bindings=False):
         for unit, members in groupby(lessons, key=itemgetter(0)):
             options.append(_heading(f"Unit {unit}{rows.total(unit)}"))
             options += [self._option(each.id, each, rows.row(each)) for _, each in members]
-        listed = [self._option(":".join(entry.key), entry, rows.file(entry)) for entry in files]
+        listed = [self._option(id_of(entry), entry, rows.file(entry)) for entry in files]
         options += [_heading(RECENT), *listed] if listed else []
         self.set_options(options)
         if before is not None and before.id in self._choices:
@@ -186,3 +186,8 @@ def _said(choice: MenuChoice) -> str:
         unit = f"Unit {choice.unit}"
         parts = (str(choice.number), choice.title, choice.teaches, choice.executor, choice.groups, unit)
     return " ".join(parts).casefold()
+
+
+def id_of(entry: RecentEntry) -> str:
+    """Return the id of an entry's row."""
+    return entry.what if entry.kind is RecentKind.LESSON else ":".join(entry.key)

@@ -77,6 +77,11 @@ class RecentList:
         return self._entries
 
     @property
+    def latest(self) -> RecentEntry | None:
+        """What was opened last; None for nothing."""
+        return next(iter(self.entries), None)
+
+    @property
     def files(self) -> list[RecentEntry]:
         """The programs and recordings."""
         return [entry for entry in self.entries if entry.kind is not RecentKind.LESSON]

@@ -20,7 +20,7 @@ from lessons.catalogue import lessons
 from lessons.lesson import Lesson
 from lessons.progress import Progress
 from lessons.puzzles import puzzles, puzzles_of
-from tests.support.console import NARROW, TALL, WIDE
+from tests.support.console import NARROW, TALL, WIDE, predict
 from tests.support.daily import first_daily
 from tests.support.exercises import until
 from tests.support.fake_session import FakeEngines
@@ -179,6 +179,21 @@ async def test_leaving_a_lesson_comes_back_to_where_it_was_opened() -> None:
         await until(pilot, lambda: isinstance(app.screen, MenuScreen))
         await pilot.press("enter")
         assert opened(app) == lessons()[3].id
+
+
+@pytest.mark.slow
+async def test_leaving_the_lesson_after_comes_back_to_that() -> None:
+    app = menu()
+    predict(app, lessons()[3].id)
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("4")
+        await until(pilot, lambda: opened(app) == lessons()[3].id)
+        await pilot.press("n")
+        await until(pilot, lambda: isinstance(app.screen, PredictionScreen))
+        await pilot.press("q")
+        await until(pilot, lambda: isinstance(app.screen, MenuScreen))
+        await pilot.press("enter")
+        assert opened(app) == lessons()[4].id
 
 
 async def test_q_leaves_the_console() -> None:
