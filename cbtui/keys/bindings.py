@@ -32,6 +32,12 @@ def bindings_of(*scopes: Scope) -> list[Binding]:
     return [_binding(action) for action in ACTIONS if action.scope in scopes]
 
 
+def of_the_app(name: str) -> Binding:
+    """Return the key binding of the app's action of that name, for a window: it hides those of the app."""
+    [action] = (each for each in ACTIONS if (each.scope, each.id) == (Scope.EVERYWHERE, name))
+    return _binding(action._replace(id=f"app.{name}"), key_id(action))
+
+
 async def perform(app: "App[Any]", action: KeyAction) -> None:
     """Perform an action for a click or the palette; one of the widget with the focus only if there is one."""
     place = _PLACES.get(action.scope, "screen")
@@ -39,12 +45,12 @@ async def perform(app: "App[Any]", action: KeyAction) -> None:
         await app.run_action(f"{place}.{action.id}")
 
 
-def _binding(action: KeyAction) -> Binding:
+def _binding(action: KeyAction, name: str = "") -> Binding:
     return Binding(
         action.key,
         action.id,
         action.label,
         tooltip=action.help,
-        id=key_id(action),
+        id=name or key_id(action),
         priority=action.key in _KEYS_THAT_WIDGETS_WANT,
     )

@@ -167,7 +167,7 @@ class LessonScreen(RunScreen[LiveRun]):
             learning.guide.go_to(PageSection.TASK)
             super().start()
         else:
-            self.action_leave()
+            self.dismiss()
 
     def drawn(self) -> None:
         """Unlock the explanation once enough of the run was watched; a tour gives nothing away."""

@@ -39,6 +39,7 @@ from cbtui.screens.parts.part import ScreenPart, ScreenParts
 from cbtui.screens.parts.runs import RunController, RunT_co
 from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.parts.sizes import SizeKeys
+from cbtui.screens.parts.ways_back import WaysBack
 from cbtui.screens.sized import SizedScreen
 from cbtui.screens.windows.diagnoses import problems_note
 from cbtui.screens.windows.jump import JumpScreen
@@ -126,7 +127,14 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
                 following, Changes(real=self.runs.run.setup.real)
             )
         moment = MomentKey(self, self.navigation)
-        more_keys = (Jumps(self, self, self.panes), moment, self._chain, self._copy, self._narration)
+        more_keys = (
+            WaysBack(self),
+            Jumps(self, self, self.panes),
+            moment,
+            self._chain,
+            self._copy,
+            self._narration,
+        )
         every = (self.navigation, self.panes, self.bars, self.selection, self._sizes, self._exports)
         self._parts = ScreenParts(self, Scope.LESSON, *every, *more_keys, *parts, **more)
         self._keys = OfferedKeys(self, self._parts, self.charset)
@@ -360,18 +368,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the actions that are available now."""
-        if action in ("leave", "go_back"):
-            below = self.app.screen_stack[self.app.screen_stack.index(self) - 1]
-            return isinstance(below, RunScreen) is (action == "go_back")
         return self._keys.offer(action, parameters)
-
-    def action_leave(self) -> None:
-        """Go back to the menu."""
-        self.dismiss()
-
-    def action_go_back(self) -> None:
-        """Go back to the run that this one was opened from."""
-        self.dismiss()
 
     # messages of widgets
 

@@ -57,6 +57,7 @@ class HelpScreen(WindowScreen[None]):
     """Lists signs and keys; a search leaves the rows that contain all of its words."""
 
     SCOPE = Scope.HELP
+    HAS_HELP = False
     heading = "Signs and keys"
 
     def content(self) -> ComposeResult:
@@ -132,6 +133,8 @@ def _sections(
     scope: Scope | None, keymap: Keymap, charset: Charset, is_refused: Callable[[KeyAction], bool]
 ) -> Iterator[_Section]:
     """Yield the signs, then the keys: first those of the screen below, of ``scope``."""
+    if scope not in (None, Scope.LESSON, *_SHOWN):
+        yield _of_scope(scope, keymap, charset)
     in_menu = scope in (Scope.MENU, Scope.SEARCH)
     signs = (_stages(), _lane_signs(charset)) if in_menu else (_lane_signs(charset), _stages())
     yield from signs

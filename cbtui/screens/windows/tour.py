@@ -53,6 +53,7 @@ class TourScreen(WindowScreen[None]):
     """Shows the stops one after the other, until a key or click; ``show`` brings a place to the fore."""
 
     SCOPE = Scope.TOUR
+    HAS_HELP = False
 
     def __init__(self, show: Callable[[str], None], charset: Charset) -> None:
         super().__init__(charset)

@@ -13,7 +13,7 @@ from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
 from cbtui.keys.action import Scope
-from cbtui.keys.bindings import bindings_of
+from cbtui.keys.bindings import bindings_of, of_the_app
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset
 from cbtui.screens.sized import Result, SizedScreen
@@ -27,10 +27,12 @@ class WindowScreen(ModalScreen[Result], SizedScreen[Result]):
     heading: str | Content = ""
     """The text in the frame."""
     CSS_PATH: ClassVar[CSSPathType | None] = "window.tcss"
+    HAS_HELP: ClassVar[bool] = True
+    """Whether the key for help works here, too."""
 
     def __init_subclass__(cls, **options: Any) -> None:
         if "SCOPE" in vars(cls):
-            cls.BINDINGS = [*bindings_of(cls.SCOPE)]
+            cls.BINDINGS = [*bindings_of(cls.SCOPE), *([of_the_app("help")] if cls.HAS_HELP else [])]
         super().__init_subclass__(**options)
 
     def __init__(self, charset: Charset) -> None:

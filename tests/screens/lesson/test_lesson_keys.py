@@ -5,6 +5,7 @@ from contextlib import asynccontextmanager
 import pytest
 from textual.pilot import Pilot
 from textual.widget import Widget
+from textual.widgets import Static
 
 from cbtui.keys.action import Scope
 from cbtui.keys.actions import ACTIONS
@@ -267,6 +268,21 @@ async def test_the_help_closes_again() -> None:
             await press(pilot, key)
             assert isinstance(app.screen, LessonScreen)
         assert not app.engines.latest.stopped
+
+
+@pytest.mark.parametrize(
+    ("keys", "first"),
+    first_row_daily((("n",), "Prediction"), (("d",), "Diagnoses"), (("t",), "Choice of threads")),
+)
+async def test_the_help_over_a_window_begins_with_the_keys_of_that(keys: tuple[str, ...], first: str) -> None:
+    async with console() as (app, pilot):
+        await press(pilot, *keys)
+        window = app.screen
+        await press(pilot, "question_mark")
+        assert isinstance(app.screen, HelpScreen)
+        assert str(app.screen.query_one("#found", Static).render()).startswith(first)
+        await press(pilot, "escape")
+        assert app.screen is window
 
 
 @pytest.mark.slow
