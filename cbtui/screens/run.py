@@ -39,7 +39,7 @@ from cbtui.screens.parts.part import ScreenPart, ScreenParts
 from cbtui.screens.parts.runs import RunController, RunT_co
 from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.parts.sizes import SizeKeys
-from cbtui.screens.parts.ways_back import WaysBack
+from cbtui.screens.parts.ways_out import WaysOut
 from cbtui.screens.sized import SizedScreen
 from cbtui.screens.windows.diagnoses import problems_note
 from cbtui.screens.windows.jump import JumpScreen
@@ -121,22 +121,10 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def add_parts(self, *parts: ScreenPart, **more: Callable[[], object]) -> None:
         """Add a screen's own parts, and actions by their ids, to the common ones."""
-        following = self.subject.following
-        if following is not None:
-            more["next_lesson"] = lambda: self.console.open_lesson(
-                following, Changes(real=self.runs.run.setup.real)
-            )
-        moment = MomentKey(self, self.navigation)
-        more_keys = (
-            WaysBack(self),
-            Jumps(self, self, self.panes),
-            moment,
-            self._chain,
-            self._copy,
-            self._narration,
-        )
-        every = (self.navigation, self.panes, self.bars, self.selection, self._sizes, self._exports)
-        self._parts = ScreenParts(self, Scope.LESSON, *every, *more_keys, *parts, **more)
+        ways = (WaysOut(self, self.runs, self.subject.following), Jumps(self, self, self.panes))
+        time = (self.navigation, MomentKey(self, self.navigation), self._chain, self._narration)
+        shown = (self.panes, self.bars, self.selection, self._sizes, self._exports, self._copy)
+        self._parts = ScreenParts(self, Scope.LESSON, *time, *shown, *ways, *parts, **more)
         self._keys = OfferedKeys(self, self._parts, self.charset)
 
     def post(self, message: Message) -> None:
