@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.app import App, SystemCommand
 from textual.binding import BindingType
+from textual.events import Event, Key
 from textual.filter import LineFilter
 from textual.notifications import Notify
 from textual.screen import Screen
@@ -288,6 +289,12 @@ class CbtuiApp(EndingApp):
             self.switch_screen(screen)
         else:
             self.push_screen(screen)
+
+    async def on_event(self, event: Event) -> None:
+        """Handle an event; Esc also takes away the sentences that lie over the screen."""
+        if isinstance(event, Key) and event.key == "escape":
+            self.clear_notifications()
+        await super().on_event(event)
 
     def action_help(self) -> None:
         """Show every key."""

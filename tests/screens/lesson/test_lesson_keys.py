@@ -423,6 +423,15 @@ async def test_keys_that_mean_nothing_now_are_not_offered() -> None:
         assert "r run again" in lines_of(app)[-1]
 
 
+async def test_esc_takes_away_what_is_told_over_the_screen() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "C")
+        assert len(app._notifications) == 1
+        await press(pilot, "escape")
+        assert not app._notifications
+        assert isinstance(app.screen, LessonScreen)
+
+
 async def test_nothing_is_drawn_while_nothing_happens(monkeypatch: pytest.MonkeyPatch) -> None:
     async with console() as (app, pilot):
         await press(pilot, "space")
