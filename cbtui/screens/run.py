@@ -307,6 +307,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
             self._exports.percent,
             self.steps,
             self.runs.findings.nothing_moves_since(),
+            self.runs.pace.slow,
         )
         self.query_one(CodeView).over = not run.alive
         line = self.query_one(DiagnosisLine)

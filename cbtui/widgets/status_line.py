@@ -67,14 +67,18 @@ def status_of(
     exported: int | None = None,
     steps: tuple[LessonStep, ...] = (),
     still_since: Nanoseconds | None = None,
+    slow: float | None = None,
 ) -> RunStatus:
     """Return the status of a run; until its executor appears, ``usual_executor`` is shown.
 
-    ``still_since`` is the time at which the last callback stopped for ever, None if something moves.
+    ``still_since`` is the time at which the last callback stopped for ever, None if something moves; ``slow``
+    is how fast the run goes if that is less than the speed that was asked for.
     """
     timeline, recording = run.timeline, run.recording
     at = playhead.now(timeline.end)
     speed = "max" if run.speed is None else f"×{run.speed:.1f}"
+    if slow is not None:
+        speed = f"×{slow:.1f} of {speed}"
     pace = _pace(run, speed)
     return RunStatus(
         title=title,

@@ -10,7 +10,8 @@ from textual.message import Message
 
 from cbtui.engines.session import Deliver, Ended
 from cbtui.runs.live.findings import FindingsMonitor
-from cbtui.runs.live.live_run import ShownRun
+from cbtui.runs.live.live_run import RunState, ShownRun
+from cbtui.runs.live.pace import PaceMeter
 from cbtui.terminal.processor import cpu_wait, time_off_cpu
 from sim.trace.events import AnyEvent
 from sim.trace.figures.concurrency import Concurrency
@@ -71,6 +72,7 @@ class RunController(Generic[RunT_co]):
         )
         self.concurrency = Concurrency(self.run.timeline)
         self.findings = FindingsMonitor(self.run.timeline)
+        self.pace = PaceMeter()
 
     def disown(self) -> None:
         """Ignore further events of the run."""
@@ -93,4 +95,8 @@ class RunController(Generic[RunT_co]):
     def take(self, message: Delivered) -> str | None:
         """Add events to the run on screen, ignoring those of others; returns a warning, if any."""
         message.taken.set()
-        return self.run.take(message.events) if message.run == self.number else None
+        if message.run != self.number:
+            return None
+        warning = self.run.take(message.events)
+        self.pace.note(self.timeline.end, self.run.speed if self.run.state is RunState.LIVE else None)
+        return warning
