@@ -291,7 +291,7 @@ class CbtuiApp(EndingApp):
             self.push_screen(screen)
 
     async def on_event(self, event: Event) -> None:
-        """Handle an event; Esc also takes away the sentences that lie over the screen."""
+        """Handle an event; the escape key also takes away the sentences that lie over the screen."""
         if isinstance(event, Key) and event.key == "escape":
             self.clear_notifications()
         await super().on_event(event)

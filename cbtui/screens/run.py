@@ -39,7 +39,7 @@ from cbtui.screens.parts.part import ScreenPart, ScreenParts
 from cbtui.screens.parts.runs import RunController, RunT_co
 from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.parts.sizes import SizeKeys
-from cbtui.screens.parts.ways_out import WaysOut
+from cbtui.screens.parts.ways_out import NextLesson, WaysBack
 from cbtui.screens.sized import SizedScreen
 from cbtui.screens.windows.diagnoses import problems_note
 from cbtui.screens.windows.jump import JumpScreen
@@ -121,7 +121,10 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def add_parts(self, *parts: ScreenPart, **more: Callable[[], object]) -> None:
         """Add a screen's own parts, and actions by their ids, to the common ones."""
-        ways = (WaysOut(self, self.runs, self.subject.following), Jumps(self, self, self.panes))
+        following = self.subject.following
+        ways: list[ScreenPart] = [WaysBack(self), Jumps(self, self, self.panes)]
+        if following is not None:
+            ways.append(NextLesson(self, self.runs, following))
         time = (self.navigation, MomentKey(self, self.navigation), self._chain, self._narration)
         shown = (self.panes, self.bars, self.selection, self._sizes, self._exports, self._copy)
         self._parts = ScreenParts(self, Scope.LESSON, *time, *shown, *ways, *parts, **more)

@@ -15,17 +15,13 @@ from lessons.lesson import Lesson
 
 
 @dataclass
-class WaysOut(ScreenPart):
-    """Leaves the screen of a run; ``following`` is the next lesson, which runs on the same clock."""
+class WaysBack(ScreenPart):
+    """Leaves the screen of a run."""
 
     screen: Screen[Any]
-    runs: RunController[ShownRun]
-    following: Lesson | None
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer the way back that says where it leads, and the next lesson if there is one."""
-        if action == "next_lesson":
-            return self.following is not None
+        """Offer the one that says where it leads."""
         stack = self.screen.app.screen_stack
         below = stack[: stack.index(self.screen)] if self.screen in stack else []
         covers_run = bool(below) and getattr(below[-1], "SCOPE", None) is Scope.LESSON
@@ -39,8 +35,16 @@ class WaysOut(ScreenPart):
         """Go back to the run below."""
         self.screen.dismiss()
 
+
+@dataclass
+class NextLesson(ScreenPart):
+    """Opens the next lesson, on the clock or the ROS 2 of this one."""
+
+    screen: Screen[Any]
+    runs: RunController[ShownRun]
+    following: Lesson
+
     def action_next_lesson(self) -> None:
-        """Open the next lesson."""
-        if self.following is not None:
-            changes = Changes(real=self.runs.run.setup.real)
-            console_of(self.screen).open_lesson(self.following, changes)
+        """Open it."""
+        changes = Changes(real=self.runs.run.setup.real)
+        console_of(self.screen).open_lesson(self.following, changes)
