@@ -1,32 +1,16 @@
 """Edits of source: the lines that change, layout and comments that stay, and the shapes that are refused."""
 
-from collections.abc import Callable
-from textwrap import dedent, indent
+from textwrap import indent
 
 import pytest
 
-from sim.diagnosis.edits.code_edit import CodeEdit, diff
+from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.diagnosis.edits.functions import fit_parameters, return_response
-from sim.diagnosis.edits.locks import make_reentrant, take_together
 from sim.diagnosis.edits.names import rename
 from sim.diagnosis.edits.polling import go_on_where_set, leave_out, look_again, step_by_step
 from sim.diagnosis.edits.profiles import match_quality
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
-
-MARK = "# here"
-
-
-def node(methods: str, imports: str = "import rclpy") -> str:
-    return f"{imports}\n\n\nclass Robot(Node):\n{indent(dedent(methods).strip(), '    ')}\n"
-
-
-def changed(text: str, change: Callable[..., None], *more: object) -> list[str] | None:
-    """The lines that an edit at the marked line takes away and brings; None if it is refused."""
-    line = next(number for number, each in enumerate(text.splitlines(), 1) if MARK in each)
-    edited = CodeEdit("node.py", "", change, (line, *more)).applied(text)
-    if edited is None:
-        return None
-    return [each for each in diff("node.py", text, edited).splitlines()[2:] if each[0] in "+-"]
+from tests.diagnosis.edited_source import MARK, changed, node
 
 
 def test_what_follows_a_call_goes_on_in_a_done_callback_with_its_comments() -> None:
@@ -368,61 +352,3 @@ def test_an_end_of_a_topic_gets_the_profile_that_fits(
     text = node(f"def __init__(self):\n    {made}", QOS)
     lines = changed(text, match_quality, policy)
     assert (None if lines is None else [each for each in lines if each[0] == "+"]) == brought
-
-
-LOCKS = """
-def move(self):
-    with self.arm:
-        self.a()
-        # then
-        with self.camera:  # here
-            # both
-            self.b()
-            if self.c:
-
-                self.d()
-
-def look(self):
-    with self.camera:
-        with self.arm:
-            self.e()
-"""
-
-
-def test_both_locks_are_taken_at_once_in_the_order_of_the_other_callback() -> None:
-    text = node(LOCKS)
-    other = next(number for number, each in enumerate(text.splitlines(), 1) if "self.e()" in each)
-    assert changed(text, take_together, other) == [
-        "-        with self.arm:",
-        "+        with self.camera, self.arm:",
-        "-            with self.camera:  # here",
-        "-                # both",
-        "-                self.b()",
-        "-                if self.c:",
-        "+            # both",
-        "+            self.b()",
-        "+            if self.c:",
-        "-                    self.d()",
-        "+                self.d()",
-    ]
-    assert changed(text.replace("self.b()", "self.b('''\n''')"), take_together, other + 1) is None
-    assert (
-        changed(
-            text.replace("with self.arm:\n                self.e", "with self.lid:\n                self.e"),
-            take_together,
-            other,
-        )
-        is None
-    )
-
-
-def test_a_lock_that_its_holder_takes_again_becomes_reentrant() -> None:
-    text = node(
-        "def __init__(self):\n    self.lock = threading.Lock()\n\n"
-        "def tick(self):\n    with self.lock:  # here\n        pass"
-    )
-    assert changed(text, make_reentrant) == [
-        "-        self.lock = threading.Lock()",
-        "+        self.lock = threading.RLock()",
-    ]
-    assert changed(text.replace("threading.Lock()", "make()"), make_reentrant) is None

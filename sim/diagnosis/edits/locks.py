@@ -1,9 +1,9 @@
 """Edits of callbacks that take locks."""
 
 import ast
-import re
 
-from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
+from sim.diagnosis.edits.replies import future_of, is_at, plain_call
+from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
 
 
 def take_together(source: SourceEditor, line: int, other: int) -> None:
@@ -15,23 +15,68 @@ def take_together(source: SourceEditor, line: int, other: int) -> None:
     first, second = (_lock(source, each) for each in _nested(source, other))
     if (_lock(source, outer), _lock(source, inner)) != (second, first):
         raise NotSimpleError
-    has_text = any(isinstance(each, ast.Constant) and "\n" in str(each.value) for each in ast.walk(inner))
-    if has_text or inner.body[0].lineno == inner.lineno:  # the lines of a string must not move
-        raise NotSimpleError
-    deeper = inner.body[0].col_offset - inner.col_offset
-    body = source.lines_behind(inner.items[0].context_expr.end_lineno or 0, inner.body[-1])
     source.replace(outer.items[0].context_expr, f"{first}, {second}")
-    source.replace_lines(inner, inner, re.sub(f"(?m)^ {{{deeper}}}", "", body))
+    source.replace_lines(
+        inner, inner, source.lines_moved(_header_end(inner), inner.body[-1], inner.col_offset)
+    )
+
+
+def let_go_during_wait(source: SourceEditor, line: int) -> None:
+    """Take the call or the wait at a line out of the ``with`` of a lock, which is taken again after it.
+
+    Only if what is called or waited for is known without the lock.
+    """
+    block, *more = _around(source, line)
+    lock, function = _lock(source, block), source.function_at(line)
+    waits = [each for each in block.body if is_at(each, line)]
+    if more or not waits:
+        raise NotSimpleError
+    wait, blank = waits[0], indentation(block)
+    first, begin = (block, _header_end(block)) if wait is block.body[0] else (wait, wait.lineno - 1)
+    outside, inside = source.lines_moved(begin, wait, block.col_offset), ""
+    call, me = plain_call(wait), {each.arg for each in function.args.args[:1]}
+    if call is None:
+        future_of(wait)
+    elif me & {each.id for each in source.nodes(ast.Name, call.args[0])}:
+        raise NotSimpleError
+    elif not _only_names(wait, call):
+        if "reply" in {each.id for each in source.nodes(ast.Name, function)}:
+            raise NotSimpleError
+        asked = source.code_of(call)
+        outside = f"{blank}reply = {asked}\n"
+        inside = source.lines_behind(begin, wait).replace(asked, "reply", 1)
+    if inside or wait is not block.body[-1]:
+        outside += f"{blank}with {lock}:\n"
+    source.replace_lines(first, wait, outside + inside)
+
+
+def _only_names(statement: ast.stmt, call: ast.Call) -> bool:
+    """Return whether a statement only calls, and at most gives the result a local name."""
+    match statement:
+        case ast.Expr(value=value) | ast.Assign(targets=[ast.Name()], value=value):
+            return value is call
+    return False
+
+
+def _header_end(block: ast.With) -> int:
+    """Return the last line of a ``with`` before its body, which is on lines of its own."""
+    end = block.items[-1].context_expr.end_lineno or 0
+    if block.body[0].lineno <= end:
+        raise NotSimpleError
+    return end
+
+
+def _around(source: SourceEditor, line: int) -> list[ast.With]:
+    """Return the ``with`` blocks around a line, the outermost first."""
+    blocks = [each for each in source.nodes(ast.With, source.function_at(line)) if is_at(each, line)]
+    if not blocks:
+        raise NotSimpleError
+    return sorted(blocks, key=lambda each: each.lineno)
 
 
 def _nested(source: SourceEditor, line: int) -> tuple[ast.With, ast.With]:
     """Return the ``with`` around the one at a line, and that one."""
-    blocks = [
-        each
-        for each in source.nodes(ast.With, source.function_at(line))
-        if each.lineno <= line <= (each.end_lineno or 0)
-    ]
-    blocks.sort(key=lambda each: each.lineno)
+    blocks = _around(source, line)
     if len(blocks) != 2 or blocks[1] not in blocks[0].body:
         raise NotSimpleError
     return blocks[0], blocks[1]

@@ -15,7 +15,7 @@ def go_on_in_done_callback(source: SourceEditor, line: int) -> None:
     before it.
     """
     callback = source.callback_at(line)
-    place = next((place for place, each in enumerate(callback.body) if _is_at(each, line)), None)
+    place = next((place for place, each in enumerate(callback.body) if is_at(each, line)), None)
     if place is None:
         raise NotSimpleError
     wait, rest = callback.body[place], callback.body[place + 1 :]
@@ -46,23 +46,24 @@ def await_reply(source: SourceEditor, line: int) -> None:
     """Let the callback at a line await the reply, as a coroutine."""
     callback = source.callback_at(line)
     statement = _innermost(callback, line)
-    call = _plain_call(statement)
+    call = plain_call(statement)
     if call is not None:
         source.replace(call, f"await {_asynchronous(source, call)}")
     else:
-        future = _future_of(statement)
+        future = future_of(statement)
         awaited = f"await {future}{source.comment_behind(statement)}"
         source.replace_lines(statement, statement, f"{indentation(statement)}{awaited}\n")
     source.insert_before(callback, "async ")
 
 
-def _is_at(statement: ast.stmt, line: int) -> bool:
+def is_at(statement: ast.stmt, line: int) -> bool:
+    """Return whether a line is one of a statement's."""
     return statement.lineno <= line <= (statement.end_lineno or statement.lineno)
 
 
 def _innermost(callback: ast.FunctionDef, line: int) -> ast.stmt:
     """Return the innermost statement at a line; the loop around it if that waits for a future."""
-    around = [each for each in ast.walk(callback) if isinstance(each, ast.stmt) and _is_at(each, line)]
+    around = [each for each in ast.walk(callback) if isinstance(each, ast.stmt) and is_at(each, line)]
     loops = [each for each in around if isinstance(each, ast.While) and _loop_future(each)]
     found = (loops or around)[-1]
     if isinstance(found, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef):
@@ -72,9 +73,9 @@ def _innermost(callback: ast.FunctionDef, line: int) -> ast.stmt:
 
 def _handed_over(source: SourceEditor, wait: ast.stmt, callback: ast.FunctionDef) -> tuple[str, str, str]:
     """Return a wait's future, the statement that creates it, and the one with its result; "" for none."""
-    call = _plain_call(wait)
+    call = plain_call(wait)
     if call is None:
-        return _future_of(wait), "", ""
+        return future_of(wait), "", ""
     names = {each.id for each in source.nodes(ast.Name, callback)}
     future = "future" if "future" not in names else "reply_future"
     begin = f"{future} = {_asynchronous(source, call)}"
@@ -85,7 +86,7 @@ def _handed_over(source: SourceEditor, wait: ast.stmt, callback: ast.FunctionDef
     raise NotSimpleError
 
 
-def _plain_call(statement: ast.stmt) -> ast.Call | None:
+def plain_call(statement: ast.stmt) -> ast.Call | None:
     """Return the only ``client.call(request)`` in a simple statement; else None."""
     if isinstance(statement, ast.While | ast.If | ast.For | ast.With | ast.Try):
         return None
@@ -101,7 +102,7 @@ def _asynchronous(source: SourceEditor, call: ast.Call) -> str:
     return f"{source.code_of(call.func.value)}.call_async({source.code_of(call.args[0])})"
 
 
-def _future_of(wait: ast.stmt) -> str:
+def future_of(wait: ast.stmt) -> str:
     """Return the future that a statement waits for, by spinning or in a loop."""
     if isinstance(wait, ast.Expr) and isinstance(wait.value, ast.Call):
         function = wait.value.func

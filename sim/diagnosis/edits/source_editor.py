@@ -1,8 +1,10 @@
 """Edits Python source at the positions of its syntax tree, so that comments and layout stay."""
 
 import ast
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from textwrap import indent
 from typing import TypeAlias, TypeVar
 
 Function: TypeAlias = ast.FunctionDef | ast.AsyncFunctionDef
@@ -72,6 +74,20 @@ class SourceEditor:
     def lines_behind(self, line: int, last: ast.stmt) -> str:
         """Return the lines after a line, up to the end of a statement, with their comments."""
         return b"".join(self._lines[line : last.end_lineno]).decode()
+
+    def lines_moved(self, line: int, last: ast.stmt, column: int) -> str:
+        """Return the lines after a line, up to the end of a statement, which is moved to a column.
+
+        Raises:
+            NotSimpleError: one of these lines begins inside a string.
+        """
+        assert last.end_lineno is not None
+        for each in self.nodes(ast.Constant):
+            is_within = line < each.lineno < (each.end_lineno or 0) <= last.end_lineno
+            if is_within and "\n" in str(each.value):
+                raise NotSimpleError
+        lines, deeper = self.lines_behind(line, last), last.col_offset - column
+        return indent(lines, " " * -deeper) if deeper < 0 else re.sub(f"(?m)^ {{0,{deeper}}}", "", lines)
 
     def comment_behind(self, statement: ast.stmt) -> str:
         """Return the comment at the end of a statement's last line, after two blanks; "" for none."""

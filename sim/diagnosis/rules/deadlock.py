@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.edits.locks import make_reentrant, take_together
+from sim.diagnosis.edits.locks import let_go_during_wait, make_reentrant, take_together
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, WaitedFor, by_edit, line_of
 from sim.diagnosis.rules.edits import edits_for_reply
 from sim.diagnosis.timeline_view import TimelineView
@@ -43,7 +43,9 @@ class SelfMadeDeadlock(Rule):
         if found.waited_for >= {WaitedFor.LOCK, WaitedFor.REPLY}:
             about = _LOCK_AND_CALL
         why, cure = _WHY.get(about, _WHY_REPLY), _CURES.get(about, "")
-        if about == WaitedFor.CLOCK:
+        if about == WaitedFor.RATE:
+            cure = f"remove sleep(), and have a timer of its period do one step at each call; or {apart}"
+        elif about == WaitedFor.CLOCK:
             cure = f"return, and let a timer of the node's clock do what comes later; or {apart}"
         if not cure:
             stands = timeline.positions_of(found.subject, Window(found.at, found.at + 1))
@@ -66,19 +68,18 @@ class SelfMadeDeadlock(Rule):
     def _remedies(self, found: Finding, threads: int, timeline: Timeline) -> tuple[Remedy, ...]:
         place = _line_of(found.subject, found, timeline)
         apart = Remedy((found.subject,), threads)
-        if found.about == WaitedFor.RATE:
-            return apart, Remedy(threads=threads)
-        if found.about == WaitedFor.CLOCK:
+        if found.about in (WaitedFor.RATE, WaitedFor.CLOCK):
             return (apart,)
         if WaitedFor.LOCK not in found.waited_for:
             return apart, *edits_for_reply(place, found.subject, timeline)
-        other = _line_of(found.culprit, found, timeline)
         if found.size == 1:
             return by_edit(place, "make the lock a threading.RLock", make_reentrant)
-        if other is None or WaitedFor.REPLY in found.waited_for:
-            return ()
+        other = _line_of(found.culprit, found, timeline)
+        if WaitedFor.REPLY in found.waited_for:
+            words = "let go of the lock during the call"
+            return tuple(each for at in (place, other) for each in by_edit(at, words, let_go_during_wait))
         order = f"take both locks at once, in the order of {who(found.culprit, timeline)}"
-        return by_edit(place, order, take_together, other.first_line)
+        return () if other is None else by_edit(place, order, take_together, other.first_line)
 
 
 class NeedsOneMoreWorker(Rule):
@@ -126,7 +127,6 @@ _WHY = {
 }
 _CURES = {
     _OWN_LOCK: "take it once, let go of it before, or use threading.RLock",
-    WaitedFor.RATE: "remove sleep(), and have a timer of its period do one step at each call; or keep it",
     WaitedFor.LOCK: "take locks in the same order everywhere, and let go of one before you take the next",
     _LOCK_AND_CALL: "let go of the lock before the call, and take it again when the reply is there",
 }

@@ -1,0 +1,127 @@
+"""Edits of callbacks that take locks."""
+
+from textwrap import dedent, indent
+
+import pytest
+
+from sim.diagnosis.edits.locks import let_go_during_wait, make_reentrant, take_together
+from tests.diagnosis.edited_source import changed, node
+
+LOCKS = """
+def move(self):
+    with self.arm:
+        self.a()
+        # then
+        with self.camera:  # here
+            # both
+            self.b()
+            if self.c:
+
+                self.d()
+
+def look(self):
+    with self.camera:
+        with self.arm:
+            self.e()
+"""
+
+
+def test_both_locks_are_taken_at_once_in_the_order_of_the_other_callback() -> None:
+    text = node(LOCKS)
+    other = next(number for number, each in enumerate(text.splitlines(), 1) if "self.e()" in each)
+    assert changed(text, take_together, other) == [
+        "-        with self.arm:",
+        "+        with self.camera, self.arm:",
+        "-            with self.camera:  # here",
+        "-                # both",
+        "-                self.b()",
+        "-                if self.c:",
+        "+            # both",
+        "+            self.b()",
+        "+            if self.c:",
+        "-                    self.d()",
+        "+                self.d()",
+    ]
+    assert changed(text.replace("self.b()", "self.b('''\n''')"), take_together, other + 1) is None
+    assert (
+        changed(
+            text.replace("with self.arm:\n                self.e", "with self.lid:\n                self.e"),
+            take_together,
+            other,
+        )
+        is None
+    )
+
+
+def test_a_lock_that_its_holder_takes_again_becomes_reentrant() -> None:
+    text = node(
+        "def __init__(self):\n    self.lock = threading.Lock()\n\n"
+        "def tick(self):\n    with self.lock:  # here\n        pass"
+    )
+    assert changed(text, make_reentrant) == [
+        "-        self.lock = threading.Lock()",
+        "+        self.lock = threading.RLock()",
+    ]
+    assert changed(text.replace("threading.Lock()", "make()"), make_reentrant) is None
+
+
+def holding(block: str) -> str:
+    """A callback that holds a lock while it runs a block of code."""
+    return node(f"def tick(self):\n    with self.lock:\n{indent(dedent(block).strip(), ' ' * 8)}")
+
+
+def test_a_lock_is_let_go_of_during_a_call_and_taken_again() -> None:
+    block = """
+    self.asked += 1
+    request = Trigger.Request()
+    # ask
+    reply = self.client.call(request)  # here
+    self.log(reply)
+    """
+    assert changed(holding(block), let_go_during_wait) == [
+        "-            reply = self.client.call(request)  # here",
+        "+        reply = self.client.call(request)  # here",
+        "+        with self.lock:",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("block", "lines"),
+    [
+        (
+            "# ask\nself.client.call(Trigger.Request())  # here",
+            [
+                "-        with self.lock:",
+                "-            # ask",
+                "-            self.client.call(Trigger.Request())  # here",
+                "+        # ask",
+                "+        self.client.call(Trigger.Request())  # here",
+            ],
+        ),
+        (
+            "self.answer = self.client.call(Trigger.Request()).success  # here",
+            [
+                "+        reply = self.client.call(Trigger.Request())",
+                "-            self.answer = self.client.call(Trigger.Request()).success  # here",
+                "+            self.answer = reply.success  # here",
+            ],
+        ),
+        (
+            "future = self.ask()\nwhile not future.done():\n    time.sleep(0.1)  # here\nself.log()",
+            [
+                "-            while not future.done():",
+                "-                time.sleep(0.1)  # here",
+                "+        while not future.done():",
+                "+            time.sleep(0.1)  # here",
+                "+        with self.lock:",
+            ],
+        ),
+        ("self.client.call(self.request)  # here", None),
+        ("if self.on:\n    self.client.call(Trigger.Request())  # here", None),
+        ("with self.other:\n    self.client.call(Trigger.Request())  # here", None),
+        ("reply = 1\nself.answer = self.client.call(Trigger.Request()).success  # here", None),
+        ("self.opened.wait()  # here", None),
+    ],
+)
+def test_what_needs_the_lock_keeps_it_during_a_call(block: str, lines: list[str] | None) -> None:
+    assert changed(holding(block), let_go_during_wait) == lines
