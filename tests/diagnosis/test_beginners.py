@@ -24,6 +24,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("wait_for_future", "self-made-deadlock", "time.sleep(0.1)", "add_done_callback"),
         ("while_true", "still-computing", "while True:", "keep the state in self and return"),
         ("while_sleeping", "stays-in-loop", "while True:", "keep the state in self and return"),
+        ("loop_with_break", "stays-in-loop", "while True:", "keep the state in self and return"),
         ("qos_mismatch", "qos-mismatch", "self.create_subscription(", "the same QoSProfile"),
         ("rate_sleep", "self-made-deadlock", "self.rate.sleep()", "num_threads=2"),
         ("wrong_arity", "program-raised", "def on_chatter(self):", "def on_chatter(self, message)"),

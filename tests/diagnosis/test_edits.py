@@ -1,13 +1,11 @@
 """Edits of source: the lines that change, layout and comments that stay, and the shapes that are refused."""
 
-from textwrap import indent
-
 import pytest
 
 from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.diagnosis.edits.functions import fit_parameters, return_response
 from sim.diagnosis.edits.names import rename
-from sim.diagnosis.edits.polling import go_on_where_set, leave_out, look_again, step_by_step
+from sim.diagnosis.edits.polling import leave_out
 from sim.diagnosis.edits.profiles import match_quality
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
 from tests.diagnosis.edited_source import MARK, changed, node
@@ -118,122 +116,6 @@ def test_a_loop_that_waits_for_a_future_is_one_await() -> None:
         "+    async def tick(self):",
         "+        await future  # here",
     ]
-
-
-@pytest.mark.parametrize(
-    ("wait", "condition"),
-    [
-        ("while not self.ready:  # here\n    pass", "if not self.ready:"),
-        ("while True:  # here\n    if self.ready:\n        break\n    time.sleep(0.1)", "if not self.ready:"),
-        ("while True:  # here\n    if not self.busy:\n        break", "if self.busy:"),
-        ("while True:  # here\n    if self.n > 3:\n        break", "if not (self.n > 3):"),
-        ("self.client.wait_for_service()  # here", "if not self.client.service_is_ready():"),
-    ],
-)
-def test_a_timer_that_waits_looks_again_at_its_next_tick(wait: str, condition: str) -> None:
-    lines = changed(node(f"def tick(self):\n{indent(wait, '    ')}\n    self.log()"), look_again)
-    assert lines is not None
-    assert [each[9:] for each in lines if each[0] == "+"] == [condition, "    return"]
-
-
-def test_what_a_loop_logs_while_it_waits_is_logged_before_the_return() -> None:
-    wait = "while not self.client.wait_for_service(timeout_sec=1.0):  # here\n        self.log('no')"
-    assert changed(node(f"def tick(self):\n    {wait}\n    self.go()"), look_again) == [
-        "-        while not self.client.wait_for_service(timeout_sec=1.0):  # here",
-        "+        if not self.client.service_is_ready():",
-        "+            return",
-    ]
-
-
-def test_a_callback_that_returns_after_a_wait_in_vain_asks_instead() -> None:
-    wait = "if not self.client.wait_for_service(timeout_sec=5.0):  # here\n        return"
-    assert changed(node(f"def tick(self):\n    {wait}\n    self.go()"), look_again) == [
-        "-        if not self.client.wait_for_service(timeout_sec=5.0):  # here",
-        "+        if not self.client.service_is_ready():  # here",
-    ]
-
-
-@pytest.mark.parametrize(
-    "wait",
-    [
-        "while True:  # here\n    pass",
-        "while rclpy.ok():  # here\n    time.sleep(1)",
-        "while not self.ready:  # here\n    self.n += 1",
-        "while not done:  # here\n    pass\ndone = 1",
-        "for each in self.all:  # here\n    pass",
-        "self.client.wait_for_service(1.0)  # here",
-        "if not self.client.wait_for_service(1.0):  # here\n    self.log('no')",
-    ],
-)
-def test_a_loop_that_does_more_than_to_wait_stays(wait: str) -> None:
-    assert changed(node(f"def tick(self):\n{indent(wait, '    ')}"), look_again) is None
-
-
-def test_what_would_begin_anew_at_each_call_is_not_looked_at_again() -> None:
-    methods = "def tick(self):\n    self.answer = None\n    while self.answer is None:  # here\n        pass"
-    assert changed(node(methods), look_again) is None
-
-
-ASKS = """
-def on_answer(self, message):
-    self.answer = message
-
-def tick(self):
-    self.answer = None
-    while self.answer is None:  # here
-        rclpy.spin_once(self)
-    self.log(self.answer)
-"""
-
-
-def test_what_follows_a_wait_goes_on_in_the_method_that_sets_what_is_waited_for() -> None:
-    assert changed(node(ASKS), go_on_where_set) == [
-        "+        self.log(self.answer)",
-        "-        while self.answer is None:  # here",
-        "-            rclpy.spin_once(self)",
-        "-        self.log(self.answer)",
-    ]
-
-
-@pytest.mark.parametrize(
-    ("old", "new"),
-    [
-        ("def on_answer", "def reset(self):\n    self.answer = 0\n\ndef on_answer"),
-        ("= message", "= message\n    return True"),
-        ("    self.log", "    return self.log"),
-        ("        rclpy.spin_once(self)", "        self.ask()"),
-    ],
-)
-def test_a_wait_for_what_is_set_in_several_places_or_that_does_more_stays(old: str, new: str) -> None:
-    assert changed(node(ASKS.replace(old, new)), go_on_where_set) is None
-
-
-def test_an_endless_loop_becomes_one_step_a_call() -> None:
-    loop = (
-        "while True:  # here\n        if self.level < 1:\n            self.log('low')\n        time.sleep(1)"
-    )
-    assert changed(node(f"def tick(self):\n    {loop}"), step_by_step) == [
-        "-        while True:  # here",
-        "-            if self.level < 1:",
-        "-                self.log('low')",
-        "-            time.sleep(1)",
-        "+        if self.level < 1:",
-        "+            self.log('low')",
-    ]
-
-
-@pytest.mark.parametrize(
-    "body",
-    [
-        "n = 0\nwhile True:  # here\n    n += 1",
-        "while True:  # here\n    if self.ready:\n        break",
-        "while True:  # here\n    self.log()\nself.log()",
-        "while self.busy:  # here\n    self.log()",
-        "while True:  # here\n    self.log('''a\n    b''')",
-    ],
-)
-def test_a_loop_that_ends_or_remembers_stays(body: str) -> None:
-    assert changed(node(f"def tick(self):\n{indent(body, '    ')}"), step_by_step) is None
 
 
 def test_a_spin_is_left_out_and_a_body_is_never_empty() -> None:

@@ -57,6 +57,7 @@ APART = "give tick a callback group of its own, and spin with MultiThreadedExecu
 DONE = "go on in a done-callback of the future (diff)"
 AWAIT = "await the reply in an async def {0}, and give {0} a callback group of its own (diff)"
 LATER = "return from tick, and look again at its next call (diff)"
+STEP = "do one step of the loop at each call of {} (diff)"
 FIT = "define it with the parameters it is called with (diff)"
 
 
@@ -78,6 +79,8 @@ FIT = "define it with the parameters it is called with (diff)"
         ),
         ("wait_for_future", [APART, DONE, AWAIT.format("tick")]),
         ("while_true", [LATER]),
+        ("while_sleeping", [STEP.format("wander")]),
+        ("loop_with_break", [STEP.format("drive")]),
         ("qos_mismatch", ["request no more than is offered (diff)"]),
         ("rate_sleep", [APART]),
         ("wrong_arity", [FIT]),

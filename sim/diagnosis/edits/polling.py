@@ -1,12 +1,14 @@
 """Edits of callbacks that wait or loop: they return, and continue at their next call."""
 
 import ast
-from textwrap import dedent, indent
+from collections.abc import Iterable, Iterator
 
 from sim.diagnosis.edits.replies import check_rest, is_idle
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
 
 _WAIT = "wait_for_service"
+_ONCE = {"cancel", "destroy_timer", "create_timer", "create_rate"}
+"""What is done before a loop, and not again before each step."""
 
 
 def look_again(source: SourceEditor, line: int) -> None:
@@ -134,26 +136,136 @@ def leave_out(source: SourceEditor, line: int) -> None:
 
 
 def step_by_step(source: SourceEditor, line: int) -> None:
-    """Replace the endless loop at a line, which ends a callback's body, by one step of it.
+    """Replace the endless loop at a line by one step of it; where the loop ends, the callback returns.
 
-    Only if no step needs a variable from before the loop, and nothing leaves the loop.
+    Only if no step needs what the callback sets before the loop. The callback's timer gets the period of the
+    loop's pauses.
     """
     callback = source.callback_at(line)
-    loop = callback.body[-1]
-    if not isinstance(loop, ast.While) or loop.lineno != line or loop.orelse or not _is_endless(loop.test):
+    loop = _statement_at(callback, line)
+    if not isinstance(loop, ast.While) or loop.orelse or not _is_endless(loop.test):
         raise NotSimpleError
-    inside = [each for part in loop.body for each in ast.walk(part)]
-    if any(isinstance(each, ast.Break | ast.Continue | ast.Yield | ast.Await) for each in inside):
+    place, steps = callback.body.index(loop), [each for each in loop.body if not is_idle(each)]
+    if all(isinstance(each, ast.If) and isinstance(each.body[0], ast.Break) for each in steps):
+        raise NotSimpleError  # it only waits, which look_again() is for
+    made = _keep_pace(source, callback, [each for each in loop.body if is_idle(each)])
+    _check_steps([each for each in callback.body[:place] if each is not made], steps)
+    rest = callback.body[place + 1 :]
+    source.replace_lines(loop, (rest or [loop])[-1], _one_step(source, loop, rest))
+
+
+def one_round_a_call(source: SourceEditor, line: int) -> None:
+    """Replace the ``for`` around a line by one round of it at each call of the callback; then it begins anew.
+
+    Only for a loop over literals that ends the body of a timer's callback. The timer gets the period of the
+    loop's pauses.
+    """
+    callback = source.callback_at(line)
+    loop, timers, steps = (
+        _statement_at(callback, line),
+        _timers_of(source, callback),
+        f"{callback.name}_steps",
+    )
+    pauses = [each for each in getattr(loop, "body", ()) if is_idle(each)]
+    if not isinstance(loop, ast.For) or loop.orelse or loop is not callback.body[-1] or len(pauses) != 1:
         raise NotSimpleError
-    before = (each for part in callback.body[:-1] for each in ast.walk(part))
-    local = {each.id for each in before if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)}
-    if local & {each.id for each in inside if isinstance(each, ast.Name)} or loop.body[0].lineno == line:
+    names = {ast.unparse(each) for each in ast.walk(loop.iter) if isinstance(each, ast.Name | ast.Attribute)}
+    is_left = any(isinstance(each, ast.Break) for each in _ends(loop.body))
+    if names - {"range"} or is_left or len(timers) != 1 or steps in source.text:
         raise NotSimpleError
-    if any(isinstance(each, ast.Constant) and "\n" in str(each.value) for each in inside):
-        raise NotSimpleError  # the lines of a string must not move
-    steps = [each for each in loop.body if not is_idle(each)]
-    text = "".join(source.lines_behind(each.lineno - 1, each) for each in steps)
-    source.replace_lines(loop, loop, indent(dedent(text), indentation(loop)) or f"{indentation(loop)}pass\n")
+    made = _keep_pace(source, callback, pauses)
+    _check_steps([each for each in callback.body[:-1] if each is not made], loop.body)
+    me, blank = callback.args.args[0].arg, indentation(loop)
+    begin = f"{blank}{source.code_of(loop.target)} = next({me}.{steps})\n"
+    source.replace_lines(loop, loop, begin + _one_step(source, loop, []))
+    making = source.statement_at(timers[0].lineno)
+    source.insert_before(making, f"{me}.{steps} = cycle({source.code_of(loop.iter)})\n{indentation(making)}")
+    source.import_names("itertools", ["cycle"])
+
+
+def _check_steps(before: list[ast.stmt], steps: list[ast.stmt]) -> None:
+    """Raise NotSimpleError if the statements before a loop cannot be run before each step of it."""
+    inside = [each for part in steps for each in ast.walk(part)]
+    earlier = [each for part in before for each in ast.walk(part)]
+    local = {each.id for each in earlier if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)}
+    stored = {stored for part in before for stored in _stores(part)}
+    called = {each.func.attr for each in earlier if isinstance(each, ast.Call) and hasattr(each.func, "attr")}
+    needed = {ast.unparse(each) for each in inside if isinstance(each, ast.Name | ast.Attribute)}
+    if (local | stored) & needed or called & _ONCE:
+        raise NotSimpleError
+    if any(isinstance(each, ast.Yield | ast.Await) for each in inside):
+        raise NotSimpleError
+
+
+def _one_step(source: SourceEditor, loop: ast.While | ast.For, rest: list[ast.stmt]) -> str:
+    """Return the lines of a loop's body without its pauses, which return where the loop ends or begins anew.
+
+    What follows the loop is where it ends.
+    """
+    ends = list(_ends(loop.body))
+    breaks = [each for each in ends if isinstance(each, ast.Break)]
+    if rest and (len(breaks) != 1 or not _is_plain(source, loop, breaks[0])):
+        raise NotSimpleError
+    ending = SourceEditor(source.text)
+    for each in ends:
+        code = ""
+        if rest and isinstance(each, ast.Break):
+            code = source.lines_moved(loop.end_lineno or 0, rest[-1], each.col_offset).lstrip()
+        is_over = code and isinstance(rest[-1], ast.Return)
+        ending.replace(each, code.rstrip() if is_over else f"{code}{code and indentation(each)}return")
+    edited = SourceEditor(ending.result())
+    stepped = next(each for each in edited.nodes(type(loop)) if each.lineno == loop.lineno)
+    header = stepped.test if isinstance(stepped, ast.While) else stepped.iter
+    line, text = header.end_lineno or 0, ""
+    if stepped.body[0].lineno == line:
+        raise NotSimpleError
+    for part in stepped.body:
+        text += "" if is_idle(part) else edited.lines_moved(line, part, stepped.col_offset)
+        line = part.end_lineno or 0
+    return text or f"{indentation(loop)}pass\n"
+
+
+def _ends(statements: Iterable[ast.AST]) -> Iterator[ast.Break | ast.Continue]:
+    """Yield the statements that end a step of the loop with these statements."""
+    for each in statements:
+        if isinstance(each, ast.Break | ast.Continue):
+            yield each
+        elif isinstance(each, ast.For | ast.While):
+            yield from _ends(each.orelse)
+        elif isinstance(each, ast.If | ast.With | ast.Try | ast.ExceptHandler | ast.Match | ast.match_case):
+            yield from _ends(ast.iter_child_nodes(each))
+
+
+def _is_plain(source: SourceEditor, loop: ast.While | ast.For, end: ast.stmt) -> bool:
+    """Return whether a statement is alone on its line, and what is around it in a loop only decides."""
+    around = (each for each in ast.walk(loop) if isinstance(each, ast.With | ast.Try))
+    is_alone = source.text.splitlines()[end.lineno - 1].startswith(f"{indentation(end)}break")
+    return is_alone and all(end not in ast.walk(each) for each in around)
+
+
+def _keep_pace(source: SourceEditor, callback: ast.FunctionDef, pauses: list[ast.stmt]) -> ast.stmt | None:
+    """Give a callback's timer the period of the pauses, where the source tells both as numbers.
+
+    Returns the statement that makes a rate only for these pauses, which is removed.
+    """
+    match pauses, _timers_of(source, callback):
+        case [ast.Expr(value=ast.Call(func=ast.Attribute(value=rate), args=[]))], [timer]:
+            uses = [each for each in source.nodes(ast.expr) if ast.unparse(each) == ast.unparse(rate)]
+            made = [each for each in source.nodes(ast.Assign) if each.targets[0] in uses]
+            match [each.value for each in made]:
+                case [ast.Call(args=[ast.Constant() as frequency])] if len(uses) == 2:
+                    source.replace(timer.args[0], f"1 / {source.code_of(frequency)}")
+                    source.replace_lines(made[0], made[0], "")
+                    return made[0]
+        case [ast.Expr(value=ast.Call(args=[ast.Constant() as pause]))], [timer]:
+            source.replace(timer.args[0], source.code_of(pause))
+    return None
+
+
+def _timers_of(source: SourceEditor, callback: ast.FunctionDef) -> list[ast.Call]:
+    name = f"{callback.args.args[0].arg}.{callback.name}"
+    made = (each for each in source.nodes(ast.Call) if ast.unparse(each.func).endswith(".create_timer"))
+    return [each for each in made if name in map(ast.unparse, each.args[1:])]
 
 
 def _is_endless(test: ast.expr) -> bool:

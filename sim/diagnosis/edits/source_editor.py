@@ -2,6 +2,7 @@
 
 import ast
 import re
+import sys
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from textwrap import indent
@@ -155,9 +156,16 @@ class SourceEditor:
         if not before:
             raise NotSimpleError
         imports = [each for each in before if isinstance(each, ast.ImportFrom)]
-        root = module.partition(".")[0]
-        related = [each for each in imports if root <= (each.module or "") < module]
-        self.insert_behind((related or before)[-1], f"\nfrom {module} import {', '.join(names)}")
+        root, line = module.partition(".")[0], f"from {module} import {', '.join(names)}"
+        related: list[ast.Import | ast.ImportFrom] = [
+            each for each in imports if root <= (each.module or "") < module
+        ]
+        if root in sys.stdlib_module_names:
+            related = [each for each in before if _root(each) in sys.stdlib_module_names]
+            if not related:
+                self.insert_before(before[0], f"{line}\n")
+                return
+        self.insert_behind((related or before)[-1], f"\n{line}")
 
     def result(self) -> str:
         """Return the edited text.
@@ -188,6 +196,11 @@ class SourceEditor:
             self._offset(node.lineno, node.col_offset),
             self._offset(node.end_lineno, node.end_col_offset),
         )
+
+
+def _root(statement: ast.Import | ast.ImportFrom) -> str:
+    name = statement.module or "" if isinstance(statement, ast.ImportFrom) else statement.names[0].name
+    return name.partition(".")[0]
 
 
 def indentation(statement: ast.stmt) -> str:

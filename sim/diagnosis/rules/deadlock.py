@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.locks import let_go_during_wait, make_reentrant, take_together
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, WaitedFor, by_edit, line_of
-from sim.diagnosis.rules.edits import edits_for_reply
+from sim.diagnosis.rules.edits import edits_for_reply, edits_for_steps
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES, StuckCallback, WaitForGraph, stands
 from sim.diagnosis.words import often, threads_for, until_when, who, with_threads
@@ -69,7 +69,7 @@ class SelfMadeDeadlock(Rule):
         place = _line_of(found.subject, found, timeline)
         apart = Remedy((found.subject,), threads)
         if found.about in (WaitedFor.RATE, WaitedFor.CLOCK):
-            return (apart,)
+            return *edits_for_steps(place, found.subject, timeline), apart
         if WaitedFor.LOCK not in found.waited_for:
             return apart, *edits_for_reply(place, found.subject, timeline)
         if found.size == 1:

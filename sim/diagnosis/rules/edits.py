@@ -1,7 +1,7 @@
 """The edits that several rules advise."""
 
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.edits.polling import go_on_where_set, leave_out, look_again, step_by_step
+from sim.diagnosis.edits.polling import go_on_where_set, leave_out, look_again, one_round_a_call, step_by_step
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
 from sim.diagnosis.rule import CodeLocation, by_edit
 from sim.diagnosis.words import who
@@ -22,8 +22,19 @@ def edits_for_waiting(place: CodeLocation | None, entity: EntityId, timeline: Ti
     """Return edits of a callback that waits at a place for a condition, or is in a loop there."""
     if timeline.entities[entity].kind not in (EntityKind.TIMER, EntityKind.SUBSCRIPTION):
         return ()
-    step = by_edit(place, f"do one step of the loop at each call of {who(entity, timeline)}", step_by_step)
-    return *_returning(place, entity, timeline), *step
+    return *_returning(place, entity, timeline), *edits_for_steps(place, entity, timeline)
+
+
+def edits_for_steps(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
+    """Return edits of a callback that is in an endless loop at a place."""
+    return by_edit(place, f"do one step of the loop at each call of {who(entity, timeline)}", step_by_step)
+
+
+def edits_for_rounds(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
+    """Return edits of a timer's callback that takes longer than its period, in a loop at a place."""
+    return by_edit(
+        place, f"do one round of the loop at each call of {who(entity, timeline)}", one_round_a_call
+    )
 
 
 def edits_for_spinning(

@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, line_of
+from sim.diagnosis.rules.edits import edits_for_rounds
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import often, threads_for, who, with_threads
 from sim.quantities.durations import duration
@@ -87,13 +88,15 @@ class OverrunTimer(Rule):
         missed = (found.lasted - 1) // entity.period
         ticks = "1 tick" if missed == 1 else f"{missed} ticks"
         subject = who(found.subject, timeline)
+        place = line_of(found.subject, Window(found.at, found.until), timeline)
         return Explanation(
             f"{subject} took {duration(found.lasted)} with a period of {duration(entity.period)}: "
             f"{ticks} missed or late{often(found.count, 'overruns in all')}",
             "the timer is not called again before its callback is over; missed ticks are not made up for",
             f"let {subject} return sooner: do long work step by step, or in a callback of another group"
             + threads,
-            line_of(found.subject, Window(found.at, found.until), timeline),
+            place,
+            remedies=edits_for_rounds(place, found.subject, timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:

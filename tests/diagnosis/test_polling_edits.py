@@ -1,0 +1,229 @@
+"""Edits of callbacks that wait or loop."""
+
+from textwrap import indent
+
+import pytest
+
+from sim.diagnosis.edits.polling import go_on_where_set, look_again, one_round_a_call, step_by_step
+from tests.diagnosis.edited_source import changed, edited, node
+
+
+@pytest.mark.parametrize(
+    ("wait", "condition"),
+    [
+        ("while not self.ready:  # here\n    pass", "if not self.ready:"),
+        ("while True:  # here\n    if self.ready:\n        break\n    time.sleep(0.1)", "if not self.ready:"),
+        ("while True:  # here\n    if not self.busy:\n        break", "if self.busy:"),
+        ("while True:  # here\n    if self.n > 3:\n        break", "if not (self.n > 3):"),
+        ("self.client.wait_for_service()  # here", "if not self.client.service_is_ready():"),
+    ],
+)
+def test_a_timer_that_waits_looks_again_at_its_next_tick(wait: str, condition: str) -> None:
+    lines = changed(node(f"def tick(self):\n{indent(wait, '    ')}\n    self.log()"), look_again)
+    assert lines is not None
+    assert [each[9:] for each in lines if each[0] == "+"] == [condition, "    return"]
+
+
+def test_what_a_loop_logs_while_it_waits_is_logged_before_the_return() -> None:
+    wait = "while not self.client.wait_for_service(timeout_sec=1.0):  # here\n        self.log('no')"
+    assert changed(node(f"def tick(self):\n    {wait}\n    self.go()"), look_again) == [
+        "-        while not self.client.wait_for_service(timeout_sec=1.0):  # here",
+        "+        if not self.client.service_is_ready():",
+        "+            return",
+    ]
+
+
+def test_a_callback_that_returns_after_a_wait_in_vain_asks_instead() -> None:
+    wait = "if not self.client.wait_for_service(timeout_sec=5.0):  # here\n        return"
+    assert changed(node(f"def tick(self):\n    {wait}\n    self.go()"), look_again) == [
+        "-        if not self.client.wait_for_service(timeout_sec=5.0):  # here",
+        "+        if not self.client.service_is_ready():  # here",
+    ]
+
+
+@pytest.mark.parametrize(
+    "wait",
+    [
+        "while True:  # here\n    pass",
+        "while rclpy.ok():  # here\n    time.sleep(1)",
+        "while not self.ready:  # here\n    self.n += 1",
+        "while not done:  # here\n    pass\ndone = 1",
+        "for each in self.all:  # here\n    pass",
+        "self.client.wait_for_service(1.0)  # here",
+        "if not self.client.wait_for_service(1.0):  # here\n    self.log('no')",
+    ],
+)
+def test_a_loop_that_does_more_than_to_wait_stays(wait: str) -> None:
+    assert changed(node(f"def tick(self):\n{indent(wait, '    ')}"), look_again) is None
+
+
+def test_what_would_begin_anew_at_each_call_is_not_looked_at_again() -> None:
+    methods = "def tick(self):\n    self.answer = None\n    while self.answer is None:  # here\n        pass"
+    assert changed(node(methods), look_again) is None
+
+
+ASKS = """
+def on_answer(self, message):
+    self.answer = message
+
+def tick(self):
+    self.answer = None
+    while self.answer is None:  # here
+        rclpy.spin_once(self)
+    self.log(self.answer)
+"""
+
+
+def test_what_follows_a_wait_goes_on_in_the_method_that_sets_what_is_waited_for() -> None:
+    assert changed(node(ASKS), go_on_where_set) == [
+        "+        self.log(self.answer)",
+        "-        while self.answer is None:  # here",
+        "-            rclpy.spin_once(self)",
+        "-        self.log(self.answer)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("def on_answer", "def reset(self):\n    self.answer = 0\n\ndef on_answer"),
+        ("= message", "= message\n    return True"),
+        ("    self.log", "    return self.log"),
+        ("        rclpy.spin_once(self)", "        self.ask()"),
+    ],
+)
+def test_a_wait_for_what_is_set_in_several_places_or_that_does_more_stays(old: str, new: str) -> None:
+    assert changed(node(ASKS.replace(old, new)), go_on_where_set) is None
+
+
+def test_an_endless_loop_becomes_one_step_a_call() -> None:
+    loop = (
+        "while True:  # here\n        if self.level < 1:\n            self.log('low')\n        time.sleep(1)"
+    )
+    assert changed(node(f"def tick(self):\n    {loop}"), step_by_step) == [
+        "-        while True:  # here",
+        "-            if self.level < 1:",
+        "-                self.log('low')",
+        "-            time.sleep(1)",
+        "+        if self.level < 1:",
+        "+            self.log('low')",
+    ]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "n = 0\nwhile True:  # here\n    n += 1",
+        "while True:  # here\n    if self.ready:\n        break",
+        "self.n = 0\nwhile True:  # here\n    self.n += 1",
+        "self.timer.cancel()\nwhile True:  # here\n    self.log()",
+        "while True:  # here\n    self.log()\nself.log()",
+        "while True:  # here\n    self.log()\n    if self.a: break\nself.log()",
+        "while True:  # here\n    if self.a:\n        break\n    if self.b:\n        break\nself.log()",
+        "while True:  # here\n    self.log()\n    with self.a:\n        if b:\n            break\nself.log()",
+        "while self.busy:  # here\n    self.log()",
+        "while True:  # here\n    self.log('''a\n    b''')",
+    ],
+)
+def test_a_loop_that_remembers_or_ends_in_several_places_stays(body: str) -> None:
+    assert changed(node(f"def tick(self):\n{indent(body, '    ')}"), step_by_step) is None
+
+
+def test_where_a_loop_ends_the_callback_does_what_follows_and_returns() -> None:
+    methods = """
+    def tick(self):
+        while rclpy.ok():  # here
+            # far enough?
+            if self.arrived:
+                break
+            for each in self.all:
+                if each:
+                    break
+            if self.paused: continue
+            self.go()
+        # well
+        self.log("arrived")
+    """
+    step = """
+    def tick(self):
+        # far enough?
+        if self.arrived:
+            # well
+            self.log("arrived")
+            return
+        for each in self.all:
+            if each:
+                break
+        if self.paused: return
+        self.go()
+    """
+    assert edited(node(methods), step_by_step) == node(step)
+
+
+TIMER = """
+def __init__(self):
+    self.rate = self.create_rate(10)
+    self.create_timer(1.0, self.tick)
+
+def tick(self):
+    while True:  # here
+        self.log()
+        self.rate.sleep()
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "period"),
+    [
+        ("self.log", "self.say", "1 / 10"),
+        ("self.rate.sleep()", "time.sleep(0.2)", "0.2"),
+        ("self.rate.sleep()", "time.sleep(self.pause)", "1.0"),
+        ("create_rate(10)", "create_rate(self.hz)", "1.0"),
+    ],
+)
+def test_a_timer_that_does_one_step_at_each_call_has_the_pace_of_the_loop(
+    old: str, new: str, period: str
+) -> None:
+    text = edited(node(TIMER.replace(old, new)), step_by_step)
+    assert text is not None
+    assert f"self.create_timer({period}, self.tick)" in text
+    assert ("create_rate" in text) == (period != "1 / 10")
+
+
+ROUNDS = """
+def __init__(self):
+    self.create_timer(1.0, self.tick)
+
+def tick(self):
+    for number in range(5):  # here
+        self.log(number)
+        time.sleep(0.5)
+"""
+
+
+def test_a_loop_over_numbers_becomes_one_round_a_call() -> None:
+    assert changed(node(ROUNDS, "import rclpy"), one_round_a_call) == [
+        "+from itertools import cycle",
+        "-        self.create_timer(1.0, self.tick)",
+        "+        self.tick_steps = cycle(range(5))",
+        "+        self.create_timer(0.5, self.tick)",
+        "-        for number in range(5):  # here",
+        "-            self.log(number)",
+        "-            time.sleep(0.5)",
+        "+        number = next(self.tick_steps)",
+        "+        self.log(number)",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("range(5)", "self.all"),
+        ("        self.log(number)", "        if number:\n            break"),
+        ("        time.sleep(0.5)", "        time.sleep(0.5)\n    self.log()"),
+        ("        time.sleep(0.5)", "        pass\n        time.sleep(0.5)"),
+        ("create_timer(1.0", "create_subscription(String, 'a'"),
+    ],
+)
+def test_a_loop_whose_rounds_are_not_known_stays(old: str, new: str) -> None:
+    assert changed(node(ROUNDS.replace(old, new)), one_round_a_call) is None
