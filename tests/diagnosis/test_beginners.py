@@ -36,6 +36,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "def on_bell(self, request, response)",
         ),
         ("wait_for_service", "service-never-comes", "self.client.wait_for_service()", "start the node"),
+        ("wait_in_service", "service-never-comes", "self.client.wait_for_service(", "start the node"),
         ("lock_across_callbacks", "self-made-deadlock", "with self.", "in the same order"),
         (
             "lock_during_call",

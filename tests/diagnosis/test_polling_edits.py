@@ -16,6 +16,7 @@ from tests.diagnosis.edited_source import changed, edited, node
         ("while True:  # here\n    if not self.busy:\n        break", "if self.busy:"),
         ("while True:  # here\n    if self.n > 3:\n        break", "if not (self.n > 3):"),
         ("self.client.wait_for_service()  # here", "if not self.client.service_is_ready():"),
+        ("self.client.wait_for_service(1.0)  # here", "if not self.client.service_is_ready():"),
     ],
 )
 def test_a_timer_that_waits_looks_again_at_its_next_tick(wait: str, condition: str) -> None:
@@ -30,6 +31,15 @@ def test_what_a_loop_logs_while_it_waits_is_logged_before_the_return() -> None:
         "-        while not self.client.wait_for_service(timeout_sec=1.0):  # here",
         "+        if not self.client.service_is_ready():",
         "+            return",
+    ]
+
+
+def test_a_service_answers_instead_of_waiting() -> None:
+    wait = "self.client.wait_for_service()  # here\n    answer.success = True\n    return answer"
+    assert changed(node(f"def serve(self, request, answer):\n    {wait}"), look_again) == [
+        "-        self.client.wait_for_service()  # here",
+        "+        if not self.client.service_is_ready():",
+        "+            return answer",
     ]
 
 
@@ -49,7 +59,6 @@ def test_a_callback_that_returns_after_a_wait_in_vain_asks_instead() -> None:
         "while not self.ready:  # here\n    self.n += 1",
         "while not done:  # here\n    pass\ndone = 1",
         "for each in self.all:  # here\n    pass",
-        "self.client.wait_for_service(1.0)  # here",
         "if not self.client.wait_for_service(1.0):  # here\n    self.log('no')",
     ],
 )

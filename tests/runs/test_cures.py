@@ -86,6 +86,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("wrong_arity", [FIT]),
         ("wrong_arity_of_timer", [FIT]),
         ("wait_for_service", [LATER]),
+        ("wait_in_service", ["return the response from grip at once if the service is not there (diff)"]),
         (
             "lock_across_callbacks",
             ["take both locks at once, in the order of look (diff)"],

@@ -14,8 +14,8 @@ _ONCE = {"cancel", "destroy_timer", "create_timer", "create_rate"}
 def look_again(source: SourceEditor, line: int) -> None:
     """Let a callback return instead of waiting at a line, if its condition does not hold yet.
 
-    Only for a statement of the callback's body that only waits, or logs while it waits, or that returns if a
-    wait for a service was in vain.
+    A service's callback returns its response as it is. Only for a statement of the callback's body that only
+    waits, or logs while it waits, or that returns if a wait for a service was in vain.
     """
     callback = source.callback_at(line)
     wait = _statement_at(callback, line)
@@ -32,7 +32,8 @@ def look_again(source: SourceEditor, line: int) -> None:
     blank = indentation(wait)
     step = " " * (wait.col_offset - callback.col_offset)
     logs = "".join(source.lines_behind(each.lineno - 1, each) for each in meanwhile)
-    source.replace_lines(wait, wait, f"{blank}if {missing}:\n{logs}{blank}{step}return\n")
+    response = f" {callback.args.args[2].arg}" if len(callback.args.args) == 3 else ""
+    source.replace_lines(wait, wait, f"{blank}if {missing}:\n{logs}{blank}{step}return{response}\n")
 
 
 def _asks_in_vain(source: SourceEditor, wait: ast.stmt) -> bool:
@@ -42,7 +43,7 @@ def _asks_in_vain(source: SourceEditor, wait: ast.stmt) -> bool:
             test=ast.UnaryOp(
                 op=ast.Not(), operand=ast.Call(func=ast.Attribute(value=client, attr=name)) as call
             ),
-            body=[*_, ast.Return(value=None)],
+            body=[*_, ast.Return()],
         ) if name == _WAIT:
             source.replace(call, f"{source.code_of(client)}.service_is_ready()")
             return True
@@ -94,9 +95,8 @@ def _stores(part: ast.AST) -> set[str]:
 def _condition(source: SourceEditor, wait: ast.stmt) -> tuple[str, list[ast.stmt]]:
     """Return the condition, as code, under which a statement waits, and its logging statements."""
     match wait:
-        case ast.Expr(value=ast.Call(func=ast.Attribute(value=client, attr=name), args=[], keywords=[])):
-            if name == _WAIT:
-                return f"not {source.code_of(client)}.service_is_ready()", []
+        case ast.Expr(value=ast.Call(func=ast.Attribute(value=client, attr=name))) if name == _WAIT:
+            return f"not {source.code_of(client)}.service_is_ready()", []
         case ast.While(
             test=ast.UnaryOp(op=ast.Not(), operand=ast.Call(func=ast.Attribute(value=client, attr=name))),
             orelse=[],

@@ -25,6 +25,14 @@ def edits_for_waiting(place: CodeLocation | None, entity: EntityId, timeline: Ti
     return *_returning(place, entity, timeline), *edits_for_steps(place, entity, timeline)
 
 
+def edits_for_service(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
+    """Return edits of a callback that waits at a place for a service."""
+    if timeline.entities[entity].kind is not EntityKind.SERVICE:
+        return edits_for_waiting(place, entity, timeline)
+    words = f"return the response from {who(entity, timeline)} at once if the service is not there"
+    return by_edit(place, words, look_again)
+
+
 def edits_for_steps(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
     """Return edits of a callback that is in an endless loop at a place."""
     return by_edit(place, f"do one step of the loop at each call of {who(entity, timeline)}", step_by_step)

@@ -16,7 +16,7 @@ from sim.diagnosis.rule import (
     made_at,
     place_of,
 )
-from sim.diagnosis.rules.edits import edits_for_waiting
+from sim.diagnosis.rules.edits import edits_for_service
 from sim.diagnosis.rules.names import offer
 from sim.diagnosis.time_limits import time_limit
 from sim.diagnosis.timeline_view import TimelineView
@@ -191,7 +191,7 @@ class ServiceNeverComes(Rule):
             place,
             for_ever=found.until >= timeline.end and not found.ends,
             until=found.ends,
-            remedies=edits_for_waiting(place, found.subject, timeline),
+            remedies=edits_for_service(place, found.subject, timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
