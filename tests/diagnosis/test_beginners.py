@@ -35,6 +35,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "def on_bell(self, request):",
             "def on_bell(self, request, response)",
         ),
+        (
+            "wrong_arity_of_done_callback",
+            "program-raised",
+            "future.add_done_callback(lambda:",
+            "write lambda future: …",
+        ),
         ("wait_for_service", "service-never-comes", "self.client.wait_for_service()", "start the node"),
         ("wait_in_service", "service-never-comes", "self.client.wait_for_service(", "start the node"),
         ("lock_across_callbacks", "self-made-deadlock", "with self.", "in the same order"),

@@ -159,6 +159,7 @@ def test_a_name_that_is_not_written_at_the_line_stays() -> None:
             "create_service(Trigger, 'a', self.on)",
             "def on(self, request, response):",
         ),
+        ("def on(self):", "ask().add_done_callback(self.on)", "def on(self, future):"),
         ("def on(self, a, used):", "create_timer(1.0, self.on)", None),
         ("def on(self, *all):", "create_timer(1.0, self.on)", None),
         ("def on(self):", "create_timer(1.0, self.on)", None),
@@ -171,6 +172,14 @@ def test_a_callback_gets_the_parameters_it_is_called_with(
     text = node(f"def __init__(self):\n    self.{made}\n\n{definition}  # here\n    print('x', used)\n")
     expected = None if fitted is None else [f"-    {definition}  # here", f"+    {fitted}  # here"]
     assert changed(text, fit_parameters) == expected
+
+
+def test_a_lambda_gets_the_parameters_it_lacks() -> None:
+    text = node("def tick(self):\n    self.ask().add_done_callback(lambda: self.log())  # here")
+    assert changed(text, fit_parameters) == [
+        "-        self.ask().add_done_callback(lambda: self.log())  # here",
+        "+        self.ask().add_done_callback(lambda future: self.log())  # here",
+    ]
 
 
 def test_a_service_returns_its_response() -> None:

@@ -85,6 +85,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("rate_sleep", [APART]),
         ("wrong_arity", [FIT]),
         ("wrong_arity_of_timer", [FIT]),
+        ("wrong_arity_of_done_callback", [FIT]),
         ("wait_for_service", [LATER]),
         ("wait_in_service", ["return the response from grip at once if the service is not there (diff)"]),
         (

@@ -9,14 +9,22 @@ _PARAMETERS = {
     "create_timer": (),
     "create_subscription": ("message",),
     "create_service": ("request", "response"),
+    "add_done_callback": ("future",),
 }
 
 
 def fit_parameters(source: SourceEditor, line: int) -> None:
     """Give the callback that is defined at a line the number of parameters that it is called with.
 
-    Its parameters keep their names; one is removed only if it is not used.
+    Its parameters keep their names; one is removed only if it is not used. A lambda is given those it lacks.
     """
+    lambdas = [
+        each for each in source.nodes(ast.Lambda) if each.lineno == line and not ast.unparse(each.args)
+    ]
+    if lambdas:
+        begin = f"lambda {', '.join(_parameters(source, lambdas[0]))}"
+        source.replace(lambdas[0], source.code_of(lambdas[0]).replace("lambda", begin, 1))
+        return
     callback = _defined_at(source, line)
     wanted = _parameters(source, callback)
     names = callback.args.args[1:]
@@ -31,14 +39,17 @@ def fit_parameters(source: SourceEditor, line: int) -> None:
         source.cut_behind(callback.args.args[len(wanted)], surplus[-1])
 
 
-def _parameters(source: SourceEditor, callback: ast.FunctionDef) -> Sequence[str]:
+def _parameters(source: SourceEditor, callback: ast.FunctionDef | ast.Lambda) -> Sequence[str]:
     """Return the parameters of a callback, by the call in which the program uses it."""
+    name = callback.name if isinstance(callback, ast.FunctionDef) else ""
     found = {
         call.func.attr
         for call in source.nodes(ast.Call)
         if isinstance(call.func, ast.Attribute)
         and call.func.attr in _PARAMETERS
-        and any(isinstance(each, ast.Attribute) and each.attr == callback.name for each in call.args)
+        and any(
+            each is callback or (isinstance(each, ast.Attribute) and each.attr == name) for each in call.args
+        )
     }
     if len(found) != 1:
         raise NotSimpleError

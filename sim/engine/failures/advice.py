@@ -59,16 +59,28 @@ def rejected_callback(error: BaseException) -> RejectedCallback | None:
     if not frames or not isinstance(error, TypeError | RuntimeError) or is_own(frames[-1]):
         return None
     inside = frames[-1].f_locals
-    callback = inside.get("callback", getattr(inside.get("self"), "callback", None))
+    caller = inside.get("self")
+    kind = getattr(caller, "kind", EntityKind.SUBSCRIPTION)
+    callback = inside.get("callback", getattr(caller, "callback", None))
+    if callback is None and _calls_with_future(caller):
+        callback, kind = getattr(caller, "_handler", None), EntityKind.CLIENT
     code = getattr(callback, "__code__", None)
     if code is None or not any(each in str(error) for each in ("positional argument", "callback should")):
         return None
-    taken = _PARAMETERS[getattr(inside.get("self"), "kind", EntityKind.SUBSCRIPTION)]
-    own = ["self"] if inspect.ismethod(callback) else []
-    written = f"def {code.co_name}({', '.join([*own, *taken])})"
+    taken = ", ".join([*(["self"] if inspect.ismethod(callback) else []), *_PARAMETERS[kind]])
+    written = (
+        f"lambda {taken}: …".replace(" :", ":")
+        if code.co_name == "<lambda>"
+        else f"def {code.co_name}({taken})"
+    )
     return RejectedCallback(
         code.co_filename, code.co_firstlineno, f"rclpy calls it with other arguments; write {written}"
     )
+
+
+def _calls_with_future(task: object) -> bool:
+    """Return whether a task of an executor, the model's or rclpy's, runs a done-callback of a future."""
+    return any(hasattr(each, "add_done_callback") for each in getattr(task, "_args", None) or ())
 
 
 _PARAMETERS = {
