@@ -5,6 +5,8 @@ from pathlib import Path
 import pytest
 
 from cbtui.runs.setup.program_page import page_of_program
+from sim.diagnosis import CodeLocation, Explanation
+from sim.trace.timeline import Timeline
 from tests.support.engine_runs import run_program
 
 _NODE = """
@@ -37,3 +39,19 @@ def test_a_service_is_called_as_its_type_allows(services: list[str], said: str, 
     page = page_of_program("node.py", "virtual", run.timeline)
     assert said in page["tries"].splitlines()
     assert "SetBool" not in page["tries"]
+
+
+@pytest.mark.parametrize(
+    ("place", "has_cures", "said"),
+    [
+        (CodeLocation("node.py", 3, 3), True, "`d` shows its line and tries a cure"),
+        (CodeLocation("node.py", 3, 3), False, "`d` shows its line and says what to do"),
+        (None, True, "`d` tries a cure"),
+    ],
+)
+def test_a_problem_promises_a_cure_only_where_there_is_one(
+    place: CodeLocation | None, has_cures: bool, said: str
+) -> None:
+    problem = Explanation("tick waits", "", "", place)
+    page = page_of_program("node.py", "virtual", Timeline(), [problem, problem], has_cures=has_cures)
+    assert f"- tick waits. {said}, and 1 further problem." in page["tries"].splitlines()

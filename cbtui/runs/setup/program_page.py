@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
 from cbtui.runs.setup.changeable import is_set_bool, programs_own
+from sim.diagnosis import Explanation
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted, plural
 from sim.trace.descriptions import executor_label
@@ -26,10 +27,18 @@ fills them, with what waits in them and why. `?` explains each sign.
 
 
 def page_of_program(
-    name: str, clock: str, timeline: Timeline, problems: Sequence[str] = ()
+    name: str,
+    clock: str,
+    timeline: Timeline,
+    problems: Sequence[Explanation] = (),
+    *,
+    has_cures: bool = False,
 ) -> Mapping[str, str]:
-    """Return the sections of the page; ``problems`` are what went wrong, the worst first."""
-    tries = "\n".join(f"- {line}" for line in _tries(timeline, problems))
+    """Return the sections of the page; ``problems`` are what went wrong, the worst first.
+
+    ``has_cures``: whether the first problem has cures that can be tried.
+    """
+    tries = "\n".join(f"- {line}" for line in _tries(timeline, problems, has_cures=has_cures))
     return {
         "about": _ABOUT.format(name=name, clock=clock),
         "found": f"## What was found\n\n{_found(timeline)}\n",
@@ -70,12 +79,14 @@ def _callback(entity: EntityInfo) -> str:
     return f"``{entity.spoken_name}``"
 
 
-def _tries(timeline: Timeline, problems: Sequence[str]) -> Iterator[str]:
+def _tries(timeline: Timeline, problems: Sequence[Explanation], *, has_cures: bool) -> Iterator[str]:
     """Suggestions for this program, the most useful first."""
     own = [each for each in timeline.entities.values() if programs_own(each)]
     if problems:
         more = f", and {counted(len(problems) - 1, 'further problem')}" if len(problems) > 1 else ""
-        yield f"{problems[0]}. `d` shows its line and a cure{more}."
+        line = "" if problems[0].place is None else "its line and "
+        what = "tries a cure" if has_cures else "says what to do"
+        yield f"{problems[0].what}. `d` {line and 'shows '}{line}{what}{more}."
     services = [each for each in own if each.kind is EntityKind.SERVICE]
     calls = next((each.name for each in services if is_set_bool(each)), None)
     if calls is not None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from textual.message import Message
 from textual.screen import Screen
 
+from cbtui.runs.judged.cures import cures_of
 from cbtui.runs.live.file_watch import CANNOT_WATCH, content_of, contents
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.program_page import MOST, page_of_program
@@ -54,8 +55,10 @@ class OwnFile(ScreenPart):
     def page(self) -> Mapping[str, str]:
         """Return the sections of the guide."""
         run = self.runs.run
-        problems = [each.explanation.what for each in self.runs.findings.findings if each.is_problem]
-        return page_of_program(self.file.name, run.setup.clock, run.timeline, problems)
+        problems = [each.explanation for each in self.runs.findings.findings if each.is_problem]
+        cures = (cures_of(each, run.setup, self.restarts.changes, run.timeline) for each in problems[:1])
+        has_cures = run.setup.real is None and any(True for each in cures for _ in each)
+        return page_of_program(self.file.name, run.setup.clock, run.timeline, problems, has_cures=has_cures)
 
     def update_guide(self) -> None:
         """Write the guide again if the findings changed in more than their durations.
