@@ -175,17 +175,13 @@ def line_of(entity: EntityId, window: Window, timeline: Timeline) -> CodeLocatio
 
 
 def by_edit(
-    place: CodeLocation | None,
-    words: str,
-    change: Callable[..., None],
-    *more: object,
-    own_groups: tuple[EntityId, ...] = (),
+    place: CodeLocation | None, words: str, change: Callable[..., None], *more: object
 ) -> tuple[Remedy, ...]:
     """Return the remedy that edits a place by a function of its line and ``more``; none without a place."""
     if place is None:
         return ()
     edit = CodeEdit(place.file, words, change, (place.first_line, *more))
-    return (Remedy(own_groups, edit=edit),)
+    return (Remedy(edit=edit),)
 
 
 def entity_of(found: Finding, timeline: Timeline) -> EntityInfo:

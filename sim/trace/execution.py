@@ -1,7 +1,7 @@
 """Which callbacks ran when and on which thread, and which were suspended."""
 
 from collections import defaultdict, deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 
 from sim.trace.events import (
     CallbackEnded,
@@ -231,6 +231,10 @@ class Execution:
         rows = [row for lane in self._threads.values() for row in lane.covering(at)]
         suspended = {entity for entity, lane in self._suspended.items() if lane.covering(at)}
         return suspended.union(map(self._spans.entity, rows))
+
+    def ever_suspended(self) -> Collection[EntityId]:
+        """The entities of which a call was ever suspended."""
+        return self._suspended.keys()
 
     def busy(self, thread: ThreadId, window: Window) -> Nanoseconds:
         """How long the thread ran callbacks in the window."""

@@ -193,6 +193,11 @@ class Timeline:
         """The times at which an entity's queue lost messages in the window."""
         return self._run.queues[entity].losses(window)
 
+    @property
+    def ever_suspended(self) -> Collection[EntityId]:
+        """The entities of which a call was ever suspended in an await."""
+        return self._run.execution.ever_suspended()
+
     def calls_of(self, entity: EntityId, window: Window) -> int:
         """The number of an entity's calls that started in the window; a resumption starts none."""
         return self._run.execution.calls(entity, window)

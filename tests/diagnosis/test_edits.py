@@ -1,14 +1,17 @@
 """Edits of source: the lines that change, layout and comments that stay, and the shapes that are refused."""
 
+from textwrap import indent
+
 import pytest
 
 from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.diagnosis.edits.functions import fit_parameters, return_response
+from sim.diagnosis.edits.groups import give_own_group
 from sim.diagnosis.edits.names import rename
 from sim.diagnosis.edits.polling import leave_out
 from sim.diagnosis.edits.profiles import match_quality
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
-from tests.diagnosis.edited_source import MARK, changed, node
+from tests.diagnosis.edited_source import MARK, changed, edited, node
 
 
 def test_what_follows_a_call_goes_on_in_a_done_callback_with_its_comments() -> None:
@@ -75,14 +78,17 @@ def test_what_is_not_simple_is_not_moved(methods: str) -> None:
 
 
 def test_a_function_of_no_class_and_what_is_no_python_is_not_edited() -> None:
-    assert changed("def tick(self):\n    self.client.call(1)  # here\n", await_reply) is None
-    assert CodeEdit("a.py", "", await_reply, (1,)).applied("def tick(") is None
-    assert CodeEdit("a.py", "", await_reply, (1,)).applied("") is None
+    assert changed("def tick(self):\n    self.client.call(1)  # here\n", await_reply, 1) is None
+    assert CodeEdit("a.py", "", await_reply, (1, 1)).applied("def tick(") is None
+    assert CodeEdit("a.py", "", await_reply, (1, 1)).applied("") is None
 
 
-def test_a_call_is_awaited_wherever_it_is() -> None:
+def test_a_call_is_awaited_wherever_it_is_in_a_group_of_its_own() -> None:
     text = node(
         """
+        def __init__(self):
+            self.create_service(SetBool, "serve", self.serve)
+
         def serve(self, request, response):
             for each in self.clients:
                 if each.call(request).success:  # here
@@ -91,13 +97,19 @@ def test_a_call_is_awaited_wherever_it_is() -> None:
             return response
         """
     )
-    assert changed(text, await_reply) is None
+    made = 6
+    assert changed(text, await_reply, made) is None
     assert changed(
         text.replace(f"  {MARK}", "").replace(
             "reply = each.call(request)", f"reply = each.call(request)  {MARK}"
         ),
         await_reply,
+        made,
     ) == [
+        "+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup",
+        '-        self.create_service(SetBool, "serve", self.serve)',
+        '+        self.create_service(SetBool, "serve", self.serve, '
+        "callback_group=MutuallyExclusiveCallbackGroup())",
         "-    def serve(self, request, response):",
         "+    async def serve(self, request, response):",
         "-            reply = each.call(request)  # here",
@@ -107,15 +119,42 @@ def test_a_call_is_awaited_wherever_it_is() -> None:
 
 def test_a_loop_that_waits_for_a_future_is_one_await() -> None:
     text = node(
-        "def tick(self):\n    while not future.done():\n        time.sleep(0.1)  # here\n    self.log()"
+        """
+        def __init__(self):
+            self.create_timer(1.0, self.tick, self.group)
+
+        def tick(self):
+            while not future.done():
+                time.sleep(0.1)  # here
+            self.log()
+        """
     )
-    assert changed(text, await_reply) == [
+    assert changed(text, await_reply, 6) == [
+        "+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup",
+        "-        self.create_timer(1.0, self.tick, self.group)",
+        "+        self.create_timer(1.0, self.tick, MutuallyExclusiveCallbackGroup())",
         "-    def tick(self):",
         "-        while not future.done():",
         "-            time.sleep(0.1)  # here",
         "+    async def tick(self):",
         "+        await future  # here",
     ]
+
+
+@pytest.mark.parametrize(
+    ("made", "given"),
+    [
+        ("self.create_timer(1.0, self.tick, callback_group=self.group)  # here", "callback_group="),
+        (
+            "ActionServer(\n    self, Count, 'count', self.count,  # here\n)",
+            "self.count, callback_group=",
+        ),
+        ("self.make_timer(self.tick)  # here", None),
+    ],
+)
+def test_whatever_takes_a_group_is_given_its_own(made: str, given: str | None) -> None:
+    text = edited(node(f"def __init__(self):\n{indent(made, '    ')}"), give_own_group)
+    assert text is None if given is None else f"{given}MutuallyExclusiveCallbackGroup()" in (text or "")
 
 
 def test_a_spin_is_left_out_and_a_body_is_never_empty() -> None:

@@ -8,7 +8,7 @@ from sim.ros.scheduling.callback_groups import (
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from tests.diagnosis.findings import Diagnosed, diagnosed, executor_of
+from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, executor_of, spin
 from tests.support.simulation import Simulation
 
 
@@ -83,3 +83,18 @@ def test_the_default_groups_of_several_nodes_are_nobodys_choice() -> None:
 
 def test_one_thread_and_the_default_group_are_well() -> None:
     assert rules(two_timers((None, None), threads=None)) == []
+
+
+def test_groups_matter_on_one_thread_where_a_callback_awaits_in_one() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        client = node.create_client(SetBool, "/serve")
+        node.create_service(SetBool, "/serve", lambda request, response: response)
+
+        async def ask() -> None:
+            await client.call_async(SetBool.Request())
+
+        node.create_timer(1.0, ask, MutuallyExclusiveCallbackGroup())
+        spin(node, None)
+
+    assert rules(diagnosed(program, until=5.0)) == []

@@ -2,6 +2,7 @@
 
 import ast
 
+from sim.diagnosis.edits.groups import give_own_group
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
 
 _SPIN = "spin_until_future_complete"
@@ -42,8 +43,12 @@ def go_on_in_done_callback(source: SourceEditor, line: int) -> None:
     source.replace_lines(wait, last, "\n".join(lines) + "\n" + kept)
 
 
-def await_reply(source: SourceEditor, line: int) -> None:
-    """Let the callback at a line await the reply, as a coroutine."""
+def await_reply(source: SourceEditor, line: int, made: int) -> None:
+    """Let the callback at a line await the reply, as a coroutine in a group of its own.
+
+    ``made`` is the line that makes what calls it.
+    """
+    give_own_group(source, made)
     callback = source.callback_at(line)
     statement = _innermost(callback, line)
     call = plain_call(statement)

@@ -155,13 +155,10 @@ class SourceEditor:
         before = [each for each in self.tree.body if isinstance(each, ast.Import | ast.ImportFrom)]
         if not before:
             raise NotSimpleError
-        imports = [each for each in before if isinstance(each, ast.ImportFrom)]
         root, line = module.partition(".")[0], f"from {module} import {', '.join(names)}"
-        related: list[ast.Import | ast.ImportFrom] = [
-            each for each in imports if root <= (each.module or "") < module
-        ]
+        related = [each for each in before if root <= _module(each) < module]
         if root in sys.stdlib_module_names:
-            related = [each for each in before if _root(each) in sys.stdlib_module_names]
+            related = [each for each in before if _module(each).partition(".")[0] in sys.stdlib_module_names]
             if not related:
                 self.insert_before(before[0], f"{line}\n")
                 return
@@ -198,9 +195,8 @@ class SourceEditor:
         )
 
 
-def _root(statement: ast.Import | ast.ImportFrom) -> str:
-    name = statement.module or "" if isinstance(statement, ast.ImportFrom) else statement.names[0].name
-    return name.partition(".")[0]
+def _module(statement: ast.Import | ast.ImportFrom) -> str:
+    return statement.module or "" if isinstance(statement, ast.ImportFrom) else statement.names[0].name
 
 
 def indentation(statement: ast.stmt) -> str:

@@ -3,7 +3,7 @@
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.polling import go_on_where_set, leave_out, look_again, one_round_a_call, step_by_step
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
-from sim.diagnosis.rule import CodeLocation, by_edit
+from sim.diagnosis.rule import CodeLocation, by_edit, made_at
 from sim.diagnosis.words import who
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.timeline import Timeline
@@ -11,11 +11,12 @@ from sim.trace.timeline import Timeline
 
 def edits_for_reply(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
     """Return edits of a callback that waits for a reply at a place."""
-    subject = who(entity, timeline)
-    return (
-        *by_edit(place, "go on in a done-callback of the future", go_on_in_done_callback),
-        *by_edit(place, f"await the reply in an async def {subject}", await_reply, own_groups=(entity,)),
-    )
+    subject, made = who(entity, timeline), made_at(timeline.entities[entity])
+    later = by_edit(place, "go on in a done-callback of the future", go_on_in_done_callback)
+    if place is None or made is None or made.file != place.file:
+        return later
+    words = f"await the reply in an async def {subject}, and give {subject} a callback group of its own"
+    return *later, *by_edit(place, words, await_reply, made.first_line)
 
 
 def edits_for_waiting(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:

@@ -40,7 +40,10 @@ class ThreadsNeverUsed(Rule):
 
 
 class GroupsChangeNothing(Rule):
-    """Groups without threads, or threads without groups: each alone changes nothing."""
+    """Groups without threads, or threads without groups: each alone changes nothing.
+
+    With one thread groups matter to callbacks that await or spin: they hold their groups while others run.
+    """
 
     id = "groups-change-nothing"
     summary = "groups or threads make no difference"
@@ -56,7 +59,8 @@ class GroupsChangeNothing(Rule):
             first = view.timeline.group_members(only.id)[0]
             yield Finding(self, 0, view.end, first.id, detail=_THREADS)
         node = _node_with_groups(view.timeline)
-        if node is not None and thread_count(view.timeline) == 1:
+        held_without_thread = {*view.timeline.ever_suspended, *view.nested_spinners}
+        if node is not None and thread_count(view.timeline) == 1 and not held_without_thread:
             yield Finding(self, 0, view.end, node.id, detail=_GROUPS)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
