@@ -36,27 +36,34 @@ class _State(NamedTuple):
 def paint_scene(
     actors: Sequence[Actor], timeline: Timeline, now: Nanoseconds, width: int, height: int, charset: Charset
 ) -> list[list[TextRun]]:
-    """Return at most ``height`` rows of ``width`` columns."""
+    """Return at most ``height`` rows of ``width`` columns.
+
+    Without room for all figures, the last ones are words alone; without room for these, a number.
+    """
     moment = timeline.moment(now)
     numbers = {group: place for place, group in enumerate(timeline.groups)}
     blank = [TextRun(" " * width, _PLAIN)]
     apart = height >= len(actors) * (_ROWS + 1)
     rows: list[list[TextRun]] = []
-    for actor in actors:
+    shown = actors if len(actors) <= height else actors[: max(0, height - 1)]
+    for place, actor in enumerate(shown):
         found = (each for each in timeline.entities.values() if actor.follows in (each.callback, each.name))
         entity = next(found, None)
         state = _State(0.0, "is not there yet") if entity is None else _state(entity, timeline, moment)
         ink = _FAINT if entity is None else Ink(Role.LINE, numbers.get(entity.group, 0))
-        texts = (
-            [
-                TextRun(actor.follows, _STRONG),
-                TextRun(f" {state.words}", _WARN if state.is_trouble else _PLAIN),
-            ],
-            [TextRun(state.reason, _WARN if state.is_trouble else _FAINT)],
-        )
-        for figure, text in zip(_figure(actor.figure, state.progress, ink, charset), texts, strict=True):
-            rows.append(_fitted([*figure, TextRun(" " * _GAP, _PLAIN), *text], width, charset))
+        name, gap = TextRun(actor.follows, _STRONG), TextRun(" " * _GAP, _PLAIN)
+        words = TextRun(f" {state.words}", _WARN if state.is_trouble else _PLAIN)
+        reason = TextRun(state.reason, _WARN if state.is_trouble else _FAINT)
+        if place < height - len(actors):
+            first, second = _figure(actor.figure, state.progress, ink, charset)
+            lines = [[*first, gap, name, words], [*second, gap, reason]]
+        else:
+            colon = reason._replace(text=": " if state.reason else "")
+            lines = [[TextRun(" " * _COLUMNS, _PLAIN), gap, name, words, colon, reason]]
+        rows += [_fitted(line, width, charset) for line in lines]
         rows += [blank] if apart else []
+    if len(shown) < len(actors):
+        rows.append(_fitted([TextRun(f"+{len(actors) - len(shown)} more", _FAINT)], width, charset))
     return rows[:height]
 
 

@@ -48,6 +48,18 @@ def test_what_a_callback_does_and_why_stands_beside_its_figure() -> None:
     assert "group A held by timer_callback" in "\n".join(scene(timeline, 4.2))
 
 
+def test_nothing_is_left_out_silently_where_not_every_figure_has_room() -> None:
+    timeline = told(shared_group_run(), 12.9)
+    first, _, second = scene(timeline, 12.9, height=3)
+    assert first.rstrip().endswith("timer_callback runs 8.9 s")
+    assert second.strip().startswith("/odom waits 8.9 s: group A held by timer")
+    assert [row.split()[:2] for row in scene(timeline, 12.9, height=2)] == [
+        ["timer_callback", "runs"],
+        ["/odom", "waits"],
+    ]
+    assert scene(timeline, 12.9, height=1)[0].rstrip() == "+2 more"
+
+
 @pytest.mark.parametrize("charset", Charset)
 @pytest.mark.parametrize(("width", "height"), [(60, 6), (24, 4), (11, 1), (5, 3)])
 def test_a_scene_has_exactly_its_room(charset: Charset, width: int, height: int) -> None:
