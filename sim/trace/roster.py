@@ -40,6 +40,8 @@ class Roster:
         """The first entity of each place in the source: several may share a callback."""
         self.labels: Counter[str] = Counter()
         """How many callbacks have a label."""
+        self.functions: set[str] = set()
+        """The names of the functions of callbacks other than services."""
         self._sizes: dict[GroupId, int] = {}
         self._members: dict[GroupId, list[EntityInfo]] = {}
         self._seen = 0
@@ -81,6 +83,8 @@ class Roster:
         self.labels[entity.label] += 1
         if entity.kind is EntityKind.SERVICE:
             self.services.add(entity.name)
+        else:
+            self.functions.add(entity.callback)
         if size < MOST_LANES:
             self._members.setdefault(entity.group, []).append(entity)
 

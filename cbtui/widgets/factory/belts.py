@@ -25,7 +25,7 @@ class BeltPainter:
         self._scene = scene
         self._door = door
         every = [belt for area in scene.areas for belt in area.belts]
-        longest = max((len(belt_name(belt)) for belt in every), default=0)
+        longest = max((len(belt_name(belt, scene.timeline)) for belt in every), default=0)
         self._name = min(longest, _LONGEST_NAME, max(_SHORTEST_NAME, door * 2 // 5))
         self._level = max((len(_widest_level(belt)) for belt in every if belt.tick is None), default=0)
 
@@ -55,7 +55,7 @@ class BeltPainter:
 
     def _head(self, belt: Belt, line: int) -> int:
         """Write a belt's name and its level or a timer's rate; return the column after them."""
-        self._canvas.write(1, line, belt_name(belt), STRONG, self._name)
+        self._canvas.write(1, line, belt_name(belt, self._scene.timeline), STRONG, self._name)
         at = self._name + 2
         if belt.tick is not None:
             text, ink = f"{self._glyphs.clock} {duration(belt.entity.period)}", PLAIN

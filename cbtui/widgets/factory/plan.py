@@ -138,7 +138,7 @@ def _most_telling(scene: FactoryScene, room: int, density: Density) -> Sequence[
 def _worth(area: Area) -> int:
     if area.waiting:
         return 4
-    if area.inside:
+    if area.inside or area.kept:
         return 3
     return 2 if area.visitors else 1 if any(belt.queue.depth for belt in area.belts) else 0
 
@@ -179,17 +179,18 @@ def _arranged(
 
 
 def _belts_shown(area: Area, room: int) -> tuple[int, ...]:
-    """Return the places of the belts that fit: those that wait or hold something first.
+    """Return the places of the belts that fit: those that wait, run or hold something first.
 
     If some are hidden, a row shows their number, unless there is only one row.
     """
     every = range(len(area.belts))
+    running = {worker.span.entity for worker in area.visitors if worker.span and worker.inside}
     if len(every) <= room:
         return tuple(every)
 
-    def worth(place: int) -> tuple[bool, int]:
+    def worth(place: int) -> tuple[bool, bool, int]:
         belt = area.belts[place]
-        return belt.wait is not None, belt.queue.depth
+        return belt.wait is not None, belt.entity.id in running, belt.queue.depth
 
     ranked = sorted(every, key=worth, reverse=True)
     return tuple(sorted(ranked[: max(1, room - 1)]))

@@ -14,6 +14,8 @@ from sim.trace.model import EntityInfo
 
 _FREE_SEATS = 4
 """Free seats that an open area shows; it always has room for more."""
+_ABREAST = 4
+"""Columns of a seat that has others beside it."""
 
 
 class SeatPainter:
@@ -46,7 +48,9 @@ class SeatPainter:
         leaving = [worker for worker in area.visitors if not worker.inside]
         if area.is_open:
             seats += [partial(self._left, worker) for worker in leaving]
-            self._open(seats)
+            glyphs = self._canvas.glyphs
+            faces = [glyphs.busy] * area.inside + [glyphs.away] * len(area.kept) + [" "] * len(leaving)
+            self._open(seats, faces)
             return
         if not seats and leaving:
             seats = [partial(self._left, max(leaving, key=_ended_at))]
@@ -61,8 +65,8 @@ class SeatPainter:
             seat(line, each)
             line += each
 
-    def _open(self, seats: Sequence[Callable[[int, int], None]]) -> None:
-        """Draw seats below each other from the top, then free ones side by side."""
+    def _open(self, seats: Sequence[Callable[[int, int], None]], faces: Sequence[str]) -> None:
+        """Draw seats below each other from the top, then free ones or those without a row side by side."""
         room = self._place.rows
         each = max(self.tall, min(self.tall + 1, (room - self.tall) // max(1, len(seats)), 3))
         shown = seats if len(seats) * each <= room else seats[: max(0, room - 1) // each]
@@ -72,9 +76,19 @@ class SeatPainter:
             line += each
         left = self._place.first + room - line
         if len(shown) < len(seats):
-            self._canvas.write(self._start, line, f"+{len(seats) - len(shown)} more", PLAIN, self._end)
+            self._crowd(faces[len(shown) :], line)
         elif left >= self.tall:
             self._free_seats(line)
+
+    def _crowd(self, faces: Sequence[str], line: int) -> None:
+        """Draw seats side by side, with no more than who sits there; count those that do not fit."""
+        left, right = self._marks
+        room = (self._end - self._start - len("+99 more")) // _ABREAST
+        seats = "".join(f"{left}{face}{right} " for face in faces[:room])
+        at = self._canvas.write(self._start, line, seats, self._line_ink, len(seats))
+        busy = faces.count(self._canvas.glyphs.busy)
+        text = f"+{len(faces) - room} more" if len(faces) > room else f"{busy} busy" if busy else ""
+        self._canvas.write(at, line, text, PLAIN, self._end - at)
 
     # one seat
 
@@ -131,8 +145,8 @@ class SeatPainter:
         self._canvas.write(self._start + 4, line, first_fitting(texts, room) or texts[-1], PLAIN, room)
 
     def _free_seats(self, line: int) -> None:
-        for place in range(min(_FREE_SEATS, (self._end - self._start) // 4)):
-            self._seat(self._start + 4 * place, line)
+        for place in range(min(_FREE_SEATS, (self._end - self._start) // _ABREAST)):
+            self._seat(self._start + _ABREAST * place, line)
 
     def _seat(self, at: int, line: int) -> None:
         left, right = self._marks

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from cbtui.text.callback_names import short_name
 from cbtui.widgets.factory.scene import Area, Belt, FactoryScene, FactoryWorker, WorkerState
+from cbtui.widgets.lanes.names import told_apart
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.descriptions import name_of
@@ -119,9 +120,9 @@ _WITHOUT_HOLDER = {
 }
 
 
-def belt_name(belt: Belt) -> str:
-    """Return the name of a belt."""
-    return short_name(belt.entity.label)
+def belt_name(belt: Belt, timeline: Timeline) -> str:
+    """Return the name of a belt; a client has its service's, as its level says that it is one."""
+    return short_name(told_apart(belt.entity, timeline, reply="").rstrip())
 
 
 def queue_level(belt: Belt) -> str:

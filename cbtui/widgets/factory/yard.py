@@ -14,7 +14,9 @@ _UNUSED = (WorkerState.NEVER, WorkerState.NOT_YET)
 def draw_yard(canvas: Canvas, scene: FactoryScene, column: int, first: int, after: int) -> None:
     """Draw the workers below each other from ``column`` on, in the rows ``first`` to before ``after``."""
     room = max(0, after - first)
-    shown = scene.workers if len(scene.workers) <= room else scene.workers[: max(0, room - 1)]
+    fitting = len(scene.workers) if len(scene.workers) <= room else max(0, room - 1)
+    busy_first = sorted(scene.workers, key=_at_home)
+    shown = [worker for worker in scene.workers if worker in busy_first[:fitting]]
     width = canvas.width - column
     for line, worker in enumerate(shown, start=first):
         texts = activity_texts(worker, scene.timeline)
@@ -22,7 +24,7 @@ def draw_yard(canvas: Canvas, scene: FactoryScene, column: int, first: int, afte
         at = _person(canvas, worker, column, line, width - 2)
         canvas.write(at + 1, line, text, _ink(worker), column + width - at - 1)
     if len(shown) < len(scene.workers):
-        hidden = scene.workers[len(shown) :]
+        hidden = busy_first[fitting:]
         canvas.write(column, after - 1, f"+{len(hidden)}: {_counted(hidden)}", FAINT, width)
 
 

@@ -52,8 +52,11 @@ def told_apart(entity: EntityInfo, timeline: Timeline, reply: str) -> str:
 
     ``reply`` is the sign of a reply, which is what a client takes.
     """
-    if roster_of(timeline).labels[entity.label] < 2 or entity.kind is EntityKind.SERVICE:
+    roster = roster_of(timeline)
+    if roster.labels[entity.label] < 2:
         return entity.label
+    if entity.kind is EntityKind.SERVICE:
+        return entity.name if entity.label in roster.functions else entity.label
     return f"{entity.label} {reply}" if entity.kind is EntityKind.CLIENT else entity.callback or entity.label
 
 

@@ -231,6 +231,34 @@ def test_more_belts_than_rows_say_how_many_are_left_out() -> None:
     assert "+15 more belts" in text
 
 
+def test_where_rows_are_few_those_who_are_busy_come_first() -> None:
+    run = Run()
+    threads = [run.thread(f"ThreadPoolExecutor-0_{number}") for number in range(20)]
+    group = run.exclusive(run.node("/n"))
+    entities = [run.subscription(group, f"/t{number}", f"t{number}_callback") for number in range(20)]
+    for entity, thread in zip(entities[:19], threads[:19], strict=True):
+        run.callback(entity, thread, 0.1 + entity / 100, 0.001)
+    run.callback(entities[19], threads[19], 1.0, 8.0)
+    run.stop(9.0)
+    text = plain(FactoryPainter().paint(told(run), ns(2.0), 120, 10))
+    assert "Pool-0_19 works in A" in text
+    assert "t19 0/10" in text
+
+
+def test_everybody_in_an_open_area_is_seen_in_a_single_row() -> None:
+    run = Run()
+    node = run.node("/n")
+    group = run.reentrant(node)
+    box = run.subscription(group, "/box", "box_callback")
+    run.timer(run.exclusive(node), "blink", 1.0)
+    run.timer(run.exclusive(node), "beat", 1.0)
+    for number in range(4):
+        run.callback(box, run.thread(f"ThreadPoolExecutor-0_{number}"), 1.0, 8.0)
+    run.stop(9.0)
+    text = plain(FactoryPainter().paint(told(run), ns(2.0), 78, 9))
+    assert "(☻) (☻) (☻) (☻) 4 busy" in text
+
+
 @settings(max_examples=examples(150), deadline=None)
 @given(
     st.sampled_from(RUNS),

@@ -63,9 +63,11 @@ def test_lanes_of_one_group_have_names_of_their_own() -> None:
     run.timer(group, "count", 1.0)
     run.subscription(group, "/count", "on_count")
     run.subscription(group, "/words", "on_words")
+    run.timer(group, "lorry", 1.0)
+    run.service(group, "/lorry", "on_lorry")
     timeline = run_timeline(run)
     names = [told_apart(each, timeline, "◂") for each in timeline.entities.values()]
-    assert names == ["bake", "bake ◂", "count", "on_count", "words"]
+    assert names == ["bake", "bake ◂", "count", "on_count", "words", "lorry", "/lorry"]
 
 
 def test_where_lanes_are_few_threads_leave_room_for_callbacks_that_run() -> None:
