@@ -11,7 +11,6 @@ from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.diagnosis.words import group_of, thread_count
 from sim.quantities.durations import duration, timestamp
-from sim.quantities.plural import counted
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind, Reason
 from sim.trace.model import Blocked, EntityInfo, Nanoseconds, Span, Wait, Window
@@ -182,4 +181,6 @@ def _at_rest(timeline: Timeline, at: Nanoseconds) -> str:
     threads = max(busy, thread_count(timeline))
     if busy == threads:
         return "nothing else is ready"
-    return f"nothing else is ready: {counted(threads - busy, 'thread')} of {threads} without work"
+    idle, verb = threads - busy, "is" if threads - busy == 1 else "are"
+    everybody = {1: "the only thread", 2: "both threads"}.get(threads, f"all {threads} threads")
+    return f"nothing else is ready: {f'{idle} of {threads} threads' if busy else everybody} {verb} idle"

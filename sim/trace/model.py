@@ -71,6 +71,9 @@ class GroupInfo:
     letter: str
 
 
+_NAMES_THAT_SAY_NOTHING = ("callback", "<lambda>")
+
+
 @dataclass(frozen=True, slots=True)
 class EntityInfo:
     """Something with a callback: a timer, subscription, service, client, guard condition or waitable."""
@@ -100,11 +103,13 @@ class EntityInfo:
     def spoken_name(self) -> str:
         """The callback's function, else the topic, service or action, else the kind.
 
+        A function whose name says nothing gives way to these; that of a message filter is ``callback``.
         A client is named after the reply that it takes, so that it is not mistaken for the service.
         """
         if self.kind is EntityKind.CLIENT and self.name and not self.callback:
             return f"reply of {self.name}"
-        return self.callback or self.name or self.kind.value
+        named = "" if self.callback in _NAMES_THAT_SAY_NOTHING else self.callback
+        return named or self.name or self.callback or self.kind.value
 
 
 class Lasting:

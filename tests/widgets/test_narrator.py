@@ -1,5 +1,6 @@
 """The narrator: what the executor did, and why, at any moment of any run."""
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from textual.geometry import Size
@@ -38,6 +39,34 @@ def test_who_waits_for_a_group_is_told_with_its_holder() -> None:
         "odom_callback has waited since 4.0" in line and "group A held by timer" in line for line in told_at
     )
     assert "loses its oldest message" in "".join(narration(RUNS[0], ns(8.0)))
+
+
+def test_a_callback_whose_function_says_nothing_is_named_after_its_topic() -> None:
+    run = Run()
+    heard = run.subscription(run.exclusive(run.node("/n")), "/picture", "callback")
+    run.callback(heard, run.thread("MainThread"), 1.0, 1.0)
+    assert "/picture has a message" in narration(told(run, until=1.5), ns(1.0))[0]
+
+
+@pytest.mark.parametrize(
+    ("threads", "busy", "idle"),
+    [
+        (1, 0, ": the only thread is idle"),
+        (1, 1, ""),
+        (2, 0, ": both threads are idle"),
+        (4, 0, ": all 4 threads are idle"),
+        (4, 1, ": 3 of 4 threads are idle"),
+        (2, 1, ": 1 of 2 threads is idle"),
+    ],
+)
+def test_who_is_idle_is_told_where_nothing_waits(threads: int, busy: int, idle: str) -> None:
+    run = Run()
+    run.executor("MultiThreadedExecutor", threads)
+    group = run.exclusive(run.node("/n"))
+    tick = run.timer(group, "tick", 1.0)
+    run.callback(tick, run.thread("ThreadPoolExecutor-0_0"), 1.0, 1.0)
+    moment = 1.0 if busy else 2.0
+    assert narration(told(run, until=moment + 0.1), ns(moment))[1:] == (f"nothing else is ready{idle}",)
 
 
 @given(st.sampled_from(Charset), st.integers(0, ns(14.0)), st.integers(40, 120))

@@ -36,6 +36,7 @@ _SEARCH_BATCH = 2000
 """Lines that are searched between two turns of screen and keys; they take some milliseconds."""
 
 _THREAD = 12
+"""Columns of a thread's name with the blank behind it."""
 _GROUP = 3
 _COLUMNS = _THREAD + _GROUP + 1
 
@@ -310,7 +311,7 @@ class LogLines(FollowingView):
         number = list(timeline.groups).index(group.id) if group else -1
         letter = group.letter if group else ""
         return [
-            Segment(f" {fit(name, _THREAD, Charset.BRAILLE)}", self.in_ink(Ink(Role.FAINT))),
+            Segment(f" {fit(name, _THREAD - 1, Charset.BRAILLE)} ", self.in_ink(Ink(Role.FAINT))),
             Segment(fit(letter, _GROUP, Charset.BRAILLE), self.in_ink(Ink(Role.LETTER, number))),
         ]
 

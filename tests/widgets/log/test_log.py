@@ -115,6 +115,19 @@ async def test_a_wide_log_tells_thread_and_group(width: int, columns: bool) -> N
         assert shown(app)[0].endswith("Pool-0_1    A") is columns
 
 
+async def test_a_long_name_of_a_thread_keeps_its_distance_from_the_group() -> None:
+    run = Run()
+    timer = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.log("Odom", 1.0, run.thread("Thread-1 (spin)"), timer)
+    timeline = Timeline()
+    timeline.extend(run.events)
+    app = LogOnly()
+    async with app.run_test(size=(90, 10)) as pilot:
+        app.view.show(timeline, ns(2.0))
+        await pilot.pause()
+        assert shown(app)[0].endswith("Thread-1 (… A")
+
+
 async def test_only_the_lines_in_view_are_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
     app = LogOnly()
     async with app.run_test(size=(60, 10)) as pilot:
