@@ -22,6 +22,9 @@ class Guide(VerticalScroll):
         self._parts = dict(parts)
         self._one_at_a_time = asyncio.Lock()
         self._reading: tuple[Prose, int] | None = None
+        self._width = 0
+        self._top: tuple[Prose, int] | None = None
+        """The topmost section in sight, and how many of its letters are scrolled out."""
 
     def compose(self) -> ComposeResult:
         """Lay out the parts."""
@@ -60,6 +63,24 @@ class Guide(VerticalScroll):
     def on_show(self) -> None:
         """Scroll to the section that was asked for while the guide was hidden."""
         self._keep_in_sight()
+
+    def watch_scroll_y(self, old_value: float, new_value: float) -> None:
+        """Remember the text at the top, unless it is a new width that moves it."""
+        super().watch_scroll_y(old_value, new_value)
+        if self.size.width == self._width:
+            read = self._read_now(self._parts)
+            self._top = read and (read[0], read[0].letters_above(read[1]))
+
+    def on_resize(self) -> None:
+        """Keep the text that was at the top there."""
+        changed, self._width = self.size.width != self._width, self.size.width
+        if changed and self._top is not None:
+            self.call_after_refresh(self._put_on_top, *self._top)
+
+    def _put_on_top(self, part: Prose, letter: int) -> None:
+        if part.is_attached:
+            self._reading = self._reading or (part, part.row_of(letter))
+            self._keep_in_sight()
 
     def _keep_in_sight(self) -> None:
         """Restore the scroll position of the text that was being read, once it has a place."""

@@ -42,6 +42,21 @@ class Prose(Widget):
         }
         return _Page(self.text, Theme({f"markdown.{name}": style for name, style in styles.items()}))
 
+    def letters_above(self, row: int) -> int:
+        """Return how many letters and digits come before a row, which no width of the text changes."""
+        return sum(self._letters_in(above) for above in range(row))
+
+    def row_of(self, letter: int) -> int:
+        """Return the row with a letter, by its place among all letters and digits."""
+        row, after = 0, self._letters_in(0)
+        while after <= letter and row < self.size.height - 1:
+            row += 1
+            after += self._letters_in(row)
+        return row
+
+    def _letters_in(self, row: int) -> int:
+        return sum(map(str.isalnum, self.render_line(row).text))
+
 
 class _Page:
     """A Markdown text with a theme of its own."""
