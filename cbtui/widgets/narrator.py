@@ -78,8 +78,7 @@ def narration(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
         *(f"{name_of(each.entity, timeline)} is ready" for each in left if each.since == last),
     )
     first = f"{timestamp(last)}: {'; '.join(did) or 'the executor looks again'}"
-    waits = [waiting(wait, timeline, last) for wait in left]
-    return (first, *waits) if waits else (first, _at_rest(timeline, last))
+    return (first, *_by_cause(left, timeline, last)) if left else (first, _at_rest(timeline, last))
 
 
 def _place(entity: EntityInfo) -> tuple[int, int, EntityId]:
@@ -158,22 +157,41 @@ def _why_first(entity: EntityInfo, left: Sequence[Wait], timeline: Timeline) -> 
         yield _IN_ORDER[entity.kind] if is_first else "it was ready when the executor last looked"
 
 
+def _by_cause(left: Sequence[Wait], timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    """Say of each cause who waits for it."""
+    causes: dict[str, list[Wait]] = {}
+    for wait in left:
+        causes.setdefault(_why(wait, timeline), []).append(wait)
+    for why, waits in causes.items():
+        if len(waits) == 1:
+            yield waiting(waits[0], timeline, at)
+        else:
+            yield f"{why}: {'; '.join(_how_long(wait, timeline, at) for wait in waits)}"
+
+
 def waiting(wait: Wait, timeline: Timeline, at: Nanoseconds) -> str:
     """Return why a callback that is ready does not run at a moment."""
+    return f"{_how_long(wait, timeline, at)}: {_why(wait, timeline)}"
+
+
+def _how_long(wait: Wait, timeline: Timeline, at: Nanoseconds) -> str:
     entity = timeline.entities[wait.entity]
     queued = timeline.queue(entity.id, at).depth
     waits = f"has waited since {timestamp(wait.since)}" if wait.since < at else "waits"
     ready = f", {queued} queued" if queued else ", due" if entity.kind is EntityKind.TIMER else ""
+    return f"{entity.spoken_name} {waits}{ready}"
+
+
+def _why(wait: Wait, timeline: Timeline) -> str:
     match wait.reason:
         case Reason.GROUP_HELD:
-            why = why_waiting(wait, timeline)
+            return why_waiting(wait, timeline)
         case Reason.NO_FREE_WORKER:
-            why = f"{group_of(entity.id, timeline)} would let it in, but no thread is free"
+            return f"{group_of(wait.entity, timeline)} would let it in, but no thread is free"
         case Reason.EVENT_QUEUE:
-            why = "others came before it, and its EventsExecutor asks no group"
+            return "others came before it, and its EventsExecutor asks no group"
         case Reason.NOBODY_SPINS:
-            why = "nobody spins its node"
-    return f"{entity.spoken_name} {waits}{ready}: {why}"
+            return "nobody spins its node"
 
 
 def _at_rest(timeline: Timeline, at: Nanoseconds) -> str:

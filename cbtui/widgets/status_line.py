@@ -134,6 +134,7 @@ def status_row(status: RunStatus, width: int, turn: int = 0) -> list[TextRun]:
     """
     title = TextRun(f" {status.title}", _STRONG)
     state = _state(status, turn)
+    brief_state = TextRun(state.text.removesuffix(_STILL), state.ink)
     pace = TextRun(f"  {status.pace}", _PLAIN)
     brief = TextRun(f"  {status.brief_pace}", _PLAIN)
     steps, step = _steps(status.steps), _steps(_about_current(status.steps))
@@ -146,9 +147,9 @@ def status_row(status: RunStatus, width: int, turn: int = 0) -> list[TextRun]:
         ([*steps, state, pace, _GAP, time, _GAP, executor, _GAP, *recording, *losses], whole),
         ([*steps, state, pace, _GAP, time, _GAP, *recording, *losses], whole),
         ([*step, state, pace, _GAP, time, _GAP, *recording, *losses], whole),
-        ([*step, state, brief, _GAP, time, _GAP, *recording, *losses], whole),
-        ([*step[:1], *step[-1:], state, brief, _GAP, time, _GAP, *recording, *losses], whole),
-        ([*step[:1], *step[-1:], state, _GAP, time, _GAP, *recording, *losses], whole),
+        ([*step, brief_state, brief, _GAP, time, _GAP, *recording, *losses], whole),
+        ([*step[:1], *step[-1:], brief_state, brief, _GAP, time, _GAP, *recording, *losses], whole),
+        ([*step[:1], *step[-1:], brief_state, _GAP, time, _GAP, *recording, *losses], whole),
         ([state, pace, _GAP, time, _GAP, *recording, *losses], whole),
         ([state, _GAP, time, _GAP, *recording, *losses], _LEAST_TITLE),
         ([state, _GAP, time, _GAP, *losses], _LEAST_TITLE),
@@ -174,10 +175,11 @@ def _state(status: RunStatus, turn: int) -> TextRun:
     if status.state is RunState.STARTING:
         return TextRun(f"{_TURNING[turn % len(_TURNING)]} STARTING", _STRONG)
     if status.state is RunState.LIVE and status.still is not None:
-        return TextRun(f"✗ STUCK {duration(status.still)}, nothing moves", _WARN)
+        return TextRun(f"✗ STUCK {duration(status.still)}{_STILL}", _WARN)
     return _STATES[status.state]
 
 
+_STILL = ", nothing moves"
 _TURNING = "◐◓◑◒"
 _STEP_INKS = {StepState.DONE: _PLAIN, StepState.CURRENT: _STRONG, StepState.OPEN: _FAINT}
 

@@ -48,6 +48,12 @@ def test_a_callback_whose_function_says_nothing_is_named_after_its_topic() -> No
     assert "/picture has a message" in narration(told(run, until=1.5), ns(1.0))[0]
 
 
+def test_a_cause_is_told_once_however_many_wait_for_it() -> None:
+    lines = narration(RUNS[0], ns(6.0))
+    assert "".join(lines).count("held by timer_callback") == 1
+    assert any("odom_callback has" in line and "scan_callback has" in line for line in lines)
+
+
 @pytest.mark.parametrize(
     ("threads", "busy", "idle"),
     [

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from cbtui.learning.stage import LessonStep, StepState
 from cbtui.runs.live.live_run import RunState
 from cbtui.widgets.status_line import RunStatus, status_row
 from tests.support.builder import ns
@@ -69,3 +70,10 @@ def test_a_program_in_which_nothing_moves_is_not_only_live() -> None:
     still = replace(LIVE, still=ns(4.1))
     assert "✗ STUCK 4.1 s, nothing moves" in line(still, 100)
     assert "◂ BACK 2.0 s" in line(replace(still, back=ns(2.0)), 100)
+
+
+def test_a_stuck_run_keeps_the_step_of_its_lesson() -> None:
+    steps = (LessonStep("Predict", StepState.DONE), LessonStep("Run", StepState.CURRENT))
+    stuck = line(replace(LIVE, still=ns(14.1), dropped=0, steps=steps), 80)
+    assert "2/6 One shared group" in stuck
+    assert "Run ●   ✗ STUCK 14.1 s" in stuck

@@ -26,6 +26,8 @@ FAINT = Ink(Role.FAINT)
 PLAIN = Ink(Role.TEXT)
 WARN = Ink(Role.WARN)
 
+_STARTING = "no robot yet: the engine starts the program"
+
 
 class RobotPainting(NamedTuple):
     """Painted rows, and the region of the camera's picture in them, if any."""
@@ -58,7 +60,8 @@ class RobotPainter:
         """Paint ``height`` rows of ``width`` columns; ``note`` replaces a picture that has not come yet."""
         robot, plan = timeline.robot(now), timeline.arena
         if robot is None or plan is None:
-            return self._nothing(width, height)
+            is_there_none = plan is None and timeline.nodes
+            return self._nothing("no robot in this run" if is_there_none else _STARTING, width, height)
         below = figures(robot, timeline.command(now), width, self.charset)
         places = arrange(Region(0, 1, width, max(0, height - len(below) - 1)), look)
         if places == PaneRegions():
@@ -76,10 +79,10 @@ class RobotPainter:
                 self._draw_edges(canvas, picture)
         return RobotPainting([row.runs() for row in (*canvas, *below)], picture)
 
-    def _nothing(self, width: int, height: int) -> RobotPainting:
+    def _nothing(self, why: str, width: int, height: int) -> RobotPainting:
         rows = [CellRow(width, self.charset) for _ in range(height)]
         if rows:
-            rows[height // 2].write(1, "no robot in this run", FAINT)
+            rows[height // 2].write(1, why, FAINT)
         return RobotPainting([row.runs() for row in rows])
 
     def _draw_maps(self, canvas: Sequence[CellRow], places: PaneRegions, scene: RobotScene) -> list[MapView]:

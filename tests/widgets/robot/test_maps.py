@@ -129,8 +129,11 @@ def test_the_age_of_the_nodes_scan_is_told_at_every_width(width: int) -> None:
     assert "node saw 10.2 s ago" in plain(RobotPainter().paint(SHARED, ns(14.2), width, 16).rows)
 
 
-def test_a_run_without_a_robot_says_so() -> None:
-    assert "no robot in this run" in plain(RobotPainter().paint(told(Run()), 0, 44, 10).rows)
+def test_a_run_without_a_robot_says_so_and_one_that_starts_says_that() -> None:
+    run = Run()
+    assert "no robot yet: the engine starts" in plain(RobotPainter().paint(told(run), 0, 44, 10).rows)
+    run.node("/n")
+    assert "no robot in this run" in plain(RobotPainter().paint(told(run), 0, 44, 10).rows)
 
 
 @settings(max_examples=examples(40), deadline=None)

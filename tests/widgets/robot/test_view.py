@@ -101,7 +101,7 @@ async def test_no_camera_is_opened_without_a_robot() -> None:
         app.view.look = RobotViewMode.CAMERA
         await pilot.pause()
         assert app.cameras == []
-        assert "no robot in this run" in app.text()
+        assert "no robot yet" in app.text()
 
 
 async def test_the_key_goes_from_map_to_camera_to_both_and_back() -> None:
