@@ -93,6 +93,7 @@ FIT = "define it with the parameters it is called with (diff)"
             ["take both locks at once, in the order of look (diff)"],
         ),
         ("lock_during_call", ["let go of the lock during the call (diff)"]),
+        ("lock_during_reentrant_call", ["let go of the lock during the call (diff)"]),
         ("lock_taken_twice", ["make the lock a threading.RLock (diff)"]),
         ("call_in_parameter_callback", [APART.replace("tick", "tune")]),
         ("no_response", ["end answer with: return response (diff)"]),

@@ -74,10 +74,11 @@ class SelfMadeDeadlock(Rule):
             return apart, *edits_for_reply(place, found.subject, timeline)
         if found.size == 1:
             return by_edit(place, "make the lock a threading.RLock", make_reentrant)
-        other = _line_of(found.culprit, found, timeline)
         if WaitedFor.REPLY in found.waited_for:
             words = "let go of the lock during the call"
-            return tuple(each for at in (place, other) for each in by_edit(at, words, let_go_during_wait))
+            lines = _lines_of((found.subject, found.culprit), found, timeline)
+            return tuple(each for at in lines for each in by_edit(at, words, let_go_during_wait))
+        other = _line_of(found.culprit, found, timeline)
         order = f"take both locks at once, in the order of {who(found.culprit, timeline)}"
         return () if other is None else by_edit(place, order, take_together, other.first_line)
 
@@ -134,6 +135,14 @@ _CURES = {
 
 def _line_of(entity: EntityId, found: Finding, timeline: Timeline) -> CodeLocation | None:
     return line_of(entity, Window(found.at, found.until + 1), timeline)
+
+
+def _lines_of(entities: Sequence[EntityId], found: Finding, timeline: Timeline) -> Iterator[CodeLocation]:
+    """Yield every line at which callbacks were meanwhile: several calls of one may be at different lines."""
+    window = Window(found.at, found.until + 1)
+    places = (each for entity in entities for each in timeline.positions_of(entity, window))
+    for file, line in dict.fromkeys((each.file, each.line) for each in places):
+        yield CodeLocation(file, line, line)
 
 
 def _explanation(
