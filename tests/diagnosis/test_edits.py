@@ -5,7 +5,7 @@ from textwrap import indent
 import pytest
 
 from sim.diagnosis.edits.code_edit import CodeEdit
-from sim.diagnosis.edits.functions import fit_parameters, return_response
+from sim.diagnosis.edits.functions import fit_parameters, hand_over_function, return_response
 from sim.diagnosis.edits.groups import give_own_group
 from sim.diagnosis.edits.names import rename
 from sim.diagnosis.edits.polling import leave_out
@@ -219,6 +219,20 @@ def test_a_lambda_gets_the_parameters_it_lacks() -> None:
         "-        self.ask().add_done_callback(lambda: self.log())  # here",
         "+        self.ask().add_done_callback(lambda future: self.log())  # here",
     ]
+
+
+@pytest.mark.parametrize(
+    ("made", "handed_over"),
+    [
+        ("self.create_timer(0.5, self.tick())", "self.create_timer(0.5, self.tick)"),
+        ("self.create_timer(self.period(), self.tick())", None),
+        ("self.create_timer(0.5, self.tick(1))", None),
+    ],
+)
+def test_a_function_is_handed_over_without_being_called(made: str, handed_over: str | None) -> None:
+    text = node(f"def __init__(self):\n    {made}  # here")
+    expected = [f"-        {made}  # here", f"+        {handed_over}  # here"] if handed_over else None
+    assert changed(text, hand_over_function) == expected
 
 
 def test_a_service_returns_its_response() -> None:

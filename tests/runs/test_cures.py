@@ -83,6 +83,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("loop_with_break", [STEP.format("drive")]),
         ("qos_mismatch", ["request no more than is offered (diff)"]),
         ("rate_sleep", [APART]),
+        ("function_called", ["hand over the function itself (diff)"]),
         ("wrong_arity", [FIT]),
         ("wrong_arity_of_timer", [FIT]),
         ("wrong_arity_of_done_callback", [FIT]),

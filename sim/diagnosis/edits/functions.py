@@ -39,6 +39,20 @@ def fit_parameters(source: SourceEditor, line: int) -> None:
         source.cut_behind(callback.args.args[len(wanted)], surplus[-1])
 
 
+def hand_over_function(source: SourceEditor, line: int) -> None:
+    """Hand over the function itself, not what its call returned, where a callback is made at a line."""
+    called = [
+        argument
+        for made in source.nodes(ast.Call)
+        if isinstance(made.func, ast.Attribute) and made.func.attr in _PARAMETERS and made.lineno == line
+        for argument in made.args
+        if isinstance(argument, ast.Call) and isinstance(argument.func, ast.Name | ast.Attribute)
+    ]
+    if len(called) != 1 or called[0].args or called[0].keywords:
+        raise NotSimpleError
+    source.replace(called[0], source.code_of(called[0].func))
+
+
 def _parameters(source: SourceEditor, callback: ast.FunctionDef | ast.Lambda) -> Sequence[str]:
     """Return the parameters of a callback, by the call in which the program uses it."""
     name = callback.name if isinstance(callback, ast.FunctionDef) else ""
