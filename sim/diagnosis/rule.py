@@ -162,6 +162,12 @@ def made_at(entity: EntityInfo) -> CodeLocation | None:
     return line_location(*entity.made_at)
 
 
+def loop_beside_spin(at: Nanoseconds, timeline: Timeline) -> CodeLocation | None:
+    """Return the program's own loop in which it is at ``at`` while nothing spins; None if it is in none."""
+    program = timeline.program_at(at)
+    return None if program is None else line_location(*program.loop)
+
+
 def line_of(entity: EntityId, window: Window, timeline: Timeline) -> CodeLocation | None:
     """Return the line at which a callback was longest in a window; all of its lines if that is unknown."""
     lasted: Counter[tuple[str, int]] = Counter()

@@ -8,6 +8,9 @@ from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
+SPIN_ALWAYS = "do one step of the loop in a timer's callback, and call rclpy.spin(node)"
+"""The cure of a program whose loop spins too rarely, or never."""
+
 
 def who(entity: EntityId, timeline: Timeline) -> str:
     """Return the name of a callback; for a client, the reply that it waits for."""

@@ -49,7 +49,7 @@ class ProgramPosition:
             return None
         (doing, call, frames, loop, _), timeout = found
         in_constructor = any(function == "__init__" for _, function, _ in frames)
-        if process_of(self._main).spins and not in_constructor:
+        if process_of(self._main).spinning and not in_constructor:
             frames = ()
         now = self._clock.now()
         return ProgramAt(now, doing, call, frames, loop, now + timeout if timeout else 0)

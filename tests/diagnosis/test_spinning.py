@@ -230,6 +230,42 @@ def test_a_program_that_loops_and_never_spins_is_told_with_its_loop(tmp_path: Pa
     assert str(told.place) == "node.py:6"
 
 
+RARELY = (
+    "from std_msgs.msg import String",
+    "rclpy.init()",
+    "node = rclpy.create_node('n')",
+    "node.create_subscription(String, 'a', lambda message: None, 3)",
+    "publisher = node.create_publisher(String, 'a', 10)",
+    "while rclpy.ok():",
+    "    [publisher.publish(String()) for _ in range(2)]",
+)
+
+
+def test_a_loop_that_spins_too_rarely_is_told_with_its_line(tmp_path: Path) -> None:
+    run = run_lines(tmp_path, *RARELY, "    rclpy.spin_once(node)", "    time.sleep(1.3)", seconds=6.4)
+    told = {each.rule.id: each.rule.explain(each, run.timeline) for each in diagnose(run.timeline)}
+    never = told["node-never-spins"]
+    assert never.what.endswith("does not run: the program is in the loop of line 8, and spins too rarely")
+    assert str(never.place) == "node.py:8"
+
+
+def test_messages_that_are_lost_between_two_spins_are_told_with_the_loop(tmp_path: Path) -> None:
+    run = run_lines(tmp_path, *RARELY, "    rclpy.spin_once(node)", "    time.sleep(0.2)", seconds=5.0)
+    (found,) = diagnose(run.timeline)
+    told = found.rule.explain(found, run.timeline)
+    assert found.rule.id == "dropped-messages"
+    assert str(told.place) == "node.py:8"
+    assert told.cure.startswith("do one step of the loop in a timer's callback, and call rclpy.spin(node)")
+
+
+def test_a_loop_in_the_main_thread_beside_a_thread_that_spins_is_well(tmp_path: Path) -> None:
+    spins = "threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()"
+    lines = (*RARELY[:5], "import threading", spins, *RARELY[5:], "    time.sleep(1.3)")
+    run = run_lines(tmp_path, *lines, seconds=7.0)
+    assert diagnose(run.timeline) == ()
+    assert run.timeline.program_at(run.timeline.end) is None
+
+
 def test_a_program_that_waits_for_a_service_before_it_spins_is_told_of_the_one_that_is_meant(
     tmp_path: Path,
 ) -> None:

@@ -15,14 +15,15 @@ from sim.diagnosis.rule import (
     by_edit,
     entity_of,
     line_location,
+    loop_beside_spin,
     place_of,
 )
 from sim.diagnosis.timeline_view import LongWait, TimelineView
-from sim.diagnosis.words import often, who
+from sim.diagnosis.words import SPIN_ALWAYS, often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import why_waiting
-from sim.trace.events import EntityId, EntityKind, QosMismatched
+from sim.trace.events import EntityId, EntityKind, QosMismatched, Reason
 from sim.trace.model import Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
 
@@ -66,13 +67,20 @@ class DroppedMessages(Rule):
                 else f" while it waited ({why_waiting(waits[-1], timeline)})"
             )
         room = remedy_for_waits([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
+        cure, place = (
+            room.words(timeline) or f"let {subject} return sooner",
+            place_of(found.subject, timeline),
+        )
+        loop = loop_beside_spin(found.at, timeline)
+        if loop is not None and waits and waits[-1].reason is Reason.NOBODY_SPINS:
+            cure, place = SPIN_ALWAYS, loop
         messages = "1 message" if found.count == 1 else f"{found.count} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
         return Explanation(
             f"{subject} lost {messages}{because}{holds}",
             "what comes into a full queue pushes the oldest out",
-            f"{room.words(timeline) or f'let {subject} return sooner'}; a longer queue only delays it",
-            place_of(found.subject, timeline),
+            f"{cure}; a longer queue only delays it",
+            place,
             remedies=(room,),
         )
 

@@ -5,9 +5,17 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, line_of, place_of
+from sim.diagnosis.rule import (
+    CodeLocation,
+    Explanation,
+    Finding,
+    Rule,
+    line_of,
+    loop_beside_spin,
+    place_of,
+)
 from sim.diagnosis.timeline_view import LongWait, TimelineView
-from sim.diagnosis.words import group_of, listed, often, threads_for, who
+from sim.diagnosis.words import SPIN_ALWAYS, group_of, listed, often, threads_for, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
@@ -187,13 +195,15 @@ class NodeNeverSpins(Rule):
             cure = "add the node to an executor, and call spin() on that: one that is only made runs nothing"
         elif ever:
             cure = "keep spinning the node: spin() has returned, or its executor was shut down"
+        loop = loop_beside_spin(found.until, timeline)
         place, at = place_of(found.subject, timeline), timeline.program_at(found.until)
         if at is not None and not ever:
             place = CodeLocation(*at.place, at.place[1])
             what = f"the program is at line {place.first_line}, and has come to no spin() so far"
-            if at.loop[0]:
-                what = f"the program is in the loop of line {place.first_line}, and comes to no spin()"
-                cure = "do one step of the loop in a timer's callback, and call rclpy.spin(node)"
+        if loop is not None:
+            spins = "spins too rarely" if ever else "comes to no spin()"
+            place, cure = loop, SPIN_ALWAYS
+            what = f"the program is in the loop of line {loop.first_line}, and {spins}"
         return Explanation(
             f"{subject} of {found.about} has been ready for {duration(found.lasted)} "
             f"and does not run: {what}",

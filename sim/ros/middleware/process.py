@@ -9,7 +9,8 @@ import os
 import sys
 import threading
 from collections import UserList
-from collections.abc import Callable, Iterator, Mapping, MutableMapping
+from collections.abc import Callable, Generator, Iterator, Mapping, MutableMapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Any, Self, SupportsIndex, TypeVar
@@ -32,8 +33,9 @@ class Process:
     that it prints or logs, instead of the run; None: the run gets the lines. ``output_listener`` also gets
     the lines, shown or not. ``has_keyboard``: whether it reads the run's terminal. ``default_context`` is
     None before its first use and after its end. ``pool_numbers`` numbers the thread pools; ``callbacks`` and
-    ``spins`` count the callbacks made and the spins started; ``shut_down_at`` is the place of the callback
-    that shut rclpy down, or empty. ``finish_pools`` wait until the workers of the pools are idle.
+    ``spins`` count the callbacks made and the spins started, ``spinning`` the spins that have not ended;
+    ``shut_down_at`` is the place of the callback that shut rclpy down, or empty. ``finish_pools`` wait until
+    the workers of the pools are idle.
     """
 
     host: Host
@@ -50,6 +52,7 @@ class Process:
     pool_numbers: Iterator[int] = field(default_factory=count)
     callbacks: int = 0
     spins: int = 0
+    spinning: int = 0
     shut_down_at: str = ""
     finish_pools: list[WeakMethod[Callable[[], None]]] = field(default_factory=list)
     _locals: dict[Callable[[], Any], Any] = field(default_factory=dict)
@@ -61,6 +64,18 @@ class Process:
                 self._locals.setdefault(make, make())
         value: LocalT = self._locals[make]
         return value
+
+    @contextmanager
+    def spin(self) -> Generator[None, None, None]:
+        """Count a spin of one of its executors while it lasts; thread-safe."""
+        with self.host.lock:
+            self.spins += 1
+            self.spinning += 1
+        try:
+            yield
+        finally:
+            with self.host.lock:
+                self.spinning -= 1
 
     def enter(self) -> None:
         """Assign the calling thread, and the threads that it starts later, to this process."""

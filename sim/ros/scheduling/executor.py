@@ -194,9 +194,9 @@ class Executor:
                 if self._refuses_second_spin():
                     raise RuntimeError(self.already_spinning)
             self._spinning = True
-            self._context.process.spins += 1
         try:
-            yield
+            with self._context.process.spin():
+                yield
         finally:
             self._spinning = outer
 
