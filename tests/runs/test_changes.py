@@ -1,5 +1,6 @@
 """What a person changed: what it makes of a set-up, how it is told, and which code would do it."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
@@ -14,7 +15,7 @@ from cbtui.runs.setup.changeable import (
     changeable,
 )
 from cbtui.runs.setup.changes import GROUP_CHOICES, Changes, changes_in
-from cbtui.runs.setup.equivalent_code import code_of, code_of_group
+from cbtui.runs.setup.equivalent_code import code_of, code_of_cure, code_of_group
 from cbtui.runs.setup.lesson_setup import RunRequest, setup_for
 from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, BadQuantityError, Quantity
 from cbtui.runs.setup.shown_program import of_lesson
@@ -217,6 +218,13 @@ def test_a_program_that_takes_arguments_gets_them() -> None:
     about_server = changeable(of_lesson(SERVER, lessons()), setup_for(SERVER), Timeline())
     changes = Changes(threads=4, settings={"-service_wait_time": 2.0})
     assert code_of(changes, about_server) == ["node.py … -service_wait_time 2 -threads 4"]
+
+
+def test_a_cure_by_threads_has_the_lines_that_spin_them_unless_they_are_there() -> None:
+    more = Changes(threads=2)
+    made = "executor = MultiThreadedExecutor(num_threads=2)"
+    assert code_of_cure(more, ABOUT) == [made, "executor.add_node(node)", "executor.spin()"]
+    assert code_of_cure(more, replace(ABOUT, executor_now="MultiThreadedExecutor(1)")) == [made]
 
 
 @pytest.mark.parametrize("wish", GROUP_CHOICES)

@@ -2,6 +2,7 @@
 
 from collections.abc import AsyncIterator, Callable, Sequence
 from contextlib import asynccontextmanager
+from dataclasses import replace
 from pathlib import Path
 from threading import Event
 from time import monotonic
@@ -396,6 +397,16 @@ def test_lines_that_go_and_come_are_coloured_apart() -> None:
     assert styles["-sleep(9)"] == "$text-error"
     assert styles["+sleep(1)"] == "$text-success"
     assert cure_details(APART, Charset.BRAILLE).plain == "Spin with two threads."
+
+
+def test_a_cure_that_edits_nothing_tells_what_to_write() -> None:
+    cure = replace(APART, code=("executor = MultiThreadedExecutor(num_threads=2)", "executor.spin()"))
+    assert cure_details(cure, Charset.BRAILLE).plain.splitlines() == [
+        "Spin with two threads.",
+        "Your file stays as it is; to have this in it, write:",
+        "executor = MultiThreadedExecutor(num_threads=2)",
+        "executor.spin()",
+    ]
 
 
 @pytest.mark.slow

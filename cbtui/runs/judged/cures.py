@@ -47,11 +47,15 @@ class TriedRun:
 
 @dataclass(frozen=True)
 class Cure:
-    """A change of a run that can be tried, in words; ``diff`` is what ``diff -u`` writes about it."""
+    """A change of a run that can be tried, in words.
+
+    ``diff`` is what ``diff -u`` writes about an edit; ``code`` are the statements for all other changes.
+    """
 
     changes: Changes
     words: str
     diff: str = ""
+    code: tuple[str, ...] = ()
 
 
 def problem_of(found: Finding, timeline: Timeline) -> Problem:

@@ -40,6 +40,15 @@ def code_of(changes: Changes, about: ChangeableSetup) -> list[str]:
     return list(dict.fromkeys(statements))
 
 
+def code_of_cure(changes: Changes, about: ChangeableSetup) -> list[str]:
+    """Return the statements for all changes; for threads, also those that spin the new executor."""
+    statements = code_of(changes, about)
+    if changes.threads is not None and about.threads_argument is None:
+        is_spun = about.executor_now.startswith("MultiThreadedExecutor")
+        statements += [] if is_spun else ["executor.add_node(node)", "executor.spin()"]
+    return statements
+
+
 def code_of_threads(threads: int, about: ChangeableSetup) -> str:
     """Return the line that gives the executor a number of threads."""
     if about.threads_argument is not None:

@@ -243,7 +243,8 @@ class CuresByNumber(ScreenPart):
             self.host.tell(f"Tried, it does not help: {found.name} stays, or something worse comes.")
             return
         self.host.tell(f"Tried, it helps: {helpful.words}. With that there is no {found.name} any more.")
-        for line in helpful.diff.splitlines():
+        self.host.tell("To have this in the file, write:" if helpful.code else None)
+        for line in "\n".join(filter(None, [helpful.diff, *helpful.code])).splitlines():
             self.host.tell(line)
         asyncio.run(self.trials.run(helpful))
 

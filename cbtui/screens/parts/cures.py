@@ -1,7 +1,7 @@
 """Tries cures of findings in the background, and compares a run with a cure to the one before."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain, takewhile
 from threading import Event
@@ -10,7 +10,9 @@ from cbtui.engines.follow import GivenUpError
 from cbtui.runs.judged.cures import Cure, TriedRun, cures_of, helps, problem_of, try_run, with_inputs
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.setup.changeable import changeable
 from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.equivalent_code import code_of_cure
 from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
@@ -67,7 +69,12 @@ class CureTrial:
         """Return the cures of a finding that can be tried: only for problems, and only on the model."""
         if not found.is_problem or self.refusal:
             return ()
-        return tuple(cures_of(found.explanation, self.run.setup, self.changes, self.run.timeline))
+        setup, timeline = self.run.setup, self.run.timeline
+        about = changeable(self.trials.subject, setup, timeline)
+        return tuple(
+            replace(each, code=tuple(code_of_cure(each.changes.without(self.changes), about)))
+            for each in cures_of(found.explanation, setup, self.changes, timeline)
+        )
 
     def helps(
         self, found: ExplainedFinding, cure: Cure, given_up: Event, note: Note = lambda _: None

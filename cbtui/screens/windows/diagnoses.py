@@ -325,7 +325,7 @@ _DIFF_STYLES = {"+": "$text-success", "-": "$text-error", "@": "$text-muted"}
 
 
 def cure_details(cure: Cure, charset: Charset) -> Content:
-    """Return what a cure changes: in words, and the lines that it edits, as far left as they can be."""
+    """Return what a cure changes: in words, the lines that it edits, as far left as they can be, and code."""
     parts = [(visible(sentence(cure.words), charset), "bold")]
     if cure.diff:
         parts.append(("\nYour file stays as it is; a copy is run, with these lines:", ""))
@@ -335,6 +335,10 @@ def cure_details(cure: Cure, charset: Charset) -> Content:
     for sign, text in edited:
         shown = visible(sign + (text if sign == "@" else text[indent:]), charset)
         parts.append((f"\n{shown}", _DIFF_STYLES.get(sign, "")))
+    if cure.code:
+        parts.append(("\nYour file stays as it is; to have this in it, write:", ""))
+        lines = (line for each in cure.code for line in each.splitlines())
+        parts += [(f"\n{visible(each, charset)}", "$text-success") for each in lines]
     return Content.assemble(*parts)
 
 

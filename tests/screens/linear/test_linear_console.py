@@ -187,6 +187,8 @@ def test_a_cure_is_tried_by_its_number_and_the_run_with_it_is_compared(
     typist = Lesson(script)
     lines = typist.run()
     assert any(line.startswith("Tried, it helps: give timer_callback") for line in lines)
+    assert "self.timer_group = MutuallyExclusiveCallbackGroup()" in lines
+    assert "executor = MultiThreadedExecutor(num_threads=2)" in lines
     assert typist.engines.latest.setup.threads == 2
     assert "run A: shared-group, as written" in lines
     assert "run B: shared-group, timer own group, 2 threads" in lines
