@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from sim.interpreter.exception_text import error_line
 from sim.interpreter.function_marks import sends_responses
 from sim.probes.on_path.cbtui_probe.naming import callback_name, written_at
-from sim.probes.own_code import call_into_ros, has_timeout, place_of_caller, raised_at
+from sim.probes.own_code import awaiting_frames, call_into_ros, has_timeout, place_of_caller, raised_at
 from sim.probes.traced import MessageContents, TracedEntity
 from sim.trace import events
 from sim.trace.events import (
@@ -229,11 +229,12 @@ class Probe:
         here, endless = self._here.entity, not has_timeout()
         self._sink(events.SpinClashed(self._now(), here, node, *call_into_ros(), endless))
 
-    def callback_suspended(self, entity: TracedEntity, outer: int) -> None:
-        """Record that a coroutine callback is suspended, and leaves the calling thread."""
+    def callback_suspended(self, entity: TracedEntity, outer: int, coroutine: object = None) -> None:
+        """Record that a callback is suspended where its coroutine awaits, and leaves the calling thread."""
         self._here.entity = outer
         if entity.traced:
-            self._sink(events.CallbackSuspended(self._now(), entity.trace_id, self.thread()))
+            frames = awaiting_frames(coroutine)
+            self._sink(events.CallbackSuspended(self._now(), entity.trace_id, self.thread(), frames))
 
     def callback_resumed(self, entity: TracedEntity) -> int:
         """Record that a coroutine callback is resumed; returns the entity that ran on the thread before."""

@@ -1,7 +1,7 @@
 """Entities and waits described in words."""
 
 from sim.trace.events import Doing, EntityId, Reason
-from sim.trace.model import Position, Wait
+from sim.trace.model import AWAIT, Position, Wait
 from sim.trace.participants import Participants
 from sim.trace.timeline import Timeline
 
@@ -21,6 +21,8 @@ def why_waiting(wait: Wait, timeline: Timeline | Participants) -> str:
 def doing_of(position: Position) -> str:
     """What a callback does at its line: ``sleeps``, ``waits for a lock``, ``waits in Client.call()``."""
     match position.doing:
+        case Doing.WAITS if position.call == AWAIT:
+            return "awaits"
         case Doing.COMPUTES | Doing.SLEEPS:
             return position.doing.value
         case Doing.READS:

@@ -146,14 +146,16 @@ class Execution:
         """Start a call."""
         self._begin(event.t, event.entity, event.thread, event.message, event.age)
 
-    def finish(self, event: CallbackEnded) -> None:
-        """End a call; a suspended one can end without being resumed."""
+    def finish(self, event: CallbackEnded) -> bool:
+        """End a call; return whether it was suspended, and ends without being resumed."""
         row = self._leave(event.entity, event.thread)
         if row is not None:
             self._spans.close(row, event.t)
         elif self._awaiting[event.entity]:
             gap, _ = self._awaiting[event.entity].popleft()
             self._gaps.close(gap, event.t)
+            return True
+        return False
 
     def suspend(self, event: CallbackSuspended) -> None:
         """Suspend a coroutine's call."""

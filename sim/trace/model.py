@@ -183,12 +183,17 @@ class Frame:
     line: int
 
 
+AWAIT = "await"
+"""What a position has in place of a function while its call is suspended."""
+
+
 @dataclass(frozen=True, slots=True)
 class Position(Lasting):
     """An interval in which a callback was at one line; ``end`` is None while it is there.
 
     ``frames`` lead from the callback to that line; ``call`` is the function in which it sleeps or waits, ""
-    for none; ``loop`` is the file and line of the ``while`` around it, ("", 0) for none.
+    for none; ``loop`` is the file and line of the ``while`` around it, ("", 0) for none. A suspended call is
+    at its ``await``, on no thread: ``thread`` is 0.
     """
 
     start: Nanoseconds

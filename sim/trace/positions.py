@@ -1,12 +1,12 @@
 """Where running callbacks were in the program's own code."""
 
-from collections import defaultdict
+from collections import defaultdict, deque
 from collections.abc import Sequence
 from typing import TypeAlias
 
-from sim.trace.events import CallbackAt, Doing, EntityId, ThreadId
+from sim.trace.events import CallbackAt, CallbackSuspended, Doing, EntityId, ThreadId
 from sim.trace.lazy import LazySequence
-from sim.trace.model import Frame, Nanoseconds, Position, Span, Window
+from sim.trace.model import AWAIT, Frame, Nanoseconds, Position, Span, Window
 from sim.trace.storage.intervals import IntervalLane, Intervals, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 
@@ -24,6 +24,7 @@ class Positions(Intervals):
         self._places: list[_PositionCells] = []
         self._by_thread: defaultdict[ThreadId, IntervalLane] = defaultdict(lambda: IntervalLane(self))
         self._by_entity: defaultdict[EntityId, IntervalLane] = defaultdict(lambda: IntervalLane(self))
+        self._awaiting: defaultdict[EntityId, deque[RowId]] = defaultdict(deque)
         self._latest: dict[ThreadId, RowId] = {}
         self.threads: set[ThreadId] = set()
         """The threads of which any is known."""
@@ -35,10 +36,7 @@ class Positions(Intervals):
         self.finish(event.thread, event.t)
         frames = tuple(Frame(*each) for each in event.frames)
         place = (event.doing, event.call, frames, event.loop, event.holder)
-        number = self._numbers.setdefault(place, len(self._places))
-        if number == len(self._places):
-            self._places.append(place)
-        row = self.open(event.t, event.thread, event.entity, event.until, number)
+        row = self.open(event.t, event.thread, event.entity, event.until, self._number(place))
         self._by_thread[event.thread].add(row)
         self.threads.add(event.thread)
         self._by_entity[event.entity].add(row)
@@ -51,6 +49,27 @@ class Positions(Intervals):
         row = self._latest.pop(thread, None)
         if row is not None:
             self.close(row, at)
+
+    def suspend(self, event: CallbackSuspended) -> None:
+        """Start the interval of a suspended call, which is on no thread."""
+        if event.frames:
+            frames = tuple(Frame(*each) for each in event.frames)
+            row = self.open(
+                event.t, 0, event.entity, 0, self._number((Doing.WAITS, AWAIT, frames, ("", 0), 0))
+            )
+            self._by_entity[event.entity].add(row)
+            self._awaiting[event.entity].append(row)
+
+    def resume(self, entity: EntityId, at: Nanoseconds) -> None:
+        """End the interval of the call that was suspended first."""
+        if self._awaiting[entity]:
+            self.close(self._awaiting[entity].popleft(), at)
+
+    def _number(self, place: _PositionCells) -> int:
+        number = self._numbers.setdefault(place, len(self._places))
+        if number == len(self._places):
+            self._places.append(place)
+        return number
 
     def of(self, entity: EntityId, window: Window) -> Sequence[Position]:
         """The positions of an entity's callback, in order of start."""

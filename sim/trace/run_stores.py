@@ -180,7 +180,8 @@ class RunStores:
             self.scans.take(event.t, event.message)
 
     def _callback_ended(self, event: ev.CallbackEnded) -> None:
-        self.execution.finish(event)
+        if self.execution.finish(event):
+            self.positions.resume(event.entity, event.t)
         self.positions.finish(event.thread, event.t)
         self.active.note(event.entity, event.t)
 
@@ -190,10 +191,12 @@ class RunStores:
     def _callback_suspended(self, event: ev.CallbackSuspended) -> None:
         self.execution.suspend(event)
         self.positions.finish(event.thread, event.t)
+        self.positions.suspend(event)
         self.active.note(event.entity, event.t)
 
     def _callback_resumed(self, event: ev.CallbackResumed) -> None:
         self.execution.resume(event)
+        self.positions.resume(event.entity, event.t)
         self.active.note(event.entity, event.t)
 
     def _callback_failed(self, event: ev.CallbackFailed) -> None:

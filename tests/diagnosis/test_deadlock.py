@@ -1,5 +1,6 @@
 """Calls whose reply cannot come as long as they wait for it."""
 
+import linecache
 from collections.abc import Callable
 from pathlib import Path
 
@@ -164,6 +165,31 @@ def test_awaiting_a_reply_in_ones_own_exclusive_group_is_a_deadlock() -> None:
 
     assert awaiting(None).problems() == {("self-made-deadlock", "caller")}
     assert awaiting(MutuallyExclusiveCallbackGroup()).problems() == set()
+
+
+def test_a_callback_that_awaits_in_vain_is_told_at_its_await() -> None:
+    def program(simulation: Simulation) -> None:
+        serve_outside(simulation)
+        node = Node("n")
+        client = node.create_client(SetBool, "/outside")
+
+        async def answer() -> None:
+            future = client.call_async(SetBool.Request())
+            await future
+
+        async def caller() -> None:
+            await answer()
+
+        once(node, 1.0, caller)
+        spin(node, None)
+
+    told = diagnosed(program).explained("self-made-deadlock")
+    assert told.place is not None
+    assert linecache.getline(told.place.file, told.place.first_line).strip() == "await future"
+    assert told.cure == (
+        "return from caller and go on in future.add_done_callback(), "
+        "or give caller a callback group of its own"
+    )
 
 
 def test_a_call_from_a_thread_that_is_no_executors_is_well() -> None:

@@ -176,7 +176,8 @@ def bare(kind: type[AnyEvent]) -> AnyEvent:
         if annotated == EntityId:
             least[name] = _WITHOUT_CALLBACK
         elif Shown.IF_ANY in marks:
-            least[name] = {int: 0, str: ""}.get(marks[0], ("", 0))
+            several = () if ... in get_args(marks[0]) else ("", 0)
+            least[name] = {int: 0, str: ""}.get(marks[0], several)
         elif name == "callback":
             least[name] = ""
         elif get_origin(marks[:1] and marks[0]) is UnionType:

@@ -328,3 +328,18 @@ def test_the_shared_group_at_a_quarter_past_fourteen() -> None:
     assert seen is not None
     assert true is not None
     assert (seen.t, true.t) == (ns(3.955), ns(14.205))
+
+
+def test_a_suspended_call_is_at_its_await_until_it_goes_on_or_ends() -> None:
+    frames = (("node.py", "tick", 7),)
+    events: list[ev.AnyEvent] = []
+    for start in (10, 20):
+        events += [ev.CallbackStarted(start, 1, 1, 0, 0, 0), ev.CallbackSuspended(start + 1, 1, 1, frames)]
+    timeline = Timeline()
+    timeline.extend([*events[:2], ev.CallbackResumed(15, 1, 1), ev.CallbackEnded(16, 1, 1)])
+    timeline.extend([*events[2:], ev.CallbackEnded(25, 1, 1)])
+    found = timeline.positions_of(1, ALWAYS)
+    assert [(each.start, each.end, each.call, each.line, each.thread) for each in found] == [
+        (11, 15, "await", 7, 0),
+        (21, 25, "await", 7, 0),
+    ]

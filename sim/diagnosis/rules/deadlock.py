@@ -10,7 +10,7 @@ from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES, StuckCallback, WaitForGraph, stands
 from sim.diagnosis.words import often, threads_for, until_when, who, with_threads
 from sim.trace.events import EntityId, EntityKind, Reason
-from sim.trace.model import Blocked, Nanoseconds, Window
+from sim.trace.model import AWAIT, Blocked, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 
@@ -47,8 +47,11 @@ class SelfMadeDeadlock(Rule):
             cure = f"remove sleep(), and have a timer of its period do one step at each call; or {apart}"
         elif about == WaitedFor.CLOCK:
             cure = f"return, and let a timer of the node's clock do what comes later; or {apart}"
+        stands = timeline.positions_of(found.subject, Window(found.at, found.until + 1))
+        awaits = bool(stands) and stands[-1].call == AWAIT
+        if awaits:
+            cure = f"return from {subject} and go on in future.add_done_callback(), or {apart}"
         if not cure:
-            stands = timeline.positions_of(found.subject, Window(found.at, found.at + 1))
             if not stands or stands[-1].call in ("", "Client.call"):
                 cure = f"use call_async() and return from {subject}, or {apart}"
             else:
@@ -58,7 +61,8 @@ class SelfMadeDeadlock(Rule):
                 )
         threads = 0
         if (
-            WaitedFor.LOCK not in found.waited_for
+            not awaits
+            and WaitedFor.LOCK not in found.waited_for
             and threads_for([found.subject], found.until, timeline) == 1
         ):
             threads = found.size + 1

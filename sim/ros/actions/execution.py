@@ -83,7 +83,7 @@ class _GoalRun:
             except StopIteration as end:
                 return end.value
             self._runner.hide(self._execution)
-            self._probe.callback_suspended(self._execution, self._outer)
+            self._probe.callback_suspended(self._execution, self._outer, steps)
             try:
                 yield awaited
             except GeneratorExit:

@@ -60,7 +60,7 @@ class Handler(Task[None]):
                 awaited = callback.send(None)
             except StopIteration:
                 return
-            self._runner.suspend(self.entity, self._outer)
+            self._runner.suspend(self.entity, self._outer, callback)
             try:
                 yield awaited
             finally:

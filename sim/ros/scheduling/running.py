@@ -174,7 +174,7 @@ class CallbackRunner:
         if not task._settled():
             with self.lock:
                 self._running.remove(entity)
-                self._probe.callback_suspended(entity, outer)
+                self._probe.callback_suspended(entity, outer, task._handler)
             try:
                 task._arm(awaited)
             finally:
@@ -218,11 +218,11 @@ class CallbackRunner:
             if executor._waiting:
                 executor._recheck()
 
-    def suspend(self, entity: Entity, outer: int) -> None:
+    def suspend(self, entity: Entity, outer: int, coroutine: object = None) -> None:
         """A coroutine callback awaits something and leaves this thread."""
         with self.lock:
             self._running.remove(entity)
-            self._probe.callback_suspended(entity, outer)
+            self._probe.callback_suspended(entity, outer, coroutine)
             self._leave()
 
     def resume(self, entity: Entity) -> int:
