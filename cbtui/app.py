@@ -20,6 +20,7 @@ from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import Keymap
 from cbtui.learning.outcome import observe_engine
 from cbtui.looks.colour_themes import STANDARD, THEMES
+from cbtui.looks.grey_filter import GreyFilter
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from cbtui.screens.menu import MenuScreen
@@ -128,6 +129,7 @@ class CbtuiApp(EndingApp):
         self.set_keymap(self.keys.for_textual())
         self._ascii = AsciiFilter()
         self._harmless = HarmlessFilter()
+        self._greys = [GreyFilter()] if self.no_color else []
 
     def search_themes(self) -> None:
         """Open a palette of the themes."""
@@ -317,5 +319,5 @@ class CbtuiApp(EndingApp):
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         """Return the filters that every line passes on its way to the terminal."""
-        filters = [*super().get_line_filters(), self._harmless]
+        filters = [*self._greys, *super().get_line_filters(), self._harmless]
         return [*filters, self._ascii] if self.charset is Charset.ASCII else filters

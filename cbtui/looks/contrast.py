@@ -12,7 +12,7 @@ _STEPS = 32
 
 def contrast(one: ColorTriplet, other: ColorTriplet) -> float:
     """Return the contrast of two colours, 1 (the same) to 21 (black and white)."""
-    dim, bright = sorted((_luminance(one), _luminance(other)))
+    dim, bright = sorted((luminance(one), luminance(other)))
     return (bright + 0.05) / (dim + 0.05)
 
 
@@ -32,7 +32,7 @@ def legible(colour: ColorTriplet, ground: ColorTriplet, least: float) -> ColorTr
     return towards
 
 
-def _luminance(colour: ColorTriplet) -> float:
+def luminance(colour: ColorTriplet) -> float:
     """Return WCAG 2's relative luminance, 0 to 1."""
     shares = (part / 255 for part in colour)
     red, green, blue = (
