@@ -86,14 +86,25 @@ class BarPainter:
     def blocked(self, row: CellRow, columns: Sequence[LaneColumn[Blocked] | None]) -> None:
         """Draw where a thread is blocked in a service call, beside the name on its bar."""
         for stretch in stretches(columns):
-            if stretch.is_short:
-                continue
-            ink = Ink(Role.HATCH, self._number(stretch.top.entity) if stretch.top.entity else -1)
-            free = [place for place, _ in stretch.places() if row.inks[place].role is not Role.LABEL]
-            for place in free:
-                row.put(place, self.glyphs.blocked, ink)
             where = f"in call {stretch.top.service}"
-            self._words(row, *_longest_part(free), (f"blocked {where}", where, "blocked"))
+            self._stands(row, stretch, (f"blocked {where}", where, "blocked"))
+
+    def locked(self, row: CellRow, columns: Sequence[LaneColumn[Position] | None]) -> None:
+        """Draw where a thread's call waits for a lock, beside the name on its bar."""
+        for stretch in stretches(columns):
+            self._stands(row, stretch, ("waits for a lock", "for a lock", "lock"))
+
+    def _stands(
+        self, row: CellRow, stretch: MergedColumns[Blocked] | MergedColumns[Position], texts: Sequence[str]
+    ) -> None:
+        """Draw over a bar that its call stands still."""
+        if stretch.is_short:
+            return
+        ink = Ink(Role.HATCH, self._number(stretch.top.entity) if stretch.top.entity else -1)
+        free = [place for place, _ in stretch.places() if row.inks[place].role is not Role.LABEL]
+        for place in free:
+            row.put(place, self.glyphs.blocked, ink)
+        self._words(row, *_longest_part(free), texts)
 
     def lost(self, row: CellRow, places: Sequence[int]) -> None:
         """Mark the columns in which a queue lost messages, except under text."""

@@ -11,7 +11,7 @@ from cbtui.widgets.lanes.columns import I, InstantColumns, LaneColumn, LaneColum
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from cbtui.widgets.lanes.scale import TimeScale
 from sim.trace.events import EntityId
-from sim.trace.model import Blocked, EntityInfo, Span, Wait, Window
+from sim.trace.model import Blocked, EntityInfo, Position, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 
@@ -19,6 +19,7 @@ from sim.trace.timeline import Timeline
 class LaneSummary:
     """A lane's content, column by column.
 
+    ``locked`` are the columns in which a call waits for a lock;
     ``lasting`` is the duration of the open interval, in words; ``unseen`` are the columns that are not
     aggregated yet.
     """
@@ -27,6 +28,7 @@ class LaneSummary:
     calls: list[LaneColumn[Span] | None]
     waits: list[LaneColumn[Wait] | None]
     blocks: list[LaneColumn[Blocked] | None]
+    locked: list[LaneColumn[Position] | None]
     losses: list[int]
     lasting: tuple[str, ...]
     unseen: tuple[int, ...]

@@ -33,7 +33,7 @@ from cbtui.widgets.lanes.status import LaneStatus
 from sim.quantities.durations import duration
 from sim.trace.events import EntityKind
 from sim.trace.figures.chains import ChainStep
-from sim.trace.model import Blocked, Moment, Nanoseconds, Span, ThreadInfo, Wait, Window
+from sim.trace.model import Blocked, Moment, Nanoseconds, Position, Span, ThreadInfo, Wait, Window
 from sim.trace.timeline import Timeline
 
 FAINT = Ink(Role.FAINT)
@@ -316,10 +316,13 @@ class _LaneFrame:
         calls = self._summed(cache.spans(lane), unseen)
         waits: list[LaneColumn[Wait] | None] = []
         blocks: list[LaneColumn[Blocked] | None] = []
+        locked: list[LaneColumn[Position] | None] = []
         losses: list[int] = []
         match lane:
             case ThreadLane(thread):
                 blocks = self._summed(cache.columns(timeline.blocks_on, thread.id), unseen)
+                lines = self._summed(cache.columns(timeline.positions_on, thread.id), unseen)
+                locked = [at if at and at.top.waits_for_lock else None for at in lines]
             case MemberLane(entity) | SoleLane(entity):
                 waits = self._summed(cache.columns(timeline.waits_of, entity.id), unseen)
                 losses = cache.losses(entity).over(self._scale, self._edge)
@@ -331,7 +334,7 @@ class _LaneFrame:
             if column is not None and column.top.end is None
         )
         lengths = tuple(duration(max(0, self._told - start)) for start in lasting)
-        return LaneSummary(self._scale, calls, waits, blocks, losses, lengths, tuple(sorted(unseen)))
+        return LaneSummary(self._scale, calls, waits, blocks, locked, losses, lengths, tuple(sorted(unseen)))
 
     def _summed(
         self, columns: LaneColumns[I], unseen: set[int], scale: TimeScale | None = None
@@ -346,6 +349,7 @@ class _LaneFrame:
             case ThreadLane():
                 self._bars.thread(row, sums.calls)
                 self._bars.blocked(row, sums.blocks)
+                self._bars.locked(row, sums.locked)
             case GroupLane(group):
                 self._bars.group(row, sums.calls, group)
             case MemberLane(entity) | SoleLane(entity):

@@ -8,7 +8,7 @@ from cbtui.widgets.lanes import LanePainter, Selection
 from cbtui.widgets.lanes.rows import MemberLane, ThreadLane, all_lanes
 from cbtui.widgets.lanes.scale import TimeScale
 from cbtui.widgets.lanes.service_calls import draw_calls
-from sim.trace.events import MessageDropped
+from sim.trace.events import CallbackAt, Doing, MessageDropped
 from sim.trace.figures.chains import ChainStep, StepKind
 from sim.trace.model import Call, Window
 from sim.trace.timeline import Timeline
@@ -35,6 +35,24 @@ def test_a_thread_that_stands_still_in_a_call_is_hatched_and_says_in_which() -> 
     assert plain(LanePainter().paint(told(blocked_run()), *last(10, 10.0), 80, 8).rows).splitlines()[
         0
     ] == drawn("|MainThread  │ A a_callback ░░ blocked in call /x ░░░░██████    │  90% busy      |")
+
+
+def test_a_call_that_waits_for_a_lock_looks_unlike_one_that_sleeps() -> None:
+    run = Run()
+    node = run.node("/n")
+    entities = [run.timer(run.exclusive(node), name, 1.0) for name in ("keeps", "wants")]
+    threads = [run.thread(f"ThreadPoolExecutor-0_{number}") for number in range(2)]
+    for entity, thread in zip(entities, threads, strict=True):
+        run.callback(entity, thread, 1.0, 8.0)
+    frames = (("node.py", "count", 12),)
+    sleeps = CallbackAt(ns(1.0), entities[0], threads[0], Doing.SLEEPS, "time.sleep", frames)
+    waits = CallbackAt(ns(1.0), entities[1], threads[1], Doing.WAITS, "Lock.acquire", frames)
+    timeline = Timeline()
+    timeline.extend(sorted([*run.until(10.0), sleeps, waits], key=lambda event: event.t))
+    keeps, wants, *_ = plain(LanePainter().paint(timeline, *last(10, 10.0), 80, 8).rows).splitlines()
+    assert "░" not in keeps
+    assert "A keeps" in keeps
+    assert "B wants ░░ waits for a lock ░" in wants
 
 
 def test_a_bars_name_is_kept_where_its_thread_stands_still_at_once() -> None:
