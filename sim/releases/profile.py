@@ -7,10 +7,10 @@ of ros2/rclpy; its release notes name the patch that has them. Jazzy 7.1.5 and K
 source and release notes alone.
 
 Known, but not modelled: before #1469 a callback that waits for a worker is handed over again whenever the
-executor wakes; while a message waits for one, that is about 1,100 times a second. A program notices this only
-by chance: an exception comes out twice or earlier, a second worker takes a single timer, or other threads are
-late. No release here has Kilted's content filters of subscriptions, introspection of
-actions and ``rosout_qos_profile``; a program that uses one is told so.
+executor wakes; while a message waits for one, that is about 1,100 times a second. ``hands_over_again`` has
+the workers that this starts. A program notices the rest only by chance: an exception comes out twice or
+earlier, or other threads are late. No release here has Kilted's content filters of subscriptions,
+introspection of actions and ``rosout_qos_profile``; a program that uses one is told so.
 """
 
 from __future__ import annotations
@@ -62,6 +62,14 @@ class Profile:
         Else its own executor polls it after each wake-up. Source: #1469.
         """
         return self._since(humble="3.3.21", jazzy="7.1.9", kilted="9.1.4", lyrical="")
+
+    @property
+    def hands_over_again(self) -> bool:
+        """Each cycle of a pool hands over again what no worker has begun, and starts workers for it.
+
+        Source: run on both wheels; #1469 hands each over once.
+        """
+        return not self.resumes_at_once
 
     @property
     def loses_errors_after_await(self) -> bool:

@@ -12,7 +12,7 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from enum import Enum, auto
 from itertools import count
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 from sim.clock import RunClock
 from sim.releases.profile import Profile
@@ -42,6 +42,19 @@ class _Following(Enum):
 _TASKS, _GATHERING, _WAITING = _Following
 
 
+class Pool(Protocol):
+    """The workers of an executor, as its cycles use them."""
+
+    def may_serve(self) -> bool:
+        """Whether found work may be served yet."""
+
+    def kept_busy(self) -> bool:
+        """Whether the executor serves what it finds without waiting for the workers."""
+
+    def hand_over_again(self) -> bool:
+        """Begin a cycle with what no worker has begun; return whether that starts one."""
+
+
 class Cycle:
     """The cycles of one executor over ``nodes``. Use it with the host's lock held.
 
@@ -59,8 +72,8 @@ class Cycle:
     ) -> None:
         self.view = nodes
         """The nodes that are waited for."""
-        self.may_serve: Callable[[], bool] | None = None
-        """Whether found work may be served yet; None: always, as nothing runs while the executor waits."""
+        self.pool: Pool | None = None
+        """The workers that run what is served; None: nothing runs while the executor waits."""
         self._nodes = nodes
         self._clock = clock
         self._entity_of = entity_of
@@ -140,8 +153,11 @@ class Cycle:
 
     def _released(self) -> bool:
         """Whether found work may be served; otherwise hold it until it may."""
-        self.held = self.may_serve is not None and not self.may_serve()
+        self.held = self.pool is not None and not self.pool.may_serve()
         return not self.held
+
+    def _goes_ahead(self) -> bool:
+        return self.pool is not None and self.pool.kept_busy() and self._released()
 
     def next_found(self, now: int) -> Work | None:
         """The next work that is found already; None: all is served, or none may be served yet."""
@@ -164,12 +180,17 @@ class Cycle:
     def gather(self, now: int) -> bool:
         """Gather if all found work is served; return whether there is work to serve.
 
-        Tasks are served at once. Other work is held until it may be served.
+        Tasks are served at once. Other work is held until it may be served, unless the executor is kept busy.
         """
         if not (self._due_tasks or self._snapshot):
             self._ask_again()
-            found = self._gather(deque()) if self._found_all and not self._tasks else self._find(now)
-            self.held = found and not self._due_tasks
+            if not self._found_all or self._tasks:
+                found = self._find(now)
+            else:
+                found = not self._starts_worker() and self._gather(deque())
+            if self.held:
+                return True
+            self.held = found and not (self._due_tasks or self._goes_ahead())
         return self._following is not _WAITING
 
     def would_find(self, now: int) -> bool:
@@ -208,6 +229,8 @@ class Cycle:
         following, self._following = self._following, _TASKS
         if following is _TASKS:
             self._ask_again()
+            if self._starts_worker():
+                return False
             if self._take_tasks():
                 return True
         found = self._ready(now)
@@ -220,6 +243,17 @@ class Cycle:
                 return True
         # Tasks that came meanwhile end the waiting as it begins.
         return self._gather(found) or self._take_tasks()
+
+    def _starts_worker(self) -> bool:
+        """Whether a cycle that begins starts a worker; until that one has begun, nothing is served.
+
+        The cycle has the tasks of now alone, for rclpy copies its list of them first.
+        """
+        if self.pool is None or self._following is not _TASKS or not self.pool.hand_over_again():
+            return False
+        self._take_tasks()
+        self._following = _GATHERING
+        return not self._released()
 
     def _end_of_wait(self, awaited: deque[Entity]) -> deque[Entity] | None:
         """What the wait found, of all that it could; None: it ended before any of that became ready.
@@ -323,7 +357,7 @@ class Cycle:
             self._regather()
 
     def _regather(self) -> None:
-        if self.may_serve is not None:
+        if self.pool is not None:
             self._gathering = next(_gatherings)
             self._groups_left_out.clear()
             self._woken_in = self._found_first = None
@@ -340,7 +374,7 @@ class Cycle:
         So in the queue of the workers they come right behind the snapshot before, whose callbacks have not
         begun: rclpy's ``_wait_for_ready_callbacks`` yields all of ``_tasks`` that do not run, then waits.
         """
-        if self._asks_tasks_again and self.may_serve is not None:
+        if self._asks_tasks_again and self.pool is not None:
             self.recall_foreign_awaits()
 
     def recall_foreign_awaits(self) -> None:

@@ -96,7 +96,7 @@ class MultiThreadedExecutor(Executor):
             )
         super().__init__(context=chosen)
         self._pool = WorkerPool(self)
-        self._cycle.may_serve = self._pool.all_begun
+        self._cycle.pool = self._pool
         self._spinning_on = False
 
     @property

@@ -70,7 +70,7 @@ class CallbackRunner:
         """Enter the group of an entity, and take the data; otherwise as ``begin``."""
         entity.handed_out = False
         cycle = self.cycle
-        if cycle.may_serve is not None:
+        if cycle.pool is not None:
             cycle.entered(entity)
         if self.refuses or entity.destroyed or not entity.callback_group.beginning_execution(entity):
             self.executor.wake()
@@ -209,7 +209,7 @@ class CallbackRunner:
 
     def _free_group_of(self, entity: Entity) -> None:
         cycle = self.cycle
-        if cycle.may_serve is not None:
+        if cycle.pool is not None:
             cycle.leaving(entity)
         entity.callback_group.ending_execution(entity)
         executor = self._executor()

@@ -18,8 +18,10 @@ from weakref import WeakMethod
 
 from sim.clock import AutoResetEvent
 from sim.ros.scheduling.cycle import Work
+from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.running import AdmittedWork, StartedWork
 from sim.ros.scheduling.waiting_ends import never
+from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
     from sim.ros.scheduling.executors import MultiThreadedExecutor
@@ -62,6 +64,11 @@ class WorkerPool:
         self._queue: deque[Work] = deque()
         self._called_workers = 0
         self._spinner_waits = False
+        self._hands_over_again = executor._profile.hands_over_again
+        self._handed_over_again = 0
+        """How often work of the queue was handed over again since the queue was empty."""
+        self._own: Work | None = None
+        """What the worker that looks for work is about to begin."""
         self._starting: Worker | None = None
         self._started = self._clock.auto_reset_event()
         self._errors: list[BaseException] = []
@@ -81,10 +88,45 @@ class WorkerPool:
             return False
         return len(self._workers) >= self._executor.threads
 
-    def all_begun(self) -> bool:
-        """Whether all work that workers were called for has started; if not, it wakes the executor later."""
-        self._spinner_waits = self._starting is not None or self._claimed()
+    def may_serve(self) -> bool:
+        """Whether found work may be served: all that workers were called for has begun, or need not have.
+
+        If not, what begins wakes the executor later.
+        """
+        self._spinner_waits = self._starting is not None or (self._claimed() and not self.kept_busy())
         return not self._spinner_waits
+
+    def kept_busy(self) -> bool:
+        """Whether a message waits for a worker: then no wait of rclpy's executor lasts.
+
+        The event handlers of the subscription are still in the wait set, and share the condition of its DDS
+        reader, so the executor goes round, mostly until Python takes the interpreter away after 5 ms.
+        """
+        return self._hands_over_again and any(
+            isinstance(each, Entity)
+            and each.kind is EntityKind.SUBSCRIPTION
+            and each.pending
+            and each.callback_group.can_execute(each)
+            for each in self._not_begun()
+        )
+
+    def _not_begun(self) -> list[Work]:
+        return [*self._queue] if self._own is None else [self._own, *self._queue]
+
+    def hand_over_again(self) -> bool:
+        """Hand over again what no worker has begun; return whether that starts one.
+
+        Python's pool counts an idle worker less for each item, and starts one where none is left.
+        """
+        waiting = len(self._not_begun()) if self._hands_over_again else 0
+        if not waiting or self._starting is not None or len(self._workers) >= self._executor.threads:
+            return False
+        self._handed_over_again += waiting
+        spare = len(self._idle) + max(0, self._called_workers - len(self._queue))
+        if self._handed_over_again <= spare and not self.kept_busy():
+            return False
+        self._start_worker()
+        return True
 
     def _claimed(self) -> bool:
         return self._called_workers > 0 and len(self._queue) > 0
@@ -113,13 +155,16 @@ class WorkerPool:
             self._expect(worker)
             worker.signal.set()
         elif len(self._workers) < self._executor.threads:
-            worker = Worker(self._clock.auto_reset_event())
-            self._workers.append(worker)
-            self._alive_workers += 1
-            self._starting = worker
-            self._executor._cycle.hold()
-            self._expect(worker)
-            self._clock.start_thread(lambda: self._work(worker), f"{self._name}_{len(self._workers) - 1}")
+            self._start_worker()
+
+    def _start_worker(self) -> None:
+        worker = Worker(self._clock.auto_reset_event())
+        self._workers.append(worker)
+        self._alive_workers += 1
+        self._starting = worker
+        self._executor._cycle.hold()
+        self._expect(worker)
+        self._clock.start_thread(lambda: self._work(worker), f"{self._name}_{len(self._workers) - 1}")
 
     def await_start(self) -> None:
         """If a worker was just started, wait until it has started its work."""
@@ -185,6 +230,8 @@ class WorkerPool:
         begun = None
         while begun is None and self._queue:
             begun = self._runner.begin(self._queue.popleft(), now)
+        if not self._queue:
+            self._handed_over_again = 0
         if self._starting is not None or self._spinner_waits:
             self._report_begun(worker)
         if begun is not None and self._called_workers == 0 and self._executor._cycle.would_find(now):
@@ -215,10 +262,12 @@ class WorkerPool:
             self._executor._wake_spinner()
             return None
         finds = True
+        self._own = own
         while finds and not (self._starting or cycle.held):
             while not self._starting and (work := cycle.next_found(now)) is not None:
                 self.submit(work, now)
             finds = cycle.gather(now)
+        self._own = None
         if finds:
             self._executor._wake_spinner()
         return self._runner.begin(own, now)

@@ -158,6 +158,21 @@ spin(executor)
         },
     ),
     Differing(
+        "hands_over_again",
+        """
+workers = set()
+node.create_timer(0.1, lambda: workers.add(threading.current_thread()))
+after(1.05, lambda: (say(f"{len(workers)} of 3 workers"), finish()))
+spin(executor_of(node, kind=lambda: MultiThreadedExecutor(3)))
+""",
+        {
+            "jazzy@7.1.5": "2 of 3 workers",
+            "kilted@9.1.2": "2 of 3 workers",
+            "jazzy": "1 of 3 workers",
+            "lyrical": "1 of 3 workers",
+        },
+    ),
+    Differing(
         "loses_errors_after_await",
         """
 future = Future()
