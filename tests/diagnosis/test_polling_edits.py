@@ -125,6 +125,10 @@ def test_an_endless_loop_becomes_one_step_a_call() -> None:
         "n = 0\nwhile True:  # here\n    n += 1",
         "while True:  # here\n    if self.ready:\n        break",
         "self.n = 0\nwhile True:  # here\n    self.n += 1",
+        "start = time.time()\nwhile True:  # here\n    self.log(time.time() - start)",
+        "speed = self.speed\nwhile True:  # here\n    self.log(speed)",
+        "twist = Twist()\nwhile True:  # here\n    twist.linear.x += 0.1",
+        "seen = Seen()\nwhile True:  # here\n    seen.append(1)",
         "self.timer.cancel()\nwhile True:  # here\n    self.log()",
         "while True:  # here\n    self.log()\nself.log()",
         "while True:  # here\n    self.log()\n    if self.a: break\nself.log()",
@@ -166,6 +170,13 @@ def test_where_a_loop_ends_the_callback_does_what_follows_and_returns() -> None:
         if self.paused: return
         self.go()
     """
+    assert edited(node(methods), step_by_step) == node(step)
+
+
+def test_a_message_that_is_made_before_a_loop_is_made_before_each_step() -> None:
+    made = "twist = Twist()\n    twist.linear.x = 0.1"
+    methods = f"def tick(self):\n    {made}\n    while True:  # here\n        self.send(twist)"
+    step = f"def tick(self):\n    {made}\n    self.send(twist)"
     assert edited(node(methods), step_by_step) == node(step)
 
 

@@ -187,14 +187,39 @@ def _check_steps(before: list[ast.stmt], steps: list[ast.stmt]) -> None:
     """Raise NotSimpleError if the statements before a loop cannot be run before each step of it."""
     inside = [each for part in steps for each in ast.walk(part)]
     earlier = [each for part in before for each in ast.walk(part)]
+    called = {each.func.attr for each in earlier if isinstance(each, ast.Call) and hasattr(each.func, "attr")}
     local = {each.id for each in earlier if isinstance(each, ast.Name) and isinstance(each.ctx, ast.Store)}
     stored = {stored for part in before for stored in _stores(part)}
-    called = {each.func.attr for each in earlier if isinstance(each, ast.Call) and hasattr(each.func, "attr")}
     needed = {ast.unparse(each) for each in inside if isinstance(each, ast.Name | ast.Attribute)}
-    if (local | stored) & needed or called & _ONCE:
+    kept = {each.partition(".")[0] for each in (local | stored) & needed}
+    if kept - _made_anew(before, inside) or called & _ONCE:
         raise NotSimpleError
     if any(isinstance(each, ast.Yield | ast.Await) for each in inside):
         raise NotSimpleError
+
+
+def _made_anew(before: list[ast.stmt], inside: list[ast.AST]) -> set[str]:
+    """Return the variables that are made alike at each call, such as a message, and that no step changes."""
+    alike: set[str] = set()
+    changed = _set_in(inside)
+    changed |= {_root(each.func) for each in inside if isinstance(each, ast.Call)}
+    for part in before:
+        nodes = list(ast.walk(part))
+        makers = {ast.unparse(each.func).rpartition(".")[2] for each in nodes if isinstance(each, ast.Call)}
+        is_alike = all(each[:1].isupper() for each in makers)
+        is_alike &= not any(isinstance(each, ast.Name) and each.id == "self" for each in nodes)
+        (alike if is_alike else changed).update(_set_in(nodes))
+    return alike - changed
+
+
+def _set_in(nodes: list[ast.AST]) -> set[str]:
+    return {_root(each) for each in nodes if isinstance(getattr(each, "ctx", None), ast.Store | ast.Del)}
+
+
+def _root(node: ast.AST) -> str:
+    while isinstance(node, ast.Attribute | ast.Subscript):
+        node = node.value
+    return node.id if isinstance(node, ast.Name) else ""
 
 
 def _one_step(source: SourceEditor, loop: ast.While | ast.For, rest: list[ast.stmt]) -> str:
