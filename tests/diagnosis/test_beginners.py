@@ -87,3 +87,14 @@ def test_a_beginners_mistake_is_one_problem_at_its_line(
 def test_a_deadlock_is_of_the_kind_of_what_is_waited_for(program: str, kind: str) -> None:
     found = diagnose(run_to_end(program_setup(PROGRAMS / f"{program}.py", 4.0)).timeline)[0]
     assert found.rule.kind(found) == kind
+
+
+def test_a_callback_that_sleeps_by_a_rate_alone_in_its_group_needs_only_a_thread(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    lines = (PROGRAMS / "rate_sleep.py").read_text().splitlines()
+    path.write_text("\n".join(each for each in lines if "create_subscription" not in each))
+    timeline = run_to_end(program_setup(path, 2.0)).timeline
+    found = diagnose(timeline)[0]
+    told = found.rule.explain(found, timeline)
+    assert told.cure.endswith("; or keep it, and spin with MultiThreadedExecutor(num_threads=2)")
+    assert told.remedies[-1].own_groups == ()

@@ -224,6 +224,7 @@ def tick(self):
 def test_a_loop_over_numbers_becomes_one_round_a_call() -> None:
     assert changed(node(ROUNDS, "import rclpy"), one_round_a_call) == [
         "+from itertools import cycle",
+        "+",
         "-        self.create_timer(1.0, self.tick)",
         "+        self.tick_steps = cycle(range(5))",
         "+        self.create_timer(0.5, self.tick)",
@@ -233,6 +234,13 @@ def test_a_loop_over_numbers_becomes_one_round_a_call() -> None:
         "+        number = next(self.tick_steps)",
         "+        self.log(number)",
     ]
+
+
+@pytest.mark.parametrize(("rounds", "count"), [("range(5)", 5), ("['a', 'b']", 2), ("range(2, 5)", 0)])
+def test_a_loop_that_may_be_over_before_the_next_call_stays(rounds: str, count: int) -> None:
+    text = node(ROUNDS.replace("range(5)", rounds))
+    assert changed(text, one_round_a_call, count) is not None
+    assert changed(text, one_round_a_call, count + 1) is None
 
 
 @pytest.mark.parametrize(

@@ -154,11 +154,11 @@ def step_by_step(source: SourceEditor, line: int) -> None:
     source.replace_lines(loop, (rest or [loop])[-1], _one_step(source, loop, rest))
 
 
-def one_round_a_call(source: SourceEditor, line: int) -> None:
+def one_round_a_call(source: SourceEditor, line: int, least: int = 0) -> None:
     """Replace the ``for`` around a line by one round of it at each call of the callback; then it begins anew.
 
-    Only for a loop over literals that ends the body of a timer's callback. The timer gets the period of the
-    loop's pauses.
+    Only for a loop over literals, of so many rounds at least, that ends the body of a timer's callback. The
+    timer gets the period of the loop's pauses.
     """
     callback = source.callback_at(line)
     loop, timers, steps = (
@@ -173,6 +173,8 @@ def one_round_a_call(source: SourceEditor, line: int) -> None:
     is_left = any(isinstance(each, ast.Break) for each in _ends(loop.body))
     if names - {"range"} or is_left or len(timers) != 1 or steps in source.text:
         raise NotSimpleError
+    if _rounds(loop.iter) < least:
+        raise NotSimpleError  # the callback has pauses between its loops
     made = _keep_pace(source, callback, pauses)
     _check_steps([each for each in callback.body[:-1] if each is not made], loop.body)
     me, blank = callback.args.args[0].arg, indentation(loop)
@@ -181,6 +183,15 @@ def one_round_a_call(source: SourceEditor, line: int) -> None:
     making = source.statement_at(timers[0].lineno)
     source.insert_before(making, f"{me}.{steps} = cycle({source.code_of(loop.iter)})\n{indentation(making)}")
     source.import_names("itertools", ["cycle"])
+
+
+def _rounds(iterable: ast.expr) -> int:
+    match iterable:
+        case ast.List(elts=items) | ast.Tuple(elts=items):
+            return len(items)
+        case ast.Call(func=ast.Name(id="range"), args=[ast.Constant(value=int(number))]):
+            return number
+    return 0
 
 
 def _check_steps(before: list[ast.stmt], steps: list[ast.stmt]) -> None:

@@ -160,7 +160,7 @@ class SourceEditor:
         if root in sys.stdlib_module_names:
             related = [each for each in before if _module(each).partition(".")[0] in sys.stdlib_module_names]
             if not related:
-                self.insert_before(before[0], f"{line}\n")
+                self.insert_before(before[0], f"{line}\n\n")
                 return
         self.insert_behind((related or before)[-1], f"\n{line}")
 

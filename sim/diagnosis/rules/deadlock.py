@@ -4,8 +4,17 @@ from collections.abc import Iterator, Sequence
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.locks import let_go_during_wait, make_reentrant, take_together
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, WaitedFor, by_edit, line_of
-from sim.diagnosis.rules.edits import edits_for_reply, edits_for_steps
+from sim.diagnosis.rule import (
+    CodeLocation,
+    Explanation,
+    Finding,
+    Rule,
+    WaitedFor,
+    by_edit,
+    is_models,
+    line_of,
+)
+from sim.diagnosis.rules.edits import edits_for_reply, edits_for_rounds, edits_for_steps
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES, StuckCallback, WaitForGraph, stands
 from sim.diagnosis.words import often, threads_for, until_when, who, with_threads
@@ -44,7 +53,8 @@ class SelfMadeDeadlock(Rule):
             about = _LOCK_AND_CALL
         why, cure = _WHY.get(about, _WHY_REPLY), _CURES.get(about, "")
         if about == WaitedFor.RATE:
-            cure = f"remove sleep(), and have a timer of its period do one step at each call; or {apart}"
+            keep = apart if _shares_group(found.subject, timeline) else "keep it"
+            cure = f"remove sleep(), and have a timer of its period do one step at each call; or {keep}"
         elif about == WaitedFor.CLOCK:
             cure = f"return, and let a timer of the node's clock do what comes later; or {apart}"
         stands = timeline.positions_of(found.subject, Window(found.at, found.until + 1))
@@ -72,7 +82,10 @@ class SelfMadeDeadlock(Rule):
     def _remedies(self, found: Finding, threads: int, timeline: Timeline) -> tuple[Remedy, ...]:
         place = _line_of(found.subject, found, timeline)
         apart = Remedy((found.subject,), threads)
-        if found.about in (WaitedFor.RATE, WaitedFor.CLOCK):
+        if found.about == WaitedFor.RATE:
+            room = apart if _shares_group(found.subject, timeline) else Remedy(threads=threads)
+            return *_without_rate(place, found.subject, timeline), room
+        if found.about == WaitedFor.CLOCK:
             return *edits_for_steps(place, found.subject, timeline), apart
         if WaitedFor.LOCK not in found.waited_for:
             return apart, *edits_for_reply(place, found.subject, timeline)
@@ -135,6 +148,21 @@ _CURES = {
     WaitedFor.LOCK: "take locks in the same order everywhere, and let go of one before you take the next",
     _LOCK_AND_CALL: "let go of the lock before the call, and take it again when the reply is there",
 }
+
+
+def _without_rate(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
+    """Return edits of a callback that sleeps by a rate at a place: its timer has the pace of the rate."""
+    known, others = timeline.entities[entity], timeline.entities.values()
+    rates = [each.period for each in others if each.node == known.node and each.period and is_models(each)]
+    steps = edits_for_steps(place, entity, timeline)
+    if not known.period or not rates:
+        return steps
+    least = -(-known.period // min(rates))
+    return *steps, *edits_for_rounds(place, entity, timeline, least)
+
+
+def _shares_group(entity: EntityId, timeline: Timeline) -> bool:
+    return len(timeline.group_members(timeline.entities[entity].group)) > 1
 
 
 def _line_of(entity: EntityId, found: Finding, timeline: Timeline) -> CodeLocation | None:

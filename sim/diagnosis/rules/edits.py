@@ -39,11 +39,15 @@ def edits_for_steps(place: CodeLocation | None, entity: EntityId, timeline: Time
     return by_edit(place, f"do one step of the loop at each call of {who(entity, timeline)}", step_by_step)
 
 
-def edits_for_rounds(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
-    """Return edits of a timer's callback that takes longer than its period, in a loop at a place."""
-    return by_edit(
-        place, f"do one round of the loop at each call of {who(entity, timeline)}", one_round_a_call
-    )
+def edits_for_rounds(
+    place: CodeLocation | None, entity: EntityId, timeline: Timeline, least: int = 0
+) -> tuple[Remedy, ...]:
+    """Return edits of a timer's callback that takes longer than its period, in a loop at a place.
+
+    If that is not known, ``least`` is the number of rounds that take so long.
+    """
+    words = f"do one round of the loop at each call of {who(entity, timeline)}"
+    return by_edit(place, words, one_round_a_call, least)
 
 
 def edits_for_spinning(
