@@ -141,6 +141,12 @@ def test_a_loop_that_waits_for_a_future_is_one_await() -> None:
     ]
 
 
+def test_nothing_is_awaited_with_a_lock() -> None:
+    call = "with self.lock:\n        self.client.call(Trigger.Request())  # here"
+    made = "def __init__(self):\n    self.create_timer(1.0, self.tick)"
+    assert changed(node(f"{made}\n\ndef tick(self):\n    {call}"), await_reply, 6) is None
+
+
 @pytest.mark.parametrize(
     ("made", "given"),
     [

@@ -53,6 +53,11 @@ def test_both_locks_are_taken_at_once_in_the_order_of_the_other_callback() -> No
     )
 
 
+def test_what_is_no_lock_is_kept_during_a_call() -> None:
+    block = holding("self.client.call(Trigger.Request())  # here").replace("threading.Lock()", "self.open()")
+    assert changed(block, let_go_during_wait) is None
+
+
 def test_a_lock_that_its_holder_takes_again_becomes_reentrant() -> None:
     text = node(
         "def __init__(self):\n    self.lock = threading.Lock()\n\n"
@@ -67,7 +72,9 @@ def test_a_lock_that_its_holder_takes_again_becomes_reentrant() -> None:
 
 def holding(block: str) -> str:
     """A callback that holds a lock while it runs a block of code."""
-    return node(f"def tick(self):\n    with self.lock:\n{indent(dedent(block).strip(), ' ' * 8)}")
+    held = indent(dedent(block).strip(), " " * 8)
+    made = "def __init__(self):\n    self.lock = threading.Lock()"
+    return node(f"{made}\n\ndef tick(self):\n    with self.lock:\n{held}")
 
 
 def test_a_lock_is_let_go_of_during_a_call_and_taken_again() -> None:

@@ -33,21 +33,21 @@ PROGRAMS = Path(__file__).parents[1] / "diagnosis" / "beginners"
 UNTIL = 3 * SECOND
 
 
-def run_of(program: str) -> tuple[RunSetup, Timeline]:
-    setup = program_setup(PROGRAMS / f"{program}.py", 3.0)
+def run_of(program: str, folder: Path = PROGRAMS) -> tuple[RunSetup, Timeline]:
+    setup = program_setup(folder / f"{program}.py", 3.0)
     return setup, run_to_end(setup).timeline
 
 
-def offered(program: str) -> tuple[Problem, RunSetup, list[Cure]]:
+def offered(program: str, folder: Path = PROGRAMS) -> tuple[Problem, RunSetup, list[Cure]]:
     """The first problem of a program, and what can be tried of its cure."""
-    setup, timeline = run_of(program)
+    setup, timeline = run_of(program, folder)
     found = diagnose(timeline)[0]
     told = found.rule.explain(found, timeline)
     return problem_of(found, timeline), setup, list(cures_of(told, setup, Changes(), timeline))
 
 
-def helpful(program: str) -> list[str]:
-    problem, setup, cures = offered(program)
+def helpful(program: str, folder: Path = PROGRAMS) -> list[str]:
+    problem, setup, cures = offered(program, folder)
     before = try_run(setup, UNTIL, Event())
     runs = ((cure, try_run(cure.changes.applied(setup), UNTIL, Event())) for cure in cures)
     return [f"{cure.words}{cure.diff and ' (diff)'}" for cure, after in runs if helps(problem, before, after)]
@@ -104,6 +104,16 @@ FIT = "define it with the parameters it is called with (diff)"
 )
 def test_the_cures_that_are_offered_end_the_problem(program: str, cures: list[str]) -> None:
     assert helpful(program) == cures
+
+
+@pytest.mark.slow
+def test_where_a_lock_and_a_group_are_in_the_way_of_a_reply_only_a_cure_of_both_helps(tmp_path: Path) -> None:
+    text = (PROGRAMS / "lock_during_call.py").read_text()
+    text = text.replace("callback_group=MutuallyExclusiveCallbackGroup()", "callback_group=None")
+    (tmp_path / "camera.py").write_text(text.replace("callback_group=taking", "callback_group=None"))
+    assert helpful("camera", tmp_path) == [
+        "let go of the lock during the call, and give take_picture a callback group of its own (diff)"
+    ]
 
 
 def test_a_deadlock_is_the_same_whoever_of_two_was_the_last_to_wait() -> None:

@@ -29,7 +29,8 @@ def let_go_during_wait(source: SourceEditor, line: int) -> None:
     block, *more = _around(source, line)
     lock, function = _lock(source, block), source.function_at(line)
     waits = [each for each in block.body if is_at(each, line)]
-    if more or not waits:
+    makers = {ast.unparse(each).rpartition(".")[2] for each in _made(source, lock)}
+    if more or not waits or not makers <= {"Lock()", "RLock()"} or not makers:
         raise NotSimpleError
     wait, blank = waits[0], indentation(block)
     first, begin = (block, _header_end(block)) if wait is block.body[0] else (wait, wait.lineno - 1)
@@ -88,17 +89,18 @@ def _lock(source: SourceEditor, with_: ast.With) -> str:
     return source.code_of(with_.items[0].context_expr)
 
 
+def _made(source: SourceEditor, lock: str) -> list[ast.expr]:
+    """Return what makes a lock of that name."""
+    assigned = (each for each in source.nodes(ast.Assign) if len(each.targets) == 1)
+    return [each.value for each in assigned if ast.unparse(each.targets[0]) == lock]
+
+
 def make_reentrant(source: SourceEditor, line: int) -> None:
     """Replace the lock that is taken at a line by an ``RLock``, which its holder may take again."""
     blocks = [each for each in source.nodes(ast.With) if each.lineno <= line <= each.body[0].lineno]
     if not blocks:
         raise NotSimpleError
-    name = _lock(source, blocks[-1])
-    made = [
-        each.value
-        for each in source.nodes(ast.Assign)
-        if len(each.targets) == 1 and ast.unparse(each.targets[0]) == name
-    ]
+    made = _made(source, _lock(source, blocks[-1]))
     match made:
         case [
             ast.Call(func=ast.Attribute(value=ast.Name(id="threading"), attr="Lock"), args=[], keywords=[])

@@ -51,6 +51,8 @@ def await_reply(source: SourceEditor, line: int, made: int) -> None:
     give_own_group(source, made)
     callback = source.callback_at(line)
     statement = _innermost(callback, line)
+    if any(is_at(each, line) for each in source.nodes(ast.With, callback)):
+        raise NotSimpleError  # it would keep a lock while others run on its thread
     call = plain_call(statement)
     if call is not None:
         source.replace(call, f"await {_asynchronous(source, call)}")

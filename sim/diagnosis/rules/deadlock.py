@@ -1,6 +1,7 @@
 """Rules on callbacks that wait for replies which cannot come while they wait."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.locks import let_go_during_wait, make_reentrant, take_together
@@ -88,13 +89,13 @@ class SelfMadeDeadlock(Rule):
         if found.about == WaitedFor.CLOCK:
             return *edits_for_steps(place, found.subject, timeline), apart
         if WaitedFor.LOCK not in found.waited_for:
-            return apart, *edits_for_reply(place, found.subject, timeline)
+            held = (replace(apart, edit=each.edit) for each in _letting_go(place))
+            return apart, *edits_for_reply(place, found.subject, timeline), *held
         if found.size == 1:
             return by_edit(place, "make the lock a threading.RLock", make_reentrant)
         if WaitedFor.REPLY in found.waited_for:
-            words = "let go of the lock during the call"
             lines = _lines_of((found.subject, found.culprit), found, timeline)
-            return tuple(each for at in lines for each in by_edit(at, words, let_go_during_wait))
+            return tuple(each for line in lines for each in _letting_go(line))
         other = _line_of(found.culprit, found, timeline)
         order = f"take both locks at once, in the order of {who(found.culprit, timeline)}"
         return () if other is None else by_edit(place, order, take_together, other.first_line)
@@ -148,6 +149,10 @@ _CURES = {
     WaitedFor.LOCK: "take locks in the same order everywhere, and let go of one before you take the next",
     _LOCK_AND_CALL: "let go of the lock before the call, and take it again when the reply is there",
 }
+
+
+def _letting_go(place: CodeLocation | None) -> tuple[Remedy, ...]:
+    return by_edit(place, "let go of the lock during the call", let_go_during_wait)
 
 
 def _without_rate(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
