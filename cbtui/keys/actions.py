@@ -9,6 +9,17 @@ from cbtui.keys.action import CHECKS, CHOICE, PANES, KeyAction, Scope
 _ON_A_SCREEN = (Scope.MENU, Scope.LESSON, Scope.COMPARE)
 _ON_A_PANE = (Scope.LOG, Scope.CODE, Scope.CHECKS, Scope.CHOICE)
 """Scopes of a pane of a lesson, whose actions work there beside the lesson's."""
+_CHOICES = (
+    Scope.THREADS,
+    Scope.GROUP,
+    Scope.EXPORT,
+    Scope.SETUP,
+    Scope.DIAGNOSES,
+    Scope.PREDICTION,
+    Scope.SOLUTION,
+    Scope.ASKING,
+)
+"""Scopes of windows in which no text is typed, so that the key for help works there, too."""
 
 _Row = tuple[str, str, str, str] | tuple[str, str, str, str, str]
 
@@ -348,10 +359,11 @@ TASKS = {
 def actions_of(scope: Scope) -> tuple[KeyAction, ...]:
     """Return the actions that work in a scope, on a pane also those of its lesson.
 
-    Actions of ``EVERYWHERE`` are left out in windows and while text is typed.
+    Actions of ``EVERYWHERE`` are left out while text is typed, and in windows all but help.
     """
     if scope in _ON_A_PANE:
         scopes: tuple[Scope, ...] = (scope, Scope.LESSON, Scope.EVERYWHERE)
     else:
         scopes = (scope, Scope.EVERYWHERE) if scope in _ON_A_SCREEN else (scope,)
-    return tuple(action for action in ACTIONS if action.scope in scopes)
+    more = ("help",) if scope in _CHOICES else ()
+    return tuple(action for action in ACTIONS if action.scope in scopes or action.id in more)

@@ -17,6 +17,7 @@ from lessons.progress import Progress
 from lessons.puzzles import Puzzle, puzzles
 from sim.engine.commands import Choose, Resume
 from sim.trace.events import ChoiceAsked, Reason
+from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 from tests.support.asking import PUZZLE, Asking, question
 from tests.support.builder import Run, ns
@@ -234,7 +235,7 @@ async def test_on_a_paused_run_the_learner_becomes_the_scheduler_and_goes_back(t
         assert "take_over" not in offered(app)
         await pilot.press("space")
         await until(pilot, lambda: "take_over" in offered(app))
-        before = shown(app).runs.timeline.end
+        before = await where_it_stands(pilot, app)
         await pilot.press("W")
         await until(pilot, lambda: isinstance(app.screen, ChoosingScreen))
         await until(pilot, lambda: news(app).startswith("Choice 1, "))
@@ -245,6 +246,15 @@ async def test_on_a_paused_run_the_learner_becomes_the_scheduler_and_goes_back(t
         await pilot.press("q")
         await until(pilot, lambda: isinstance(app.screen, LessonScreen))
         assert shown(app).runs.timeline.end == before
+
+
+async def where_it_stands(pilot: Pilot[None], app: CbtuiApp) -> Nanoseconds:
+    """The end of the paused run, once what it said before the pause has come."""
+    before = -1
+    while before != (end := shown(app).runs.timeline.end):
+        before = end
+        await pilot.pause(0.5)
+    return end
 
 
 def shown(app: CbtuiApp) -> RunScreen[object]:  # type: ignore[type-var]
