@@ -43,6 +43,8 @@ if TYPE_CHECKING:
 
 _IDLE = 0.2
 """Seconds from the first picture to the import of what the next screen needs."""
+_TALL = 48
+"""Rows of a terminal from which on the preview has more room than the description."""
 _CALLED = " and ".join(f"{at / 1e9:g}" for at in CALLS)
 _TITLE = f"first {LENGTH / 1e9:g} s, {{key}} pressed at {_CALLED} s"
 _ASKED = "its first question"
@@ -116,7 +118,8 @@ class MenuScreen(SizedScreen[None]):
         await self._previews.leave()
 
     def laid_out(self) -> None:
-        """Show more details in the list if there is room."""
+        """Show more details in the list, and a larger preview, if there is room."""
+        self.set_class(self.app.size.height >= _TALL, "-tall")
         if self._filled_with != self._contents:
             self._fill()
 

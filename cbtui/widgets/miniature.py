@@ -1,6 +1,6 @@
 """A run's lanes as a small picture, with a cursor that passes through them once."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import monotonic
 from typing import TYPE_CHECKING
@@ -20,16 +20,22 @@ if TYPE_CHECKING:
 FRAMES_A_SECOND = 5
 SPEED = 2
 """Seconds of the run per real second."""
+_LEAST_SCENE = 10
+"""The least rows in which a robot's map can be recognised."""
 _STATUSES = (25, 16, 10, 0)
 """The widths of the status columns in the lane painter's layouts."""
 
 
 @dataclass(frozen=True)
 class PreviewPicture:
-    """A finished run and its painter."""
+    """A finished run and its painter.
+
+    ``scene`` paints its robot or figures at a moment, in a width and a height.
+    """
 
     timeline: "Timeline"
     painter: "LanePainter"
+    scene: Callable[[int, int, int], Sequence[Sequence[TextRun]]] | None = None
 
 
 class Miniature(PaintedWidget):
@@ -73,15 +79,21 @@ class Miniature(PaintedWidget):
 
 
 def miniature(subject: PreviewPicture, now: int, size: Size) -> list[Sequence[TextRun]]:
-    """Paint a whole run in a size, without the status column."""
+    """Paint a whole run in a size, without the status column; below it the scene, where there is room."""
+    from cbtui.widgets.lanes import wanted_rows
     from cbtui.widgets.lanes.picture import layout_for  # whoever has a subject has imported it
     from sim.trace.model import Window
 
     layouts = ((beside, layout_for(max(20, size.width + beside))) for beside in _STATUSES)
     beside = next(beside for beside, layout in layouts if layout.statuses == beside)
     window = Window(0, subject.timeline.end)
-    picture = subject.painter.paint(subject.timeline, window, now, size.width + beside, size.height)
-    return [row[:-1] if picture.layout.statuses else row for row in picture.rows]
+    wanted = wanted_rows(subject.timeline, subject.painter.service, size.width + beside, window)
+    room = size.height - wanted - 1
+    below = subject.scene(now, size.width, room) if subject.scene and room >= _LEAST_SCENE else ()
+    height = wanted if below else size.height
+    picture = subject.painter.paint(subject.timeline, window, now, size.width + beside, height)
+    rows: list[Sequence[TextRun]] = [row[:-1] if picture.layout.statuses else row for row in picture.rows]
+    return [*rows, [TextRun(" " * size.width, Ink(Role.TEXT))], *below] if below else rows
 
 
 def sentence_rows(sentence: str, size: Size) -> list[Sequence[TextRun]]:

@@ -109,7 +109,9 @@ class Previews:
         else:
             # imported on this thread, as the screen must not wait for it
             from cbtui.widgets.lanes import LanePainter
+            from cbtui.widgets.robot import scene_of
 
             key = keymap_of(self._screen.app).sign(Scope.LESSON, "call_service", self._charset)
-            subject = PreviewPicture(timeline, LanePainter(self._charset, lesson.service.name, call_key=key))
+            lanes = LanePainter(self._charset, lesson.service.name, call_key=key)
+            subject = PreviewPicture(timeline, lanes, scene_of(lesson, timeline, self._charset))
         self._screen.post_message(self.Drawn(lesson, subject))

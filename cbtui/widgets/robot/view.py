@@ -19,6 +19,7 @@ from cbtui.widgets.robot.painter import RobotPainter, RobotPainting
 from cbtui.widgets.robot.pane_regions import RobotViewMode
 from cbtui.widgets.scene import paint_scene
 from lessons.description import Actor
+from lessons.lesson import Lesson
 from sim.camera import Camera, Picture, Shot
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -196,3 +197,12 @@ class RobotView(PaintedWidget):
             self._strips = ramp(self._picture, self.app.current_theme.dark, self.rich_style)
         else:
             self._strips = half_blocks(self._picture)
+
+
+def scene_of(
+    lesson: Lesson, timeline: Timeline, charset: Charset
+) -> Callable[[Nanoseconds, int, int], Sequence[Sequence[TextRun]]]:
+    """Return what paints a lesson's figures, or else its robot, at a moment in a width and a height."""
+    if lesson.scene:
+        return lambda now, width, height: paint_scene(lesson.scene, timeline, now, width, height, charset)
+    return lambda now, width, height: RobotPainter(charset).paint(timeline, now, width, height).rows

@@ -16,6 +16,7 @@ from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, PreviewRun
 from cbtui.looks.theme import Charset
 from cbtui.widgets.lanes import LanePainter
 from cbtui.widgets.miniature import Miniature, PreviewPicture, miniature, sentence_rows
+from cbtui.widgets.robot import scene_of
 from lessons.catalogue import find, lessons
 from sim.engine.setup import RunSetup, TimedCall
 from sim.trace.timeline import Timeline
@@ -185,6 +186,16 @@ def test_a_picture_is_as_wide_as_it_is_to_be(width: int, charset: Charset, share
     )
     assert {sum(len(run.text) for run in row) for row in rows} == {width}
     assert len(rows) <= 8
+
+
+def test_a_tall_picture_has_the_lessons_robot_or_figures_below_its_lanes(shared_group: Timeline) -> None:
+    scene = scene_of(find("shared-group"), shared_group, Charset.BRAILLE)
+    subject = PreviewPicture(shared_group, LanePainter(), scene)
+    for height, is_shown in ((9, False), (25, True)):
+        rows = miniature(subject, shared_group.end // 2, Size(100, height))
+        assert any("true scan" in run.text for row in rows for run in row) is is_shown
+        assert len(rows) <= height
+        assert {sum(len(run.text) for run in row) for row in rows} == {100}
 
 
 def test_a_sentence_is_wrapped_and_cut_to_the_room() -> None:
