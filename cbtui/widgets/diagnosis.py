@@ -71,7 +71,7 @@ def diagnosis_on_screen(
         if run.state is RunState.REPLAY_STANDS and timeline.ended is not None:
             return _diagnosis_of_end(timeline, f"{_key('resume', keymap)} plays it from its beginning")
     at = playhead.now(timeline.end)
-    moment = diagnosis_at(timeline, at, concurrency, keymap)
+    moment = diagnosis_at(timeline, at, concurrency, keymap, can_type=run.alive)
     notice = _latest_notice(timeline, at)
     if playhead.at is None and run.alive and notice is not None and notice.kind is NoticeKind.NO_PROGRESS:
         return replace(moment, text=f"{moment.text}; {_key('start_over', keymap)} starts over")
@@ -134,16 +134,21 @@ def _diagnosis_of_end(timeline: Timeline, how_to_continue: str) -> Diagnosis:
 
 
 def diagnosis_at(
-    timeline: Timeline, at: Nanoseconds, concurrency: Concurrency, keymap: Keymap = STANDARD
+    timeline: Timeline,
+    at: Nanoseconds,
+    concurrency: Concurrency,
+    keymap: Keymap = STANDARD,
+    *,
+    can_type: bool = True,
 ) -> Diagnosis:
-    """Return the most important fact of a moment."""
+    """Return the most important fact of a moment; ``can_type`` tells that a program still reads keys."""
     notice = _latest_notice(timeline, at)
     if notice is not None:
         stalled = notice.kind is NoticeKind.NO_PROGRESS
         return Diagnosis(notice.text, DiagnosisLevel.TROUBLE, stays=True, is_stall=stalled)
     asked = timeline.asked(at)
     if asked is not None and not timeline.entities:
-        return Diagnosis(_of_keyboard(asked, keymap), DiagnosisLevel.FINE)
+        return Diagnosis(_of_keyboard(asked, keymap, can_type), DiagnosisLevel.FINE)
     if not timeline.entities:
         return Diagnosis("no callback yet: the node is starting", DiagnosisLevel.FINE)
     moment = timeline.moment(at)
@@ -151,7 +156,7 @@ def diagnosis_at(
     if for_others:
         return _of_waits(for_others, moment, timeline)
     if asked is not None:
-        return Diagnosis(_of_keyboard(asked, keymap), DiagnosisLevel.FINE)
+        return Diagnosis(_of_keyboard(asked, keymap, can_type), DiagnosisLevel.FINE)
     return _at_rest(moment, timeline, concurrency.peak(at))
 
 
@@ -176,9 +181,9 @@ def _in_a_call(moment: Moment, timeline: Timeline) -> str:
     return f"{who} has been blocked in the call of {stuck.service} for {duration(moment.at - stuck.start)}"
 
 
-def _of_keyboard(asked: KeyboardAsked, keymap: Keymap) -> str:
-    way = _key("type", keymap)
-    return f"{asked.program} waits for input from the keyboard; type it in the shell pane ({way})"
+def _of_keyboard(asked: KeyboardAsked, keymap: Keymap, can_type: bool) -> str:
+    way = f"; type it in the shell pane ({_key('type', keymap)})" if can_type else ""
+    return f"{asked.program} waits for input from the keyboard{way}"
 
 
 def call_note(timeline: Timeline, at: Nanoseconds) -> str:

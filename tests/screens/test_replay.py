@@ -15,7 +15,7 @@ from cbtui.screens.replay import ReplayScreen
 from cbtui.widgets.shell import Prompt
 from sim.engine.setup import ProgramSetup, RunSetup
 from sim.recording import Recording, RecordingMetadata, read
-from sim.trace.events import AnyEvent, RunEnded
+from sim.trace.events import AnyEvent, KeyboardAsked, Reading, RunEnded
 from tests.recording.files import timeline_of, write, write_in_chunks
 from tests.support.builder import ns
 from tests.support.console import WIDE, settle
@@ -58,6 +58,15 @@ async def press(pilot: Pilot[None], *keys: str) -> None:
     assert isinstance(pilot.app.screen, ReplayScreen)
     pilot.app.screen.draw()
     await settle(pilot)
+
+
+async def test_nobody_is_told_to_type_for_a_program_that_is_over(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    asked = KeyboardAsked(ns(1.0), Reading.LINES, "teleop.py")
+    write(path, [*shared_group_run().until(0.5), asked], RecordingMetadata(title="teleop", clock="virtual"))
+    async with replayed(read(path)) as (_, pilot):
+        assert "teleop.py waits for input from the keyboard" in text_of(pilot.app)
+        assert "type it" not in text_of(pilot.app)
 
 
 async def test_a_recording_opens_at_its_end_with_every_pane_alive(tmp_path: Path) -> None:
