@@ -164,7 +164,7 @@ def _lane_signs(charset: Charset) -> _Section:
             _HelpRow(glyphs.lost, "a message is lost: its queue was full"),
             _HelpRow(glyphs.cross, "a callback raised an exception"),
             _HelpRow("excl reen", "a group's kind where names are short: exclusive, reentrant"),
-            _HelpRow("25% busy", "a thread's work in the time on screen up to the moment"),
+            _HelpRow("25% busy", "how much of the time on screen a thread worked"),
             _HelpRow("late", "a timer was called later than its period says"),
             _HelpRow(glyphs.up, "what you did: a call of a service, a reset, a ros2 command"),
             _HelpRow(glyphs.cursor, "the moment on screen, which every pane shows"),
