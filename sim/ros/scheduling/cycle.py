@@ -48,8 +48,14 @@ class Pool(Protocol):
     def may_serve(self) -> bool:
         """Whether found work may be served yet."""
 
+    def may_go_ahead(self) -> bool:
+        """Whether found work can be served before that."""
+
     def kept_busy(self) -> bool:
         """Whether the executor serves what it finds without waiting for the workers."""
+
+    def asked_again(self) -> list[Task[Any]]:
+        """The tasks that await, and have to be asked behind the callbacks that are queued, too."""
 
     def hand_over_again(self) -> bool:
         """Begin a cycle with what no worker has begun; return whether that starts one."""
@@ -144,7 +150,7 @@ class Cycle:
             work = self._serve(now)
             if work is not None:
                 return work
-            if not self._find(now) or not (self._due_tasks or self._released()):
+            if not self._find(now) or not (self._due_tasks or self._released() or self._goes_ahead()):
                 return None
         work = self._serve(now)
         if work is None:
@@ -157,7 +163,15 @@ class Cycle:
         return not self.held
 
     def _goes_ahead(self) -> bool:
-        return self.pool is not None and self.pool.kept_busy() and self._released()
+        """Whether the executor serves what it found though workers have not begun what was served before.
+
+        They wait for the interpreter, which the executor seldom gives away if its wait returns at once.
+        """
+        pool = self.pool
+        if pool is None or not pool.may_go_ahead() or not (pool.kept_busy() or self._clock.choose(2)):
+            return False
+        self.held = False
+        return True
 
     def next_found(self, now: int) -> Work | None:
         """The next work that is found already; None: all is served, or none may be served yet."""
@@ -301,7 +315,7 @@ class Cycle:
         if (
             self._asks_tasks_again and len(self._due_tasks) > 1
         ):  # rclpy keeps tasks in one list until they are done
-            self._due_tasks = deque(sorted(self._due_tasks, key=lambda task: task.number))
+            self._due_tasks = deque(sorted(set(self._due_tasks), key=lambda task: task.number))
         if self._newest_task_first:
             self._due_tasks.reverse()
         if self._due_tasks:
@@ -376,6 +390,7 @@ class Cycle:
         """
         if self._asks_tasks_again and self.pool is not None:
             self.recall_foreign_awaits()
+            self._tasks.extend(self.pool.asked_again())
 
     def recall_foreign_awaits(self) -> None:
         """Resume the tasks that await something unknown, because the executor is woken."""

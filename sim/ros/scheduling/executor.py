@@ -337,7 +337,8 @@ class Executor:
 
     def _resume_at_wake_up(self, task: Task[Any]) -> None:
         with self._lock:
-            self._cycle.foreign_awaits.append(task)
+            if task not in self._cycle.foreign_awaits:
+                self._cycle.foreign_awaits.append(task)
 
     def _coroutine_returned(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
         """A callback has returned a coroutine; ``outer`` ran on its thread before."""

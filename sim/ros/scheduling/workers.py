@@ -13,13 +13,14 @@ from __future__ import annotations
 import threading
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 from weakref import WeakMethod
 
 from sim.clock import AutoResetEvent
 from sim.ros.scheduling.cycle import Work
 from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.running import AdmittedWork, StartedWork
+from sim.ros.scheduling.task import Task
 from sim.ros.scheduling.waiting_ends import never
 from sim.trace.events import EntityKind
 
@@ -96,6 +97,10 @@ class WorkerPool:
         self._spinner_waits = self._starting is not None or (self._claimed() and not self.kept_busy())
         return not self._spinner_waits
 
+    def may_go_ahead(self) -> bool:
+        """Whether found work can be served before that; for a worker that it starts, the executor waits."""
+        return self._hands_over_again and self._starting is None
+
     def kept_busy(self) -> bool:
         """Whether a message waits for a worker: then no wait of rclpy's executor lasts.
 
@@ -112,6 +117,16 @@ class WorkerPool:
 
     def _not_begun(self) -> list[Work]:
         return [*self._queue] if self._own is None else [self._own, *self._queue]
+
+    def asked_again(self) -> list[Task[Any]]:
+        """The queued tasks that await and have callbacks queued behind them, for they go on there, too."""
+        last_callback, last_places = -1, {}
+        for place, work in enumerate(self._queue):
+            if isinstance(work, Task):
+                last_places[work] = place
+            else:
+                last_callback = place
+        return [task for task, place in last_places.items() if task._was_suspended and place < last_callback]
 
     def hand_over_again(self) -> bool:
         """Hand over again what no worker has begun; return whether that starts one.
@@ -229,7 +244,9 @@ class WorkerPool:
             self._called_workers -= 1
         begun = None
         while begun is None and self._queue:
-            begun = self._runner.begin(self._queue.popleft(), now)
+            work = self._queue.popleft()
+            if not (isinstance(work, Task) and (work._settled() or work.executing())):
+                begun = self._runner.begin(work, now)
         if not self._queue:
             self._handed_over_again = 0
         if self._starting is not None or self._spinner_waits:

@@ -3,6 +3,7 @@
 import os
 import warnings
 from collections.abc import Callable, Hashable, Sequence
+from functools import partial
 from typing import Any
 
 import pytest
@@ -416,7 +417,7 @@ def test_a_worker_takes_the_next_of_the_queue_before_any_other_thread_goes_on(di
 def test_a_pool_that_a_message_keeps_busy_hands_over_what_is_ready_before_the_message_is_taken(
     distro: str,
 ) -> None:
-    # Measured on Jazzy 7.1.5 and Kilted 9.1.2: 20 runs of 20 each.
+    # Measured on Jazzy 7.1.5 and Kilted 9.1.2: 20 runs of 20, and 19 of 20.
     said: list[str] = []
 
     def program(simulation: Simulation) -> None:
@@ -449,6 +450,53 @@ def test_a_pool_that_a_message_keeps_busy_hands_over_what_is_ready_before_the_me
 
     simulate(program, until=1.0, distro=distro)
     assert said == ["serves", "hears", "serves", "runs", "hears"]
+
+
+@pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
+@pytest.mark.parametrize("distro", ["jazzy@7.1.5", "kilted"])
+def test_what_awaits_is_queued_again_behind_the_reply_though_it_waits_for_a_worker_already(
+    distro: str,
+) -> None:
+    # Measured on Jazzy 7.1.5 and Kilted 9.1.2: 12 runs of 12, and 11 of 11.
+    said: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node, server = Node("n"), Node("server")
+        group = ReentrantCallbackGroup()
+
+        async def ask() -> None:
+            await client.call_async(Trigger.Request())
+            said.append("goes on")
+
+        def begin() -> None:
+            begins.cancel()
+            executor.create_task(ask())
+
+        def block() -> None:
+            blocks.cancel()
+            simulation.sleep(0.5)
+
+        def serve(_request: Any, response: Any) -> Any:
+            simulation.sleep(0.4)  # until the first message has been handed over, and the task behind it
+            return response
+
+        server.create_service(Trigger, "s", serve)
+        client = node.create_client(Trigger, "s", callback_group=group)
+        for topic, at in (("first", 0.4), ("second", 0.6)):
+            node.create_subscription(Int32, topic, _appending(said, topic), 10, callback_group=group)
+            publisher = node.create_publisher(Int32, topic, 10)
+            simulation.at(at, partial(publisher.publish, Int32()))
+        begins = node.create_timer(0.1, begin, callback_group=group)
+        blocks = node.create_timer(0.3, block, callback_group=group)
+        executor = MultiThreadedExecutor(1)
+        executor.add_node(node)
+        other = SingleThreadedExecutor()
+        other.add_node(server)
+        simulation.start(other.spin, "other")
+        executor.spin()
+
+    simulate(program, until=1.5, distro=distro)
+    assert said == ["first", "goes on", "second"]
 
 
 class _WaitsEnd(RandomWalk):
