@@ -201,7 +201,8 @@ class Cycle:
             if not self._found_all or self._tasks:
                 found = self._find(now)
             else:
-                found = not self._starts_worker() and self._gather(deque())
+                begins = self._following is _TASKS or not self._newest_task_first
+                found = not (begins and self._starts_worker()) and self._gather(deque())
             if self.held:
                 return True
             self.held = found and not (self._due_tasks or self._goes_ahead())
@@ -243,10 +244,12 @@ class Cycle:
         following, self._following = self._following, _TASKS
         if following is _TASKS:
             self._ask_again()
-            if self._starts_worker():
+            if self._newest_task_first and self._starts_worker():
                 return False
             if self._take_tasks():
                 return True
+        if following is not _WAITING and not self._newest_task_first and self._starts_worker():
+            return False
         found = self._ready(now)
         if following is _WAITING and (awaited := self._end_of_wait(self._awaited(found))) is not None:
             if awaited:
@@ -259,13 +262,15 @@ class Cycle:
         return self._gather(found) or self._take_tasks()
 
     def _starts_worker(self) -> bool:
-        """Whether a cycle that begins starts a worker; until that one has begun, nothing is served.
+        """Whether a cycle starts a worker for what has not begun; until the worker begins, nothing is served.
 
-        The cycle has the tasks of now alone, for rclpy copies its list of them first.
+        That is newer than the tasks that are due, so it comes first where the newest do. The cycle has no
+        tasks that come later, for rclpy copies its list of them first.
         """
-        if self.pool is None or self._following is not _TASKS or not self.pool.hand_over_again():
+        if self.pool is None or not self.pool.hand_over_again():
             return False
-        self._take_tasks()
+        if self._newest_task_first:
+            self._take_tasks()
         self._following = _GATHERING
         return not self._released()
 

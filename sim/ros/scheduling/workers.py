@@ -260,6 +260,8 @@ class WorkerPool:
         if self._starting is worker:
             worker.began_in = self._clock.turn
         if self._starting is worker or not self._claimed():
+            if self._starting is not None and self._hands_over_again:
+                self._surface_errors()  # of what others ran meanwhile
             self._starting = None
             self._started.set()
         if self._spinner_waits and self._starting is None and not self._claimed():
