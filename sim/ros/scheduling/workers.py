@@ -285,7 +285,8 @@ class WorkerPool:
         while finds and not (self._starting or cycle.held):
             while not self._starting and (work := cycle.next_found(now)) is not None:
                 self.submit(work, now)
-            finds = cycle.gather(now)
+            # The spinning thread, which stays behind the start of a worker, begins no cycle meanwhile.
+            finds = (self._hands_over_again and self._starting is not None) or cycle.gather(now)
         self._own = None
         if finds:
             self._executor._wake_spinner()
