@@ -166,11 +166,20 @@ class CompareScreen(SizedScreen[None]):
         asked = self._common(self._asked)
         if asked == self._compared and self._whole and not self._comparing and asked.length > 0:
             self._title(self._extent(asked))  # a run goes on
+            self._compare_problems()
         if asked == self._compared or self._comparing or monotonic() < self._rest_until:
             return
         self._compared = asked
         self._comparing = True
         self.run_worker(self._compare(asked), group="comparison", exclusive=True)
+
+    def _compare_problems(self) -> None:
+        """Update what is gone or new, as a run goes on beyond the end of the other one; but rarely."""
+        began = monotonic()
+        if began >= self._rest_until and any(side.alive() for side in self._sides):
+            self._gone_or_new = self._problems.told()
+            self._show_first_difference()
+            self._rest_until = monotonic() + _REST_FACTOR * (monotonic() - began)
 
     async def _compare(self, asked: Window) -> None:
         """Compare in slices on the UI thread, which alone reads timelines, and show the result."""

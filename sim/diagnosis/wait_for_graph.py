@@ -186,7 +186,8 @@ class WaitForGraph:
             return 1
         running = {span.message for _, span in self._running_spans() if span.entity == entity}
         pending = (call.id for call in self._moment.pending_calls if self._serves(entity, call))
-        return sum(call not in running and call not in self._queued_at for call in pending)
+        lost = self._timeline.drops_of(entity, Window(0, self._at + 1))
+        return max(1, sum(call not in running and call not in self._queued_at for call in pending) - lost)
 
     def _outstanding(self) -> Iterator[Call]:
         yield from self._moment.pending_calls

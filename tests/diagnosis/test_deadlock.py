@@ -3,6 +3,7 @@
 import linecache
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -165,6 +166,25 @@ def test_awaiting_a_reply_in_ones_own_exclusive_group_is_a_deadlock() -> None:
 
     assert awaiting(None).problems() == {("self-made-deadlock", "caller")}
     assert awaiting(MutuallyExclusiveCallbackGroup()).problems() == set()
+
+
+def test_a_service_that_awaits_in_vain_stays_a_deadlock_when_its_queue_loses_requests() -> None:
+    def program(simulation: Simulation) -> None:
+        serve_outside(simulation)
+        node = Node("n")
+        outside = node.create_client(SetBool, "/outside")
+        asking = node.create_client(SetBool, "/own", callback_group=MutuallyExclusiveCallbackGroup())
+
+        async def serve(_request: Any, response: Any) -> Any:
+            await outside.call_async(SetBool.Request())
+            return response
+
+        node.create_service(SetBool, "/own", serve)
+        for tenth in range(1, 30):
+            simulation.at(0.1 * tenth, lambda: asking.call_async(SetBool.Request()))
+        spin(node, None)
+
+    assert diagnosed(program).problems() == {("self-made-deadlock", "serve")}
 
 
 def test_a_callback_that_awaits_in_vain_is_told_at_its_await() -> None:

@@ -41,8 +41,8 @@ def test_a_wait_without_end_that_is_no_deadlock_is_a_hang() -> None:
 def test_other_problems_are_gone_or_new_too() -> None:
     starved, deaf = run_of("held_group"), run_of("qos_mismatch")
     assert told(starved, starved) == ""
-    assert told(starved, deaf) == "Gone in run B: group starvation. New in run B: qos mismatch."
-    assert told(run_of("call_in_timer"), deaf) == "The deadlock is gone. New in run B: qos mismatch."
+    assert told(starved, deaf) == "Gone in run B: group starvation. New in run B: QoS mismatch."
+    assert told(run_of("call_in_timer"), deaf) == "The deadlock is gone. New in run B: QoS mismatch."
 
 
 def test_nothing_is_said_of_a_run_that_has_not_come_to_the_problem() -> None:

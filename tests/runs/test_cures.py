@@ -82,6 +82,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("while_sleeping", [STEP.format("wander")]),
         ("loop_with_break", [STEP.format("drive")]),
         ("qos_mismatch", ["request no more than is offered (diff)"]),
+        ("late_map", ["offer what is requested (diff)"]),
         ("function_called", ["hand over the function itself (diff)"]),
         ("rate_sleep", ["do one round of the loop at each call of tick (diff)", APART]),
         ("wrong_arity", [FIT]),

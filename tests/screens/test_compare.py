@@ -295,6 +295,20 @@ async def test_a_run_that_goes_on_grows_on_screen_and_in_the_table() -> None:
         assert "Whole runs, 0 to 6 s" in title(app)
 
 
+async def test_a_problem_of_a_run_that_ended_early_is_gone_once_the_other_run_has_gone_on() -> None:
+    events = split_groups_run().events
+    growing = Timeline()
+    growing.extend([event for event in events if event.t <= ns(3.0)])
+    failed = Timeline()
+    begun = [event for event in shared_group_run().events if event.t <= ns(2.0)]
+    failed.extend([*begun, RunEnded(ns(2.0), "it raised", failed=True, problem="it raised")])
+    now = ComparedSide("now", growing, alive=lambda: True)
+    async with compared(ComparedSide("failed", failed), now) as (app, pilot):
+        assert "Gone in run B" not in text_of(app)
+        growing.extend([event for event in events if ns(3.0) < event.t <= ns(6.0)])
+        await until(pilot, lambda: "Gone in run B: exception." in text_of(app))
+
+
 async def test_a_run_that_has_only_begun_gets_its_verdict_and_the_first_difference_later() -> None:
     growing = Timeline()
     app = ComparingConsole(sides()[0], ComparedSide("now", growing, alive=lambda: True))

@@ -13,6 +13,16 @@ from sim.trace.timeline import Timeline
 _NOTICED: Nanoseconds = 2 * SECOND
 """How long after it began a problem is known as one."""
 
+_NAMES = {
+    "program-raised": "exception",
+    "qos-mismatch": "QoS mismatch",
+    "stays-in-loop": "long loop",
+    "nobody-offers": "service that nobody offers",
+    "service-never-comes": "wait for a service",
+    "node-never-spins": "node that nobody spins",
+}
+"""Problems whose rule has another name in sentences."""
+
 
 @dataclass(frozen=True)
 class _Known:
@@ -75,6 +85,7 @@ def _problems_of(timeline: Timeline, diagnoses: Diagnoses) -> Mapping[Problem, _
         if (each.rule.weigh(each, timeline) or each.rule.weight) is Weight.PROBLEM:
             told = each.rule.explain(each, timeline)
             hang = "deadlock" if each.waited_for or "deadlock" in told.what else "hang"
-            name = hang if told.for_ever else each.rule.id.replace("-", " ")
+            rule = each.rule.id
+            name = hang if told.for_ever else _NAMES.get(rule, rule.replace("-", " "))
             found[problem_of(each, timeline)] = _Known(each.at, name, told.for_ever)
     return found

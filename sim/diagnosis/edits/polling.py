@@ -53,7 +53,8 @@ def _asks_in_vain(source: SourceEditor, wait: ast.stmt) -> bool:
 def go_on_where_set(source: SourceEditor, line: int) -> None:
     """Move the statements after the wait at a line to the method that sets the awaited attribute.
 
-    Only for a loop that only waits for an attribute that one other method sets.
+    They run there once the wait would be over. Only for a loop that only waits for an attribute that one
+    other method sets, and that the callback has reset before.
     """
     callback = source.callback_at(line)
     wait = _statement_at(callback, line)
@@ -61,17 +62,24 @@ def go_on_where_set(source: SourceEditor, line: int) -> None:
     rest, awaited = callback.body[place + 1 :], _attributes(wait)
     if not isinstance(wait, ast.While) or wait.orelse or not all(map(is_idle, wait.body)):
         raise NotSimpleError
+    me, reset = callback.args.args[0].arg, set().union(*map(_stores, callback.body[:place]))
+    if not awaited <= reset or {each.id for each in source.nodes(ast.Name, wait.test)} != {me}:
+        raise NotSimpleError
     check_rest(callback, callback.body[:place], rest, "")
     methods = (each for each in source.nodes(ast.FunctionDef) if each.name != "__init__")
     setters = [each for each in methods if each is not callback and awaited & _stores(each)]
-    if len(setters) != 1 or not rest or setters[0].args.args[0].arg != callback.args.args[0].arg:
+    if len(setters) != 1 or not rest or setters[0].args.args[0].arg != me:
         raise NotSimpleError
     last = setters[0].body[-1]
     if isinstance(last, ast.Return) or source.callback_at(last.lineno) is not setters[0]:
         raise NotSimpleError
-    moved = source.lines_behind(wait.end_lineno or 0, rest[-1])
-    source.replace_lines(wait, rest[-1], "" if place else f"{indentation(wait)}pass\n")
-    source.replace_lines(last, last, source.lines_behind(last.lineno - 1, last) + moved)
+    waits = source.code_of(wait.test)
+    blank, deeper = indentation(last), last.col_offset + wait.col_offset - callback.col_offset
+    moved = source.lines_moved(wait.end_lineno or 0, rest[-1], deeper)
+    source.replace_lines(wait, rest[-1], "")
+    begin, end = f"was_waiting = {waits}", f"if was_waiting and {_negated(source, wait.test)}:"
+    body = source.lines_behind(setters[0].body[0].lineno - 1, last)
+    source.replace_lines(setters[0].body[0], last, f"{blank}{begin}\n{body}{blank}{end}\n{moved}")
 
 
 def _statement_at(callback: ast.FunctionDef, line: int) -> ast.stmt:
@@ -120,6 +128,8 @@ def _negated(source: SourceEditor, condition: ast.expr) -> str:
     match condition:
         case ast.UnaryOp(op=ast.Not(), operand=operand):
             return source.code_of(operand)
+        case ast.Compare(left=left, ops=[ast.Is()], comparators=[other]):
+            return f"{source.code_of(left)} is not {source.code_of(other)}"
         case ast.Name() | ast.Attribute() | ast.Call() | ast.Subscript():
             return f"not {source.code_of(condition)}"
     return f"not ({source.code_of(condition)})"

@@ -68,7 +68,7 @@ class SelfMadeDeadlock(Rule):
             else:
                 cure = (
                     f"return from {subject} and go on in future.add_done_callback(), or await the future in "
-                    f"an async def {subject}; to wait inside it, {apart}"
+                    f"an async def {subject} with a callback group of its own; to wait inside it, {apart}"
                 )
         threads = 0
         if (

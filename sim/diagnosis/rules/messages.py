@@ -187,12 +187,14 @@ class QosMismatch(Rule):
             same, differs = "message type", "their message types differ"
         cure = f"give both ends of {found.about} the same {same}"
         place = subscription or publisher
+        # Who requests transient-local wants what was published before: with less, that would never come.
+        edited = publisher or place if found.detail == "DURABILITY" else place
         return Explanation(
             f"{subject} hears nothing from a publisher of {found.about}{outside}: {differs}",
             _POLICY_RULES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
             f"{cure}: {' and '.join(ends)}" if ends else cure,
             place or place_of(found.subject, timeline),
-            remedies=by_edit(place, _PROFILE_WORDS[subscription is None], match_quality, found.detail),
+            remedies=by_edit(edited, _PROFILE_WORDS[edited is not subscription], match_quality, found.detail),
         )
 
 

@@ -173,12 +173,15 @@ def _cure(clash: SpinClashed, subject: str, timeline: Timeline) -> str:
             "that the future's done-callback sets"
         )
     if not clash.function.endswith("future_complete"):
-        return f"leave {clash.function}() out: callbacks run by themselves as soon as {subject} returns"
+        return (
+            f"leave {clash.function}() out, and a loop around it, too: callbacks run by themselves as soon "
+            f"as {subject} returns"
+        )
     threads = ""
     if threads_for([clash.entity], clash.t, timeline) == 1:
         threads = f", and spin with {with_threads(2)}"
     return (
         f"after call_async() let {subject} return and go on in future.add_done_callback(), or await the "
-        f"future in an async def {subject}; to wait inside {subject}, use client.call(), give the client a "
-        f"callback group of its own{threads}"
+        f"future in an async def {subject} with a callback group of its own; to wait inside {subject}, use "
+        f"client.call() of a client with a callback group of its own{threads}"
     )
