@@ -258,6 +258,13 @@ def test_messages_that_are_lost_between_two_spins_are_told_with_the_loop(tmp_pat
     assert told.cure.startswith("do one step of the loop in a timer's callback, and call rclpy.spin(node)")
 
 
+def test_what_a_timer_could_know_is_not_told_where_the_node_is_spun_too_rarely(tmp_path: Path) -> None:
+    timer = "node.create_timer(0.1, lambda: publisher.publish(String()))"
+    spins = "    rclpy.spin_once(node, timeout_sec=0)"
+    run = run_lines(tmp_path, *RARELY[:5], timer, RARELY[5], spins, "    time.sleep(1.2)", seconds=16.0)
+    assert "stale-data" not in {each.rule.id for each in diagnose(run.timeline)}
+
+
 def test_a_loop_in_the_main_thread_beside_a_thread_that_spins_is_well(tmp_path: Path) -> None:
     spins = "threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()"
     lines = (*RARELY[:5], "import threading", spins, *RARELY[5:], "    time.sleep(1.3)")

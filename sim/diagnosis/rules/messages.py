@@ -112,6 +112,8 @@ class StaleData(Rule):
     def _of(self, sensor: EntityId, timers: Sequence[EntityId], view: TimelineView) -> Iterator[Finding]:
         for wait in view.waits(sensor):
             is_long = wait.until - wait.since >= self.threshold
+            if wait.longest_part(wait.until).reason is Reason.NOBODY_SPINS:
+                continue  # its timer is spun as rarely
             if is_long and view.timeline.calls_of(sensor, Window(0, wait.since + 1)):
                 for timer in timers:
                     for span in self._uninformed_calls(view, timer, wait):
