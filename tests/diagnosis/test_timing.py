@@ -34,7 +34,7 @@ def test_a_timer_slower_than_its_period_overlaps_itself_in_a_reentrant_group() -
     found = run.one("overlapping-callback")
     assert (found.at, found.lasted, found.count) == (ns(2.0), ns(0.5), 18)
     told = run.explained("overlapping-callback")
-    assert told.what == "tick ran more than once at a time for 500 ms (18 times in all)"
+    assert told.what == "tick overlapped itself for 500 ms (18 times in all)"
     assert "without a lock" in told.why  # the trace does not tell whether there is one
 
 

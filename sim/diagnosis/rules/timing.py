@@ -45,7 +45,7 @@ class OverlappingCallback(Rule):
         if entity_of(found, timeline).kind is EntityKind.TIMER:
             cure += "; a callback shorter than the timer's period never overlaps"
         return Explanation(
-            f"{subject} ran more than once at a time for {duration(found.lasted)}{often(found.count)}",
+            f"{subject} overlapped itself for {duration(found.lasted)}{often(found.count)}",
             "a reentrant group lets the same callback in again; without a lock, one call can undo what the "
             "other changed",
             cure,
