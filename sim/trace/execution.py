@@ -234,6 +234,14 @@ class Execution:
         suspended = {entity for entity, lane in self._suspended.items() if lane.covering(at)}
         return suspended.union(map(self._spans.entity, rows))
 
+    def suspended(self, entity: EntityId, window: Window) -> Sequence[Window]:
+        """The stretches in which calls of the entity are suspended; one that lasts ends at ``OPEN``."""
+        gaps = self._gaps
+        if entity not in self._suspended:
+            return ()
+        rows = self._suspended[entity].overlapping(window)
+        return [Window(gaps.started_at(row), gaps.ended_at(row)) for row in rows]
+
     def ever_suspended(self) -> Collection[EntityId]:
         """The entities of which a call was ever suspended."""
         return self._suspended.keys()

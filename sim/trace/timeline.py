@@ -206,6 +206,15 @@ class Timeline:
         """The first spans of those calls, in order of start: up to the end or the first suspension."""
         return self._run.execution.begun(entity, window)
 
+    def suspensions_in(self, group: GroupId, window: Window) -> Sequence[tuple[EntityId, Window]]:
+        """The stretches in which a callback of a group awaits something, and keeps the group."""
+        return [
+            (entity, Window(each.start, min(each.end, self._run.end)))
+            for entity in self._run.execution.ever_suspended()
+            if entity in self.entities and self.entities[entity].group == group
+            for each in self._run.execution.suspended(entity, window)
+        ]
+
     def busy(self, thread: ThreadId, window: Window) -> float:
         """Share of the window, 0 to 1, in which the thread ran callbacks; idle after the run's end."""
         if window.length <= 0:

@@ -148,6 +148,29 @@ class BarPainter:
             texts = (f"{held} on {short_thread(thread)}", held, f"by {short_name(callback)}")
             self._words(row, stretch.first, stretch.after, texts)
 
+    def kept_columns(self, group: GroupInfo, scale: TimeScale) -> list[tuple[int, int, EntityId]]:
+        """Return the stretches in which a suspended call keeps an exclusive group, as ``kept`` draws them."""
+        if group.kind is GroupKind.REENTRANT:
+            return []
+        found = self.timeline.suspensions_in(group.id, scale.window)
+        columns = ((scale.column_of(each.start), scale.column_of(each.end), entity) for entity, each in found)
+        return [(max(0, first), min(after, scale.columns), entity) for first, after, entity in columns]
+
+    def kept(self, row: CellRow, stretches: Sequence[tuple[int, int, EntityId]], group: GroupInfo) -> None:
+        """Draw the suspended call that keeps a group: the line of a holder, where none runs."""
+        for first, after, entity in stretches:
+            free = [place for place in range(first, after) if row.blank(place, place + 1)]
+            for place in free:
+                row.put(place, self.glyphs.line, Ink(Role.LINE, self.numbers[group.id]))
+            name = self.timeline.entities[entity].spoken_name
+            texts = (
+                f"kept by {name}, which awaits",
+                f"kept by {name}",
+                f"kept by {short_name(name)}",
+                "kept",
+            )
+            self._words(row, *_longest_part(free), texts)
+
     def _together(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], ink: Ink) -> None:
         """Draw a reentrant group: a line where one callback runs, a double line where several do."""
         for stretch in stretches(columns):

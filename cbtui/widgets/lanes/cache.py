@@ -19,9 +19,9 @@ from sim.trace.timeline import Timeline
 class LaneSummary:
     """A lane's content, column by column.
 
-    ``locked`` are the columns in which a call waits for a lock;
-    ``lasting`` is the duration of the open interval, in words; ``unseen`` are the columns that are not
-    aggregated yet.
+    ``locked`` are the columns in which a call waits for a lock; ``kept`` are the stretches, by first column
+    and the one after, in which a suspended call keeps the group; ``lasting`` is the duration of the open
+    interval, in words; ``unseen`` are the columns that are not aggregated yet.
     """
 
     scale: TimeScale
@@ -30,6 +30,7 @@ class LaneSummary:
     blocks: list[LaneColumn[Blocked] | None]
     locked: list[LaneColumn[Position] | None]
     losses: list[int]
+    kept: list[tuple[int, int, EntityId]]
     lasting: tuple[str, ...]
     unseen: tuple[int, ...]
 

@@ -311,6 +311,12 @@ def _runs_on(interval: Interval, window: Window) -> bool:
     return interval.start > window.start and ends_later
 
 
+def latest(columns: Sequence[LaneColumn[I] | None], place: int) -> I | None:
+    """Return the top of the last column that has one, up to a place."""
+    shown = columns[: max(0, place + 1)]
+    return next((column.top for column in reversed(shown) if column is not None), None)
+
+
 def stretches(columns: Sequence[LaneColumn[I] | None]) -> list[MergedColumns[I]]:
     """Join neighbouring columns with the same top."""
     found: list[MergedColumns[I]] = []

@@ -9,7 +9,7 @@ from cbtui.text.cells import CellRow, fit
 from cbtui.widgets.lanes.axis import draw_axis
 from cbtui.widgets.lanes.bars import BarPainter
 from cbtui.widgets.lanes.cache import LaneCache, LaneSummary
-from cbtui.widgets.lanes.columns import I, IntervalBudget, LaneColumn, LaneColumns
+from cbtui.widgets.lanes.columns import I, IntervalBudget, LaneColumn, LaneColumns, latest
 from cbtui.widgets.lanes.keys import USUAL_KEYS
 from cbtui.widgets.lanes.labels import LaneLabels
 from cbtui.widgets.lanes.names import more_lanes
@@ -174,9 +174,8 @@ class _LaneFrame:
         chosen = self._selection is not None and self._selection.lane == lane
         fresh = chosen or any(self._steps(lane)) or not self._repeats(lane)
         runs = self._painted(lane, sums) if fresh else self._kept(lane, sums)
-        return self._framed(
-            self._labels.of(lane), runs, self._status.of(lane, self._latest(sums.calls)), chosen
-        )
+        status = self._status.of(lane, latest(sums.calls, self._column_at(self._told)))
+        return self._framed(self._labels.of(lane), runs, status, chosen)
 
     def _repeats(self, lane: Lane) -> bool:
         """Whether a lane looks the same as long as its aggregates do."""
@@ -318,6 +317,7 @@ class _LaneFrame:
         blocks: list[LaneColumn[Blocked] | None] = []
         locked: list[LaneColumn[Position] | None] = []
         losses: list[int] = []
+        kept = self._bars.kept_columns(lane.group, self._scale) if isinstance(lane, GroupLane) else []
         match lane:
             case ThreadLane(thread):
                 blocks = self._summed(cache.columns(timeline.blocks_on, thread.id), unseen)
@@ -334,7 +334,9 @@ class _LaneFrame:
             if column is not None and column.top.end is None
         )
         lengths = tuple(duration(max(0, self._told - start)) for start in lasting)
-        return LaneSummary(self._scale, calls, waits, blocks, locked, losses, lengths, tuple(sorted(unseen)))
+        return LaneSummary(
+            self._scale, calls, waits, blocks, locked, losses, kept, lengths, tuple(sorted(unseen))
+        )
 
     def _summed(
         self, columns: LaneColumns[I], unseen: set[int], scale: TimeScale | None = None
@@ -352,6 +354,7 @@ class _LaneFrame:
                 self._bars.locked(row, sums.locked)
             case GroupLane(group):
                 self._bars.group(row, sums.calls, group)
+                self._bars.kept(row, sums.kept, group)
             case MemberLane(entity) | SoleLane(entity):
                 calls = self._calls.of(entity.name) if entity.kind is EntityKind.SERVICE else ()
                 key = self._key_of(entity.name)
@@ -362,16 +365,12 @@ class _LaneFrame:
                 self._bars.lost(row, sums.losses)
                 draw_calls(row, calls, self._scale, self._edge, key)
             case ServiceLane(service):
-                calls = self._calls.of(service)
-                draw_calls(row, calls, self._scale, self._edge, self._key_of(service))
+                key = self._key_of(service)
+                draw_calls(row, self._calls.of(service), self._scale, self._edge, key)
 
     def _key_of(self, service: str) -> str:
         """The key that calls a service; "" if no key does."""
         return self._painter.call_key if self._painter.service in ("", service) else ""
-
-    def _latest(self, columns: list[LaneColumn[Span] | None]) -> Span | None:
-        shown = columns[: max(0, self._column_at(self._told) + 1)]
-        return next((column.top for column in reversed(shown) if column is not None), None)
 
     def _framed(
         self, name: list[TextRun], runs: list[TextRun], status: TextRun, chosen: bool

@@ -67,6 +67,16 @@ def test_what_has_no_callback_of_its_own_goes_by_its_name() -> None:
     assert "held by reply of /turn/_action on MainThread" in text
 
 
+def test_a_suspended_call_keeps_its_group_on_the_groups_lane() -> None:
+    run, thread, _, timer = small_run()
+    run.start(timer, thread, 1.0)
+    run.suspend(timer, thread, 1.3)
+    run.resume(timer, thread, 7.0)
+    run.end(timer, thread, 7.1)
+    text = plain(LanePainter().paint(told(run, until=10.0), *last(10, 10.0), 80, 8).rows)
+    assert "A exclusive │     ──── kept by tick_callback ───·              │ free" in text
+
+
 def test_the_same_in_ascii_has_no_other_glyph() -> None:
     timeline = told(shared_group_run(), until=12.9)
     assert plain(LanePainter(Charset.ASCII).paint(timeline, *last(10, 12.9), 80, 8).rows) == drawn(
