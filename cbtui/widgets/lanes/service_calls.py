@@ -32,14 +32,18 @@ class LatestCalls:
         return self._by_service.get(service, ())
 
     def summary(self, service: str, now: Nanoseconds) -> str:
-        """Return how many calls were sent by ``now`` and the duration of the last one."""
+        """Return how many calls were sent by ``now`` and the duration of the last one.
+
+        While that one has no reply: how long the oldest such call has had none.
+        """
         sent = [call for call in self.of(service) if call.sent <= now]
         if not sent:
             return "not called"
         count = counted(len(sent), "call")
         last = sent[0]
         if last.replied is None or last.replied > now:
-            return f"no reply {duration(now - last.sent)}"
+            oldest = [call for call in sent if call.replied is None or call.replied > now][-1]
+            return f"no reply {duration(now - oldest.sent)}"
         return f"{count}, {duration(last.replied - last.sent)}"
 
 

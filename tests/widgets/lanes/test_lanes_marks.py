@@ -4,10 +4,11 @@ import pytest
 
 from cbtui.looks.theme import Charset
 from cbtui.text.cells import CellRow
+from cbtui.widgets.diagnosis import call_note
 from cbtui.widgets.lanes import LanePainter, Selection
 from cbtui.widgets.lanes.rows import MemberLane, ThreadLane, all_lanes
 from cbtui.widgets.lanes.scale import TimeScale
-from cbtui.widgets.lanes.service_calls import draw_calls
+from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls
 from sim.trace.events import CallbackAt, Doing, MessageDropped
 from sim.trace.figures.chains import ChainStep, StepKind
 from sim.trace.model import Call, Window
@@ -35,6 +36,17 @@ def test_a_thread_that_stands_still_in_a_call_is_hatched_and_says_in_which() -> 
     assert plain(LanePainter().paint(told(blocked_run()), *last(10, 10.0), 80, 8).rows).splitlines()[
         0
     ] == drawn("|MainThread  │ A a_callback ░░ blocked in call /x ░░░░██████    │  90% busy      |")
+
+
+def test_of_several_calls_without_a_reply_the_lane_and_the_line_at_the_bottom_tell_the_oldest() -> None:
+    run, *_ = small_run()
+    run.call("/x", 1.0, 1.5)
+    run.call("/x", 2.0)
+    run.call("/x", 4.0)
+    run.stop(6.0)
+    timeline = told(run)
+    assert LatestCalls(timeline).summary("/x", ns(5.0)) == "no reply 3.0 s"
+    assert call_note(timeline, ns(5.0)) == "no reply for 3.0 s: /x and 1 more"
 
 
 def test_a_call_that_waits_for_a_lock_looks_unlike_one_that_sleeps() -> None:
