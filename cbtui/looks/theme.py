@@ -94,6 +94,7 @@ class Glyphs:
     cross: str
     lost: str
     blocked: str
+    inner: str
     between: str
     heights: str
     """From nothing to a full column, by eighths."""
@@ -125,6 +126,7 @@ _BLOCKS = Glyphs(
     cross="✗",
     lost="×",
     blocked="░",
+    inner="▪",
     between="·",
     heights=" ▁▂▃▄▅▆▇█",
     sleeps="┄",
@@ -154,6 +156,7 @@ _PLAIN = Glyphs(
     cross="X",
     lost="*",
     blocked="%",
+    inner="o",
     between="-",
     heights=" ..::==##",
     sleeps=".",

@@ -50,7 +50,14 @@ class BarPainter:
             if len(stretch.columns) > 1:
                 self._seam(row, stretch)
                 self._label(row, stretch, Ink(Role.LABEL, number))
+                self._inner(row, stretch, Ink(Role.LABEL, number))
             self._failure(row, stretch)
+
+    def _inner(self, row: CellRow, stretch: MergedColumns[Span], ink: Ink) -> None:
+        """Mark the calls inside a bar's call, except under its label."""
+        for place, column in stretch.places():
+            if column.at_once > 1 and row.inks[place].role is not Role.LABEL:
+                row.put(place, self.glyphs.inner, ink)
 
     def inside(self, row: CellRow, positions: Sequence[LaneColumn[Position] | None]) -> None:
         """Draw the lines of code at which a thread's calls are, in free columns."""

@@ -38,6 +38,17 @@ def test_a_thread_that_stands_still_in_a_call_is_hatched_and_says_in_which() -> 
     ] == drawn("|MainThread  │ A a_callback ░░ blocked in call /x ░░░░██████    │  90% busy      |")
 
 
+def test_calls_inside_the_call_of_a_bar_are_marked_on_it() -> None:
+    run, thread, a, timer = small_run()
+    run.start(timer, thread, 1.0)
+    run.callback(a, thread, 4.0, 0.01)
+    run.callback(a, thread, 6.0, 0.3)
+    run.end(timer, thread, 9.0)
+    run.stop(10.0)
+    rows = plain(LanePainter().paint(told(run), *last(10, 10.0), 80, 8).rows).splitlines()
+    assert rows[0].startswith("MainThread  │     A tick_callback █████████▪▪█████████████ ")
+
+
 def test_of_several_calls_without_a_reply_the_lane_and_the_line_at_the_bottom_tell_the_oldest() -> None:
     run, *_ = small_run()
     run.call("/x", 1.0, 1.5)
