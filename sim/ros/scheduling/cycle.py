@@ -12,12 +12,13 @@ from collections import deque
 from collections.abc import Callable, Iterable
 from enum import Enum, auto
 from itertools import count
-from typing import Any, Protocol, TypeAlias
+from typing import Any, TypeAlias
 
 from sim.clock import RunClock
 from sim.releases.profile import Profile
 from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import Entity, OwnerNode
+from sim.ros.scheduling.pool import Pool
 from sim.ros.scheduling.task import Task
 from sim.ros.scheduling.wait_set import snapshot
 
@@ -40,25 +41,6 @@ class _Following(Enum):
 
 # Module constants, because every callback reads them several times and looking up an enum member is slow.
 _TASKS, _GATHERING, _WAITING = _Following
-
-
-class Pool(Protocol):
-    """The workers of an executor, as its cycles use them."""
-
-    def may_serve(self) -> bool:
-        """Whether found work may be served yet."""
-
-    def may_go_ahead(self) -> bool:
-        """Whether found work can be served before that."""
-
-    def kept_busy(self) -> bool:
-        """Whether the executor serves what it finds without waiting for the workers."""
-
-    def asked_again(self) -> list[Task[Any]]:
-        """The tasks that await, and have to be asked behind the callbacks that are queued, too."""
-
-    def hand_over_again(self) -> bool:
-        """Begin a cycle with what no worker has begun; return whether that starts one."""
 
 
 class Cycle:
