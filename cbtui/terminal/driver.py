@@ -52,10 +52,30 @@ class TerminalDriver(LinuxDriver):
 
         Otherwise the driver would save its own settings as the terminal's, and start a second input thread.
         """
+        if self._is_writing():
+            self._loop.call_soon_threadsafe(self._sigcont_application)
+            return
+        if signal.getsignal(signal.SIGCONT) is signal.SIG_DFL:  # the terminal was given back meanwhile
+            return
         if self._auto_restart and not self._must_signal_resume:
             self.suspend_application_mode()
             self._must_signal_resume = True
         super()._sigcont_application(*signal_and_frame)
+
+    def _sigtstp_application(self, *signal_and_frame: Any) -> None:
+        """Stop on SIGTSTP."""
+        if self._is_writing():
+            self._loop.call_soon_threadsafe(self._sigtstp_application)
+        else:
+            super()._sigtstp_application(*signal_and_frame)
+
+    def _is_writing(self) -> bool:
+        """Whether a signal may have come while the main thread writes.
+
+        Then a handler that writes would wait for ever for the lock of Textual's queue of output, which the
+        main thread holds.
+        """
+        return self._writer_thread is not None and self._writer_thread._queue.mutex.locked()
 
 
 class _SurvivingFile:

@@ -15,6 +15,7 @@ from textual._styles_cache import StylesCache
 from textual.app import App
 from textual.command import CommandPalette
 from textual.driver import Driver
+from textual.drivers._writer_thread import WriterThread
 from textual.drivers.linux_driver import LinuxDriver
 from textual.drivers.web_driver import WebDriver
 from textual.message_pump import MessagePump
@@ -44,9 +45,15 @@ WORKAROUNDS: dict[str, tuple[str, list[Callable[..., Any]]]] = {
         "aa402358738b",
         [Widget.refresh, Widget._set_dirty, Widget._exchange_repaint_regions, Screen._on_update],
     ),
-    "driver: SIGCONT after SIGSTOP takes the terminal twice; a closed terminal raises": (
-        "6aaacb37cead",
-        [LinuxDriver._sigcont_application, LinuxDriver.suspend_application_mode, LinuxDriver.write],
+    "driver: SIGCONT takes the terminal twice, or waits for its own lock; a closed terminal raises": (
+        "e4056131b503",
+        [
+            LinuxDriver._sigcont_application,
+            LinuxDriver._sigtstp_application,
+            LinuxDriver.suspend_application_mode,
+            LinuxDriver.write,
+            WriterThread,
+        ],
     ),
     "browser_driver: the console outlives the server": (
         "8ad9bc857052",
