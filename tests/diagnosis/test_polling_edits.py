@@ -94,6 +94,14 @@ def test_what_follows_a_wait_goes_on_in_the_method_that_sets_what_is_waited_for(
     ]
 
 
+def test_the_docstring_of_the_method_that_goes_on_stays_its_first_line() -> None:
+    text = node(ASKS.replace("    self.answer = message", '    """Take it."""\n    self.answer = message'))
+    result = edited(text, go_on_where_set)
+    assert result is not None
+    lines = [each.strip() for each in result.splitlines()]
+    assert lines.index('"""Take it."""') < lines.index("was_waiting = self.answer is None")
+
+
 @pytest.mark.parametrize(
     ("old", "new"),
     [

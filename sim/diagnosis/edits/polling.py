@@ -63,14 +63,15 @@ def go_on_where_set(source: SourceEditor, line: int) -> None:
     if not isinstance(wait, ast.While) or wait.orelse or not all(map(is_idle, wait.body)):
         raise NotSimpleError
     me, reset = callback.args.args[0].arg, set().union(*map(_stores, callback.body[:place]))
-    if not awaited <= reset or {each.id for each in source.nodes(ast.Name, wait.test)} != {me}:
+    names = {each.id for each in source.nodes(ast.Name, wait.test)}
+    if not awaited <= reset or names != {me} or "was_waiting" in source.text:
         raise NotSimpleError
     check_rest(callback, callback.body[:place], rest, "")
     methods = (each for each in source.nodes(ast.FunctionDef) if each.name != "__init__")
     setters = [each for each in methods if each is not callback and awaited & _stores(each)]
     if len(setters) != 1 or not rest or setters[0].args.args[0].arg != me:
         raise NotSimpleError
-    last = setters[0].body[-1]
+    first, last = setters[0].body[ast.get_docstring(setters[0]) is not None :][0], setters[0].body[-1]
     if isinstance(last, ast.Return) or source.callback_at(last.lineno) is not setters[0]:
         raise NotSimpleError
     waits = source.code_of(wait.test)
@@ -78,8 +79,8 @@ def go_on_where_set(source: SourceEditor, line: int) -> None:
     moved = source.lines_moved(wait.end_lineno or 0, rest[-1], deeper)
     source.replace_lines(wait, rest[-1], "")
     begin, end = f"was_waiting = {waits}", f"if was_waiting and {_negated(source, wait.test)}:"
-    body = source.lines_behind(setters[0].body[0].lineno - 1, last)
-    source.replace_lines(setters[0].body[0], last, f"{blank}{begin}\n{body}{blank}{end}\n{moved}")
+    body = source.lines_behind(first.lineno - 1, last)
+    source.replace_lines(first, last, f"{blank}{begin}\n{body}{blank}{end}\n{moved}")
 
 
 def _statement_at(callback: ast.FunctionDef, line: int) -> ast.stmt:
