@@ -12,7 +12,7 @@ from weakref import finalize
 
 Decoded = TypeVar("Decoded")
 
-CACHE_SIZE = 8_000_000
+CACHE_SIZE = 4_000_000
 """Bytes of decoded blocks that stay in memory."""
 
 ENTRIES_IN_BLOCK = 1024
