@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from itertools import islice
 
 from sim.diagnosis.edits.code_edit import CodeEdit
-from sim.diagnosis.words import threads_for, who, with_threads
-from sim.trace.events import EntityId, Reason
+from sim.diagnosis.words import thread_of, threads_for, who, with_threads
+from sim.trace.events import EntityId, ExecutorId, Reason, ThreadId
 from sim.trace.model import Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -62,17 +62,27 @@ def _length(waits: Sequence[Wait], window: Window) -> Nanoseconds:
 
 
 def _threads_needed(crowded: Sequence[Wait], window: Window, timeline: Timeline) -> int:
-    """Return one more than the executor's threads, or than the groups with long calls, if these are more."""
+    """Return one more than the executor's threads, or than its groups with long calls, if these are more."""
     waited = {wait.entity for wait in crowded}
-    available = threads_for([*(wait.holder for wait in crowded), *waited], window.end, timeline)
+    involved = [*(wait.holder for wait in crowded), *waited]
+    executors = {_executor_of(each, window.end, timeline) for each in involved}
     occupied = {
         each.group
         for each in timeline.entities.values()
         if each.id not in waited
         and (timeline.spans_of(each.id, window) or timeline.waits_of(each.id, window))
         and _is_long(each.id, timeline)
+        and _executor_of(each.id, window.end, timeline) in executors
     }
-    return max(available, len(occupied)) + 1
+    return max(threads_for(involved, window.end, timeline), len(occupied)) + 1
+
+
+def _executor_of(entity: EntityId, at: Nanoseconds, timeline: Timeline) -> tuple[ExecutorId, ThreadId]:
+    """The executor that ran an entity's callback last; without workers, by its thread."""
+    thread = thread_of(entity, at, timeline)
+    if thread is None:
+        return 0, 0
+    return thread.executor, 0 if thread.executor else thread.id
 
 
 def _is_long(entity: EntityId, timeline: Timeline) -> bool:

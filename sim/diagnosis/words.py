@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of
 from sim.trace.events import EntityId, EntityKind
-from sim.trace.model import Nanoseconds, Window
+from sim.trace.model import Nanoseconds, ThreadInfo, Window
 from sim.trace.timeline import Timeline
 
 SPIN_ALWAYS = "do one step of the loop in a timer's callback, and call rclpy.spin(node)"
@@ -75,11 +75,16 @@ def threads_for(entities: Iterable[EntityId], at: Nanoseconds, timeline: Timelin
     1 for an executor without workers, which runs callbacks on the spinning thread, and for an unknown one.
     """
     for entity in entities:
-        for span in timeline.spans_of(entity, Window(0, at + 1))[-1:]:
-            thread = timeline.threads.get(span.thread)
-            executor = None if thread is None else timeline.executors.get(thread.executor)
+        if (thread := thread_of(entity, at, timeline)) is not None:
+            executor = timeline.executors.get(thread.executor)
             return 1 if executor is None else executor.threads
     return 1
+
+
+def thread_of(entity: EntityId, at: Nanoseconds, timeline: Timeline) -> ThreadInfo | None:
+    """The thread that ran an entity's callback last, by ``at``."""
+    last = timeline.spans_of(entity, Window(0, at + 1))[-1:]
+    return timeline.threads.get(last[0].thread) if last else None
 
 
 def with_threads(threads: int) -> str:

@@ -71,6 +71,7 @@ def test_the_manual_has_every_command(capsys: pytest.CaptureFixture[str]) -> Non
             ["run", "single-thread", "--sede"],
             "cbtui run: unrecognized arguments: --sede; did you mean --seed?",
         ),
+        (["run", "single-thread", "--seconds", "6"], "did you mean --for SECONDS?"),
         (["run", "single-thread", "--clock", "vitual"], "did you mean virtual?"),
         (
             ["run", "single-thread", "--frobnicate"],

@@ -54,6 +54,32 @@ executor.add_node(node)
 executor.spin()
 """
 
+TWO_EXECUTORS = """
+import threading
+import time
+import rclpy
+
+rclpy.init()
+near, far = rclpy.create_node("near"), rclpy.create_node("far")
+near.create_timer(2.0, lambda: time.sleep(1.0))
+
+
+def quick():
+    pass
+
+
+def slow():
+    time.sleep(0.4)
+
+
+near.create_timer(0.5, quick)
+far.create_timer(0.5, slow)
+other = rclpy.executors.SingleThreadedExecutor()
+other.add_node(far)
+threading.Thread(target=other.spin, daemon=True).start()
+rclpy.spin(near)
+"""
+
 
 def complaints(timeline: Timeline) -> dict[Complaint, str]:
     """What waits are found, with the cure of each."""
@@ -116,3 +142,9 @@ def test_a_thread_is_counted_for_every_long_callback_that_would_take_it(tmp_path
     path = tmp_path / "node.py"
     path.write_text(RIVALS)
     check_cures(program_setup(path, 13.0), {("quick", 3), ("", 2)})
+
+
+def test_no_thread_is_counted_for_the_callbacks_of_another_executor(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(TWO_EXECUTORS)
+    check_cures(program_setup(path, 13.0), {("quick", 2)})

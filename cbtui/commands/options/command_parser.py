@@ -1,7 +1,7 @@
 """A parser of options whose error messages are one line, printed through ``cbtui.text.output``."""
 
 import argparse
-from collections.abc import Iterable
+from collections.abc import Mapping
 from typing import Any, NoReturn
 
 from cbtui.commands.options.targets import is_file_name
@@ -19,9 +19,18 @@ class CommandParser(argparse.ArgumentParser):
         """Parse words, none of which may be unknown: argparse calls this for the parser of a command."""
         found, unknown = super().parse_known_args(args, namespace)
         if unknown:
-            near = _nearest(unknown[0].partition("=")[0], self._option_string_actions)
+            near = _nearest(unknown[0].partition("=")[0], self._options())
             self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
         return found, unknown
+
+    def _options(self) -> dict[str, str]:
+        """The options by their names, and the first one of each kind of value by the name of that."""
+        named = {
+            f"--{each.metavar.lower()}": f"{each.option_strings[-1]} {each.metavar}"
+            for each in reversed(self._actions)
+            if each.option_strings and isinstance(each.metavar, str)
+        }
+        return named | {name: name for name in self._option_string_actions}
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         try:
@@ -31,7 +40,7 @@ class CommandParser(argparse.ArgumentParser):
                 ways = f"cbtui open {value} opens it, cbtui run {value} runs it"
                 shown_how = f"{value} is not a command; {ways}"
                 raise argparse.ArgumentError(None, shown_how) from None
-            near = _nearest(str(value), map(str, action.choices or ()))
+            near = _nearest(str(value), {str(each): str(each) for each in action.choices or ()})
             if not near:
                 raise
             raise argparse.ArgumentError(action, f"invalid choice: {value!r}{near}") from None
@@ -48,7 +57,8 @@ def _can_be_opened(word: str) -> bool:
     return is_file_name(word) or any(word == lesson.id for lesson in lessons())
 
 
-def _nearest(word: str, known: Iterable[str]) -> str:
+def _nearest(word: str, known: Mapping[str, str]) -> str:
+    """A question after the nearest of the known words, by what stands for it; empty if none is near."""
     from difflib import get_close_matches  # only needed for a wrong word
 
-    return "".join(f"; did you mean {near}?" for near in get_close_matches(word, list(known), 1, 0.7))
+    return "".join(f"; did you mean {known[near]}?" for near in get_close_matches(word, known, 1, 0.7))
