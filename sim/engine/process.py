@@ -37,6 +37,7 @@ from sim.engine.programs.program import ProgramOutcome
 from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.programs.ros2_lines import Ros2Lines
 from sim.engine.programs.set_up_programs import run_programs
+from sim.engine.programs.source import run_edited
 from sim.engine.programs.starting import ProgramStarter
 from sim.engine.programs.workspace_imports import use_workspace
 from sim.engine.release import profile_of
@@ -170,6 +171,7 @@ class Engine:
         install(self._host)
         importing.install()
         self._starter.add_own_interfaces()
+        run_edited(setup.texts)
         use_workspace(self._starter.packages, clock)
         simulate_processes()
         share_exit_functions()

@@ -69,14 +69,10 @@ class TimedInput(msgspec.Struct, frozen=True):
 
 
 class ProgramSetup(msgspec.Struct, frozen=True):
-    """A Python file to run, a node's or a launch file, with its command-line arguments.
-
-    ``text`` replaces the node's source; "": not replaced.
-    """
+    """A Python file to run, a node's or a launch file, with its command-line arguments."""
 
     path: str
     arguments: tuple[str, ...] = ()
-    text: str = ""
 
     @property
     def is_launch_file(self) -> bool:
@@ -127,6 +123,7 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
 
     A run without programs ends with its lines. A field is None or empty for the usual behaviour.
 
+    - ``texts``: run in place of what the files of programs, and of modules that they import, hold; by path.
     - ``service``: the SetBool service of the call key; None: the first that a program offers.
     - ``speed``: seconds of the run per real second; None: as fast as possible, which on the real clock is 1.
     - ``until``: nanoseconds of run time after which the run ends; None: no end.
@@ -149,6 +146,7 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
 
     title: str
     programs: tuple[ProgramSetup, ...]
+    texts: dict[str, str] = {}
     service: ServiceChoice | None = None
     clock: str = "virtual"
     speed: float | None = 1.0

@@ -43,7 +43,7 @@ def offered(program: str, folder: Path = PROGRAMS) -> tuple[Problem, RunSetup, l
     setup, timeline = run_of(program, folder)
     found = diagnose(timeline)[0]
     told = found.rule.explain(found, timeline)
-    return problem_of(found, timeline), setup, list(cures_of(told, setup, Changes(), timeline))
+    return problem_of(found, timeline), setup, list(cures_of(told, Changes(), timeline))
 
 
 def helpful(program: str, folder: Path = PROGRAMS) -> list[str]:
@@ -143,15 +143,20 @@ def test_a_second_cure_edits_what_the_first_made() -> None:
     text = f"# a note\n{Path(path).read_text()}"
     line = CodeLocation(path, told.place.first_line + 1, told.place.first_line + 1) if told.place else None
     remedies = by_edit(line, "again", match_quality, found.detail)
-    (cure,) = cures_of(replace(told, remedies=remedies), setup, Changes(texts={path: text}), timeline)
+    (cure,) = cures_of(replace(told, remedies=remedies), Changes(texts={path: text}), timeline)
     assert cure.changes.texts[path].startswith("# a note\n")
 
 
-def test_a_module_that_a_program_imports_is_not_edited() -> None:
-    setup, timeline = run_of("qos_mismatch")
-    found = diagnose(timeline)[0]
-    other = msgspec.structs.replace(setup, programs=())
-    assert not list(cures_of(found.rule.explain(found, timeline), other, Changes(), timeline))
+@pytest.mark.slow
+def test_a_cure_may_be_in_a_module_that_the_program_imports(tmp_path: Path) -> None:
+    module = tmp_path / "arm" / "robot.py"
+    module.parent.mkdir()
+    (module.parent / "__init__.py").touch()
+    text = (PROGRAMS / "call_in_timer.py").read_text()
+    module.write_text(text)
+    (tmp_path / "start.py").write_text("from arm.robot import main\n\nmain()\n")
+    assert helpful("start", tmp_path) == [APART, DONE, AWAIT.format("tick")]
+    assert module.read_text() == text
 
 
 def test_a_trial_can_be_given_up() -> None:

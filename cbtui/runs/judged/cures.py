@@ -67,19 +67,12 @@ def problem_of(found: Finding, timeline: Timeline) -> Problem:
     return found.rule.id, one, other
 
 
-def cures_of(
-    explanation: Explanation, setup: RunSetup, before: Changes, timeline: Timeline
-) -> Iterator[Cure]:
-    """Yield the remedies of an explanation that can be tried on a run of a set-up with changes.
-
-    A program's own file may be edited, not a module that it imports.
-    """
+def cures_of(explanation: Explanation, before: Changes, timeline: Timeline) -> Iterator[Cure]:
+    """Yield the remedies of an explanation that can be tried on a run with changes."""
     for remedy in explanation.remedies:
         changes, edited = _without_edit(remedy, before, timeline), ""
         if remedy.edit is not None:
             file = remedy.edit.file
-            if all(each.path != file for each in setup.programs):
-                continue
             text = before.texts.get(file) or _text_of(Path(file))
             new = remedy.edit.applied(text)
             if new is None:

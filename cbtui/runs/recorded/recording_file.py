@@ -31,8 +31,7 @@ def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> Re
         if path.is_dir():
             raise CannotRecordError(f"cannot record to {path}: it is a folder; name a file in it")
         is_new = not path.exists()
-        texts = {each.path: each.text for each in setup.programs if each.text}
-        recorder = RecordingWriter(path, about(setup), replace=replace, texts=texts)
+        recorder = RecordingWriter(path, about(setup), replace=replace, texts=setup.texts)
     except FileExistsError:
         sentence = f"there is a file {path} already; give another name, or --force to replace it"
         raise NameTakenError(sentence) from None

@@ -103,7 +103,7 @@ class _RecordedFacts:
 
 
 def _check_programs(recorded: RunSetup, recording: Recording) -> None:
-    for program in (each for each in recorded.programs if not each.text):
+    for program in (each for each in recorded.programs if each.path not in recorded.texts):
         path = Path(program.path)
         try:
             content = read_bytes(path, MAX_PROGRAM_BYTES)

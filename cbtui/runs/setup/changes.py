@@ -33,7 +33,7 @@ class Changes:
     ``groups`` holds values of ``GROUP_CHOICES``, ``periods`` nanoseconds, ``settings`` numbers by the name of
     their command-line argument. ``sensor_rate`` is in Hz; ``seed`` chooses the order of threads. ``real`` is
     the ROS 2 that replaces the model, always on the real clock; ``distro`` is the model's release.
-    ``texts`` are run in place of the programs' files, by path.
+    ``texts`` are run in place of what the files of programs and their modules hold, by path.
     ``whole_tracebacks`` affects only how exceptions are printed.
     """
 
@@ -91,6 +91,7 @@ class Changes:
             setup,
             threads=setup.threads if self.threads is None else self.threads,
             programs=tuple(self._changed(program) for program in setup.programs),
+            texts={**setup.texts, **self.texts},
             sensor_rate=setup.sensor_rate if self.sensor_rate is None else self.sensor_rate,
             physics=self.physics or setup.physics,
             seed=setup.seed if self.seed is None else self.seed,
@@ -109,7 +110,7 @@ class Changes:
         arguments = program.arguments
         for name, number in self.settings.items():
             arguments = tuple(with_argument(arguments, name, f"{number:g}"))
-        return ProgramSetup(program.path, arguments, self.texts.get(program.path, program.text))
+        return ProgramSetup(program.path, arguments)
 
     @property
     def words(self) -> str:
@@ -148,7 +149,7 @@ def changes_in(setup: RunSetup) -> Changes:
         real=setup.real,
         physics=setup.physics,
         distro=setup.distro or None,
-        texts={each.path: each.text for each in setup.programs if each.text},
+        texts=setup.texts,
     )
 
 

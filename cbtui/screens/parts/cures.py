@@ -73,7 +73,7 @@ class CureTrial:
         about = changeable(self.trials.subject, setup, timeline)
         return tuple(
             replace(each, code=tuple(code_of_cure(each.changes.without(self.changes), about)))
-            for each in cures_of(found.explanation, setup, self.changes, timeline)
+            for each in cures_of(found.explanation, self.changes, timeline)
         )
 
     def helps(

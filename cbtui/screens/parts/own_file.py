@@ -56,7 +56,7 @@ class OwnFile(ScreenPart):
         """Return the sections of the guide."""
         run = self.runs.run
         problems = [each.explanation for each in self.runs.findings.findings if each.is_problem]
-        cures = (cures_of(each, run.setup, self.restarts.changes, run.timeline) for each in problems[:1])
+        cures = (cures_of(each, self.restarts.changes, run.timeline) for each in problems[:1])
         has_cures = run.setup.real is None and any(True for each in cures for _ in each)
         return page_of_program(self.file.name, run.setup.clock, run.timeline, problems, has_cures=has_cures)
 

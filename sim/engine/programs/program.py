@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 import importlib.util
 import inspect
-import linecache
 import sys
 import threading
 import traceback
@@ -20,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 from sim.engine.failures.advice import misplaced, never_spun
 from sim.engine.failures.failure import Failure, failure, place_of
 from sim.engine.programs.ending import run_thread_exit_functions
-from sim.engine.programs.source import NothingToRunError, compiled, read_source
+from sim.engine.programs.source import NothingToRunError, compiled, edited, read_source
 from sim.engine.stdio.output import finish_lines
 from sim.interpreter.exception_text import error_line
 from sim.ros.context.signals import deliver_sigint
@@ -40,21 +39,19 @@ _INTERRUPTED = 130
 class ProgramSpec:
     """What to run: the file ``path`` as a script, or ``function`` of the module ``module``.
 
-    ``folder`` is where imports look first. ``arguments`` follow the program's own name. ``text`` replaces the
-    file's source; "": not replaced.
+    ``folder`` is where imports look first. ``arguments`` follow the program's own name.
     """
 
     path: str
     folder: str
     arguments: tuple[str, ...] = ()
-    text: str = ""
     module: str = ""
     function: str = ""
 
 
-def script(path: str, arguments: tuple[str, ...] = (), text: str = "") -> ProgramSpec:
+def script(path: str, arguments: tuple[str, ...] = ()) -> ProgramSpec:
     """Return the program of a file as Python runs it: the target of a link imports from its own folder."""
-    return ProgramSpec(path, str(Path(path).resolve().parent), arguments, text)
+    return ProgramSpec(path, str(Path(path).resolve().parent), arguments)
 
 
 def program_of(found: Executable | ProcessSpec, arguments: Sequence[str]) -> ProgramSpec:
@@ -133,12 +130,7 @@ def _load(program: ProgramSpec) -> Callable[[], object]:
 
 
 def _source(program: ProgramSpec) -> str:
-    """Return the program's source; if it replaces the file's, tracebacks show its lines too."""
-    if not program.text:
-        return read_source(Path(program.path))
-    lines = program.text.splitlines(keepends=True)
-    linecache.cache[program.path] = (len(program.text), None, lines, program.path)
-    return program.text
+    return edited.get(program.path) or read_source(Path(program.path))
 
 
 def _run_script(program: ProgramSpec) -> object:

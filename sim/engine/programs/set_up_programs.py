@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from sim.engine.programs.program import STOPPED, ProgramOutcome, ProgramSpec, script
+from sim.engine.programs.program import STOPPED, ProgramOutcome, script
 from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.programs.ros2_lines import Ros2Lines
 from sim.engine.programs.starting import ProgramStarter, StartError
@@ -15,7 +15,7 @@ def run_programs(
 ) -> ProgramOutcome:
     """Run all programs, or without programs all lines, to their ends; return the outcome."""
     if len(setup) == 1 and not setup[0].is_launch_file:
-        return programs.run_only(_script(setup[0]))
+        return programs.run_only(script(setup[0].path, setup[0].arguments))
     interrupts: list[Callable[[], None]] = []
     try:
         for place, program in enumerate(setup, start=1):
@@ -24,7 +24,7 @@ def run_programs(
                 interrupts.append(launch.interrupt)
             else:
                 label = f"{Path(program.path).stem}-{place}"
-                started = programs.start(_script(program), label, _ignore_end)
+                started = programs.start(script(program.path, program.arguments), label, _ignore_end)
                 interrupts.append(started.interrupt)
         programs.wait_until(lambda: not (programs.any_run or lines.any_left))
     except KeyboardInterrupt:
@@ -37,10 +37,6 @@ def run_programs(
         programs.interrupt_all()
         return ProgramOutcome(str(error), failed=True, status=1)
     return programs.joint_outcome()
-
-
-def _script(program: ProgramSetup) -> ProgramSpec:
-    return script(program.path, program.arguments, program.text)
 
 
 def _ignore_end(_end: object) -> None:

@@ -2,7 +2,8 @@
 
 import ast
 import importlib.util
-from collections.abc import Callable
+import linecache
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import CodeType
 
@@ -13,6 +14,8 @@ class NothingToRunError(Exception):
     """A file cannot be run as a program; the text says why and what to do."""
 
 
+edited: dict[str, str] = {}
+"""Texts that run in place of what files hold, by path."""
 changes: list[Callable[[ast.Module, str, str], ast.Module]] = []
 """Functions that change a program's syntax tree before it is compiled; they get its text and file name."""
 
@@ -25,6 +28,13 @@ def compiled(text: str, file: str) -> CodeType:
     for change in changes:
         tree = change(tree, text, file)
     return compile(tree, file, "exec", dont_inherit=True)
+
+
+def run_edited(texts: Mapping[str, str]) -> None:
+    """Have texts run in place of what files hold, by path; tracebacks show their lines."""
+    edited.update(texts)
+    for path, text in texts.items():
+        linecache.cache[path] = (len(text), None, text.splitlines(keepends=True), path)
 
 
 def read_source(path: Path) -> str:

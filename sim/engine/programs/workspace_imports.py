@@ -1,4 +1,4 @@
-"""Import hooks for the packages of the workspace, the launch system, and asyncio on the run's clock."""
+"""Import hooks: packages of the workspace, the launch system, edited modules, asyncio on the run's clock."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from sim.clock import RunClock, VirtualClock
 from sim.clock.hashes import number_tasks
+from sim.engine.programs.source import edited
 
 if TYPE_CHECKING:
     from importlib.abc import Loader
@@ -24,6 +25,8 @@ def use_workspace(packages: Callable[[], Packages], clock: RunClock) -> None:
     """Make the modules of ``packages`` and ``launch`` importable; put asyncio's loops on ``clock``."""
     sys.meta_path[:0] = (_AsyncioFinder(clock), _LaunchFinder(packages))
     sys.meta_path.append(_WorkspaceFinder(packages))
+    if edited:
+        sys.meta_path.insert(0, _EditedFinder())
 
 
 class _LaunchFinder:
@@ -60,6 +63,21 @@ class _WorkspaceFinder:
             if (folder / fullname / "__init__.py").is_file():
                 return PathFinder.find_spec(fullname, [str(folder)])
         return None
+
+
+class _EditedFinder:
+    """Finds what the other finders do; of a file that is edited, the edited text is run."""
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        others = (each for each in (*sys.meta_path,) if each is not self)
+        found = (each.find_spec(fullname, path, target) for each in others)
+        spec = next((each for each in found if each is not None), None)
+        if spec is not None and spec.origin is not None and (text := edited.get(spec.origin)) is not None:
+            code = compile(text, spec.origin, "exec", dont_inherit=True)
+            spec.loader = _loader(lambda module: exec(code, vars(module)))
+        return spec
 
 
 class _AsyncioFinder:

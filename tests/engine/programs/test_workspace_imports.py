@@ -1,13 +1,17 @@
 """What a program finds as on a machine with its workspace sourced: packages, the launch system, asyncio."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 
 from sim.engine.setup import ProgramSetup, RunSetup
 from sim.trace.events import Printed
 from tests.support.engine_runs import SECOND, Run, run_to_end
 
 
-def run_in_workspace(folder: Path, files: dict[str, str], *programs: str) -> Run:
+def run_in_workspace(
+    folder: Path, files: dict[str, str], *programs: str, edited: Mapping[str, str] = MappingProxyType({})
+) -> Run:
     for name, text in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -16,6 +20,7 @@ def run_in_workspace(folder: Path, files: dict[str, str], *programs: str) -> Run
         RunSetup(
             title="sourced",
             programs=tuple(ProgramSetup(str(folder / each), ()) for each in programs),
+            texts={str(folder / name): text for name, text in edited.items()},
             speed=None,
             until=10 * SECOND,
         )
@@ -53,6 +58,17 @@ def test_a_file_imports_other_packages_of_its_workspace(tmp_path: Path) -> None:
     }
     run = run_in_workspace(tmp_path, files, "src/other/other/main.py")
     assert printed(run) == ["hello"]
+
+
+def test_edited_texts_of_packages_and_programs_are_run_and_the_files_stay(tmp_path: Path) -> None:
+    main, words = "src/talk/talk/main.py", "src/talk/talk/words.py"
+    said = "from talk.words import GREETING\nprint(GREETING)\n"
+    edited = {main: f"{said}print('at last')\n1 / 0  # no\n", words: "GREETING = 'good bye'\n"}
+    run = run_in_workspace(tmp_path, {**PACKAGE, main: said}, main, edited=edited)
+    assert printed(run) == ["good bye", "at last"]
+    errors = [event.text.strip() for event in run.events if isinstance(event, Printed) and event.error]
+    assert "1 / 0  # no" in errors, "a traceback shows the line that was run"
+    assert (tmp_path / words).read_text() == PACKAGE[words]
 
 
 def test_a_node_asks_for_share_folders(tmp_path: Path) -> None:
