@@ -278,6 +278,17 @@ def test_lower_figures_of_far_fewer_calls_speak_for_no_run() -> None:
     assert "oldest data" in verdict(compare(old, again, Window(0, ns(4.0))))
 
 
+def test_fewer_losses_in_far_fewer_calls_do_not_outweigh_a_wait() -> None:
+    hangs = run(
+        [ODOM, TIMER], [WaitStarted(ns(1.0), 2, ns(1.0), Reason.GROUP_HELD, 1, False), *called(1, 1.0, 1.1)]
+    )
+    calls = [event for at in (1.0, 2.0, 3.0) for event in called(1, at, at + 0.1)]
+    works = run([ODOM, TIMER], [*calls, MessageDropped(ns(3.5), 1, 10, 5)])
+    told = verdict(compare(hangs, works, Window(0, ns(4.0))))
+    assert told.startswith(f"run B is better: longest wait of {TIMER} 0 s instead of 100 ms")
+    assert told.endswith(f"; but losses of {ODOM} 1 instead of 0")
+
+
 def test_a_run_that_an_error_ends_and_one_that_hears_nothing_are_worse() -> None:
     window = Window(0, ns(4.0))
     deaf = QosMismatched(ns(1.0), "/odom", 1, 1, "RELIABILITY")

@@ -147,9 +147,10 @@ def _differences(comparison: Comparison) -> Iterator[_FigureDifference]:
             if first is not None and second is not None:
                 one, other = figure(first), figure(second)
                 lower, higher = (first, second) if one < other else (second, first)
-                tells = wording not in _OF_CALLS or 2 * lower.figures.calls >= higher.figures.calls
-                if tells and abs(other - one) >= least:
-                    yield _FigureDifference(rank, f"{what} of {name}", one, other, wording)
+                is_like = 2 * lower.figures.calls >= higher.figures.calls
+                if (is_like or wording not in _OF_CALLS) and abs(other - one) >= least:
+                    weight = rank if is_like or what != _LOST else len(_DECIDING)
+                    yield _FigureDifference(weight, f"{what} of {name}", one, other, wording)
     for rank, what, count in _DECIDING_RUNS:
         one, other = count(comparison.first), count(comparison.second)
         if one != other:
@@ -164,6 +165,8 @@ _DECIDING_RUNS: tuple[tuple[int, str, Callable[[RunFigures], int]], ...] = (
 )
 _OF_CALLS = (_LATENESS, _AGES)
 """Figures of calls: lower ones of far fewer calls, as of a callback that hangs, speak for no run."""
+_LOST = "losses"
+"""Fewer in far fewer calls weigh least: who hangs sends nothing that could be lost."""
 _NOTABLE = 10_000_000
 """Nanoseconds by which a wait or an age must differ."""
 
@@ -174,7 +177,7 @@ def _most(values: Distribution | None) -> float:
 
 _DECIDING: tuple[tuple[str, Callable[[CallbackInRun], float], _Wording, float], ...] = (
     ("errors", lambda side: side.figures.errors, _LOSSES, 1),
-    ("losses", lambda side: side.figures.drops, _LOSSES, 1),
+    (_LOST, lambda side: side.figures.drops, _LOSSES, 1),
     ("longest wait", lambda side: side.longest_wait, _WAITS, _NOTABLE),
     ("worst lateness", lambda side: _most(side.figures.late), _LATENESS, _NOTABLE),
     ("oldest data", lambda side: _most(side.figures.age), _AGES, _NOTABLE),
