@@ -67,15 +67,17 @@ class Restarts(ScreenPart):
         await self.start(changes, self.speed(), inputs)
 
     async def start(self, changes: Changes, speed: float | None, inputs: tuple[TimedInput, ...] = ()) -> None:
-        """Run again with these changes, at a speed."""
+        """Run again with these changes, at a speed; of several at once only the last one does."""
         before = self.runs.run
         if before.timeline.end > 0:
             self.before = compared_side(before, self.changes).ended()
         self.changes, self.inputs = changes, inputs
         self.runs.begin(speed)
         self.began()
+        begun = self.runs.run
         self.host.tell(await asyncio.to_thread(before.stop))
-        self.runs.run.start()
+        if begun is self.runs.run:
+            begun.start()
 
     async def action_run_again(self) -> None:
         """Run again with the same set-up."""

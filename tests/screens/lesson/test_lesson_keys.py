@@ -1,3 +1,4 @@
+import asyncio
 import threading
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -143,6 +144,21 @@ async def test_r_runs_again_after_the_run_has_ended() -> None:
         await press(pilot, "r")
         assert "● LIVE" in status(app)
         assert "t 13.1" in status(app)
+
+
+async def test_of_two_restarts_at_once_only_the_last_run_starts(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with console() as (app, pilot):
+        may_stop, begun = threading.Event(), list[FakeSession]()
+        monkeypatch.setattr(FakeSession, "stop", lambda session: session.started and may_stop.wait(30))
+        monkeypatch.setattr(FakeSession, "start", begun.append)
+        screen = app.screen
+        assert isinstance(screen, LessonScreen)
+        both = asyncio.gather(*(screen.restarts.again(screen.changes) for _ in range(2)))
+        await settle(pilot)
+        may_stop.set()
+        await both
+        assert begun == [app.engines.latest]
+        assert len(app.engines.sessions) == 3
 
 
 @pytest.mark.slow
