@@ -38,6 +38,10 @@ class Deadlines:
         """Whether a thread waits for the earliest deadline; call ``first`` before."""
         return isinstance(self._heap[0][2], VirtualThread)
 
+    def due_at(self, moment: int) -> list[VirtualThread | Callable[[], None]]:
+        """Return the threads and actions whose deadline is a moment, in no order."""
+        return [due for at, _, due in self._heap if at == moment]
+
     def later_than(self, now: int) -> list[int]:
         """Return all deadlines after ``now``."""
         return [moment for moment, *_ in self._heap if moment > now]

@@ -17,6 +17,7 @@ from sim.clock.inbox import Inbox, Inputs
 from sim.clock.pace import Pace
 from sim.clock.recesses import RECESS, Recesses
 from sim.clock.virtual_threads import VirtualThread
+from sim.quantities.nanoseconds import SECOND
 
 _CHECK_PERIOD = 20_000_000
 """Real nanoseconds between two checks whether outside work continues."""
@@ -40,6 +41,7 @@ class VirtualTime:
         self._inbox = Inbox()
         self._inputs = Inputs()
         self._target: int | None = None
+        self._step_limit = 0
         self.before_jump: Callable[[], int | None] = lambda: None
         """Called whenever time is about to pass, on any thread of the clock; it must not wait.
 
@@ -49,6 +51,8 @@ class VirtualTime:
         """Called in every recess with its number, on the waiting thread; it must not wait."""
         self.outside_works: Callable[[], bool] = lambda: False
         """Whether outside work is going on, so that time passes as real time; it must not wait."""
+        self.is_background: Callable[[VirtualThread], bool] = lambda _thread: False
+        """Whether a step goes past what this thread does."""
         self.in_moment = False
         """Whether time is stopped within a moment; then only ``steer`` reaches the run."""
 
@@ -101,8 +105,12 @@ class VirtualTime:
         self.pace.resume(self.now)
 
     def step(self) -> None:
-        """Continue until time has jumped or the clock is halted, then pause. Call it through ``steer``."""
+        """Continue until time has jumped or the clock is halted, then pause. Call it through ``steer``.
+
+        Jumps to what a background thread does count only once a second has passed.
+        """
         self.pace.step()
+        self._step_limit = self.now + SECOND
 
     def run_until(self, moment: int) -> None:
         """Run as fast as possible until everything up to ``moment`` has happened, then pause.
@@ -155,7 +163,7 @@ class VirtualTime:
         assert target is not None
         if target > self.now:
             self._advance_to(target)
-            if self.pace.steps:
+            if self.pace.steps and (target >= self._step_limit or not self._is_background(target)):
                 self.pause_in_moment()
         if target == deadline:
             self._serve_deadline()
@@ -164,6 +172,10 @@ class VirtualTime:
         """Resume all threads whose deadline is this moment, up to the next action."""
         while self.deadlines.first() == self.now and self.deadlines.first_is_thread():
             self._serve_deadline()
+
+    def _is_background(self, moment: int) -> bool:
+        due = self.deadlines.due_at(moment)
+        return bool(due) and all(isinstance(each, VirtualThread) and self.is_background(each) for each in due)
 
     def _advance_to(self, moment: int) -> None:
         if moment > self.now:

@@ -6,6 +6,7 @@ from typing import Any
 from sim.interfaces import message, service
 from sim.probes.probe import PublishingProbe
 from sim.robot.driver import Driver
+from sim.robot.names import THREAD
 from sim.robot.velocity_commands import VelocityCommands
 from sim.robot.world import World
 from sim.ros.context.context import Context
@@ -60,4 +61,4 @@ def start_robot(
         executor.spin()
 
     driver.offer()
-    port.context.process.start_thread(drive, "robot_driver")
+    port.context.process.start_thread(drive, THREAD)

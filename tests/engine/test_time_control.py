@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from sim.engine.commands import PaceCommand, Pause, Resume, RunUntil, SetSpeed, Step
 from sim.engine.time_control import is_decision
 from sim.interfaces import message
+from sim.robot.names import THREAD
 from sim.ros.node.node import Node
 from sim.ros.scheduling.executors import MultiThreadedExecutor
 from sim.trace.events import (
@@ -24,7 +25,7 @@ from sim.trace.events import (
 from tests.ros.scheduling.systems import SECONDS, System, play, program_of, systems
 from tests.support.builder import ns
 from tests.support.properties import examples
-from tests.support.simulation import Simulation
+from tests.support.simulation import Program, Simulation
 from tests.support.steering import Helm, steered, without_commands
 
 pytestmark = pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
@@ -132,6 +133,36 @@ def test_steps_are_jumps_arrivals_starts_and_ends() -> None:
         (1.5, "jump"),
         (1.5, "CallbackEnded"),
     ]
+
+
+def beside_a_robot(period: float) -> Program:
+    """A program that sleeps beside a robot, which wakes 20 times a second."""
+
+    def program(simulation: Simulation) -> None:
+        def drive() -> None:
+            while True:
+                simulation.sleep(0.05)
+
+        simulation.clock.start_thread(drive, THREAD)
+        while True:
+            simulation.sleep(period)
+
+    return program
+
+
+@pytest.mark.parametrize(("period", "halts"), [(0.62, [0.62, 1.24, 1.86]), (2.5, [1.05, 2.05, 2.5])])
+def test_a_step_goes_past_what_only_the_robot_does_for_a_second_at_most(
+    period: float, halts: list[float]
+) -> None:
+    def steering(helm: Helm) -> None:
+        helm.give(Pause())
+        for _ in halts:
+            helm.give(Step())
+            found.append(helm.until_halted().t / 1e9)
+
+    found: list[float] = []
+    steered(beside_a_robot(period), steering, until=3.0, speed=0.001)
+    assert found == pytest.approx(halts, abs=0.06)
 
 
 def test_steps_that_are_asked_for_at_once_are_all_taken() -> None:
