@@ -55,6 +55,9 @@ class ConsoleApp(LessonOpener, Protocol):
             CannotOpenError: it is not there, or nothing that can be opened.
         """
 
+    def ignore_enter(self) -> None:
+        """Ignore an enter that comes as the next key and soon: what it would confirm was done without it."""
+
     def tell_saved(self, sentence: str) -> None:
         """Report what was saved as a screen closed."""
 

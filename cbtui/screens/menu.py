@@ -264,6 +264,7 @@ class MenuScreen(SizedScreen[None]):
         if len(found) == 1 and words == str(found[0].number):
             self._list.choose(found[0].id)
             self._open(found[0])
+            console_of(self).ignore_enter()
 
     @on(Input.Submitted)
     def _open_found(self) -> None:

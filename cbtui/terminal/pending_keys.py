@@ -1,4 +1,4 @@
-"""Holds back keys and clicks until the screen that they are meant for is mounted.
+"""Holds back keys and clicks until the screen they are meant for is mounted; drops an enter meant for none.
 
 Textual sends keys to a screen as soon as it is on the stack. Until its widgets have mounted their children,
 an action finds only some of them, and removing the screen leaves the others without theirs.
@@ -9,19 +9,28 @@ from time import monotonic
 
 from textual.app import App
 from textual.errors import NoWidget
-from textual.events import Event, InputEvent, MouseDown
+from textual.events import Event, InputEvent, Key, MouseDown
 from textual.widget import Widget
 
 from cbtui.terminal.textual_internals import is_mounted
 
 MOUNT_TIMEOUT = 3.0
 """Seconds to wait for widgets to be mounted."""
+ENTER_AFTER = 2.0
+"""Seconds in which people press the enter that was not needed any more."""
 _POLL_INTERVAL = 0.005
 """Seconds between two checks."""
 
 
 class PendingKeysApp(App[None]):
     """An app that handles input once the screen is mounted, and ignores clicks on removed widgets."""
+
+    _enter_until = 0.0
+    """Until when, as events count time, a first key is ignored if it is enter."""
+
+    def ignore_enter(self) -> None:
+        """Ignore an enter that comes as the next key and soon: what it would confirm was done without it."""
+        self._enter_until = monotonic() + ENTER_AFTER
 
     @property
     def is_mounting(self) -> bool:
@@ -35,6 +44,10 @@ class PendingKeysApp(App[None]):
 
     async def on_event(self, event: Event) -> None:
         """Handle an event; input waits until the screen is mounted."""
+        if isinstance(event, Key):  # also one that comes back from a screen that is no longer current
+            until, self._enter_until = self._enter_until, 0.0
+            if event.key == "enter" and event.time < until:
+                return
         if isinstance(event, InputEvent):
             deadline = monotonic() + MOUNT_TIMEOUT
             while self.is_mounting and monotonic() < deadline:

@@ -14,7 +14,9 @@ from cbtui.screens.menu import MenuScreen
 from cbtui.screens.windows.help import HelpScreen
 from cbtui.screens.windows.prediction import PredictionScreen
 from cbtui.screens.windows.tour import TourScreen
+from cbtui.widgets.guide import Guide
 from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.menu_list import MenuList
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
@@ -104,6 +106,17 @@ async def test_a_number_opens_its_lesson() -> None:
             await pilot.press(*str(lesson.number), *(["enter"] if lesson.number < 4 else []))
             assert opened(app) == lesson.id
             await pilot.press("q")
+
+
+async def test_an_enter_after_a_number_that_opened_at_once_is_not_for_the_lesson() -> None:
+    app = menu()
+    predict(app, lessons()[12].id)
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press(*"13", "enter")
+        assert opened(app) == lessons()[12].id
+        assert isinstance(app.focused, Guide)
+        await pilot.press("enter")
+        assert isinstance(app.focused, Lanes)
 
 
 async def test_letters_of_a_name_find_its_lesson() -> None:
