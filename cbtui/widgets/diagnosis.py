@@ -165,11 +165,13 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
     own = (wait for wait in moment.waiting.values() if moment.at - wait.since >= WORTH_TELLING)
     for_itself = min(own, key=attrgetter("since"), default=None)
     in_a_call = _in_a_call(moment, timeline)
-    threads = _threads_needed(timeline, peak)
+    threads, briefly = _threads_needed(timeline, peak)
     if for_itself is None:
         return Diagnosis(in_a_call or f"nothing waits; {threads}", DiagnosisLevel.FINE)
     text = f"{_overdue(for_itself, moment.at, timeline)}; {in_a_call or 'nothing else waits'}"
-    return Diagnosis(text, DiagnosisLevel.FINE, at_length="" if in_a_call else f"{text}; {threads}")
+    if in_a_call:
+        return Diagnosis(text, DiagnosisLevel.FINE)
+    return Diagnosis(f"{text}; {briefly}", DiagnosisLevel.FINE, at_length=f"{text}; {threads}")
 
 
 def _in_a_call(moment: Moment, timeline: Timeline) -> str:
@@ -218,7 +220,7 @@ def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
 def _overdue(wait: Wait, at: Nanoseconds, timeline: Timeline) -> str:
     """The text on a callback that only waits for its own previous call."""
     due = "due" if timeline.entities[wait.entity].kind is EntityKind.TIMER else "ready"
-    return f"{name_of(wait.entity, timeline)}, {due} again {duration(at - wait.since)} ago, still runs"
+    return f"{name_of(wait.entity, timeline)} still runs, {due} {duration(at - wait.since)} ago"
 
 
 def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosis:
@@ -259,10 +261,11 @@ def _busy_threads(moment: Moment, timeline: Timeline) -> str:
     return f"{every} threads are busy with {' and '.join(names[:2])}"
 
 
-def _threads_needed(timeline: Timeline, peak: int) -> str:
+def _threads_needed(timeline: Timeline, peak: int) -> tuple[str, str]:
+    """How many threads were needed, in full and in short."""
     count = thread_count(timeline)
     if count <= 1:
-        return "one thread does all the work"
+        return ("one thread does all the work",) * 2
     if not peak:
-        return "no callback has run yet"
-    return threads_needed(peak, count, timeline)
+        return ("no callback has run yet",) * 2
+    return threads_needed(peak, count, timeline), f"{peak} of {count} threads needed"

@@ -89,8 +89,12 @@ def test_the_threads_of_a_run_that_is_over_were_ever_needed() -> None:
 
 def test_a_timer_that_outlasts_its_period_waits_for_nobody_else() -> None:
     told = said(split_groups_run(), 9.4)
-    assert told.text == "timer_callback, due again 4.9 s ago, still runs; nothing else waits"
-    assert told.at_length == f"{told.text}; so far 2 of 4 threads were needed at once"
+    assert told.text == (
+        "timer_callback still runs, due 4.9 s ago; nothing else waits; 2 of 4 threads needed"
+    )
+    (run,) = diagnosis_row(told, "", "", 80)
+    assert run.text.strip() == "✓ timer still runs, due 4.9 s ago; nothing else waits; 2 of 4 threads needed"
+    assert told.at_length == f"{told.text.rpartition(';')[0]}; so far 2 of 4 threads were needed at once"
     assert told.level is DiagnosisLevel.FINE
 
 
