@@ -153,7 +153,10 @@ def _lane_signs(charset: Charset) -> _Section:
     return _Section(
         "Signs of the lanes",
         [
-            _HelpRow(f"{glyphs.left[4]} {bar * 4}", "a callback runs; letter and colour are its group's"),
+            _HelpRow(
+                f"{glyphs.left[4]} {bar * 4}", "a callback runs; letter, colour and fill are its group's"
+            ),
+            _HelpRow(glyphs.textures, "the fills of long bars: groups A to F, then the same again"),
             _HelpRow(glyphs.hatch[Reason.GROUP_HELD] * 4, "a callback waits: another one holds its group"),
             _HelpRow(glyphs.hatch[Reason.NO_FREE_WORKER] * 4, "a callback waits: every thread is busy"),
             _HelpRow(glyphs.hatch[Reason.EVENT_QUEUE] * 4, "a callback waits: others came before it"),

@@ -10,6 +10,7 @@ from textual.widgets import Static
 
 from cbtui.keys.action import Scope
 from cbtui.keys.actions import ACTIONS
+from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.live.live_run import RunState
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
@@ -306,6 +307,7 @@ async def test_the_help_begins_with_the_signs_and_finds_words() -> None:
     async with console() as (app, pilot):
         await press(pilot, "question_mark")
         assert "another one holds its group" in text_of(app)
+        assert f" {GLYPHS[Charset.BRAILLE].textures}  the fills of long bars" in text_of(app)
         await press(pilot, "slash", *"record")
         assert "Start or stop recording the run" in text_of(app)
         assert "another one holds its group" not in text_of(app)
