@@ -48,3 +48,11 @@ def test_a_lesson_has_exactly_its_own_findings(
         name = "" if entity is None else entity.spoken_name
         found[each.rule.weigh(each, timeline)].add((each.rule.id, name))
     assert found == {Weight.PROBLEM: problems, Weight.REMARK: remarks}
+
+
+def test_calls_that_overlap_at_a_lock_are_told_which() -> None:
+    timeline = run_lesson("lock-or-group", 8.0).timeline
+    (found,) = (each for each in diagnose(timeline) if each.rule.id == "overlapping-callback")
+    told = found.rule.explain(found, timeline)
+    assert "; the lock of line 51 lets one of them on at a time, and guards nothing outside it" in told.why
+    assert told.cure.endswith("who waits there keeps no thread")

@@ -18,8 +18,9 @@ _HABIT = 3
 class OverlappingCallback(Rule):
     """A callback started while an earlier call of it was running, which a reentrant group allows.
 
-    Without a lock, which the trace does not show, both calls can overwrite each other's changes. Services are
-    what reentrant groups are made for, so their overlaps are a remark.
+    Where no lock guards what they share, both calls can overwrite each other's changes. The trace shows a
+    lock only where a call waits for it. Services are what reentrant groups are made for: their overlaps are
+    remarks.
     """
 
     id = "overlapping-callback"
@@ -44,10 +45,17 @@ class OverlappingCallback(Rule):
         cure = f"give {subject} a MutuallyExclusiveCallbackGroup, or guard what its calls share with a lock"
         if entity_of(found, timeline).kind is EntityKind.TIMER:
             cure += "; a callback shorter than the timer's period never overlaps"
+        positions = timeline.positions_of(found.subject, Window(found.at, found.until))
+        lock = next((each.line for each in positions if each.waits_for_lock), None)
+        unguarded = "where no lock guards what its calls share, one can undo what the other changed"
+        if lock is not None:
+            cure = f"give {subject} a MutuallyExclusiveCallbackGroup: who waits there keeps no thread"
+            unguarded = (
+                f"the lock of line {lock} lets one of them on at a time, and guards nothing outside it"
+            )
         return Explanation(
             f"{subject} overlapped itself for {duration(found.lasted)}{often(found.count)}",
-            "a reentrant group lets the same callback in again; without a lock, one call can undo what the "
-            "other changed",
+            f"a reentrant group lets the same callback in again; {unguarded}",
             cure,
             line_of(found.subject, Window(found.at, found.until), timeline),
         )
