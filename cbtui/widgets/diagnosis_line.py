@@ -69,12 +69,14 @@ class DiagnosisLine(PaintedWidget):
 def diagnosis_rows(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[list[TextRun]]:
     """Return the lines, each in exactly ``width`` columns: several only for a diagnosis that stays."""
     taken = " " * (_GAP + len(problems) + 1 if problems else 0)
-    first, *others = wrap(diagnosis.text, max(20, width - _INDENT), initial_indent=taken) or [""]
+    room = max(20, width - _INDENT)
+    lines = wrap(diagnosis.text, room, initial_indent=taken, max_lines=_MOST, placeholder=" …")
+    first, *others = lines or [""]
     if not diagnosis.stays or not others:
         return [diagnosis_row(diagnosis, note, problems, width)]
     ink = _INKS[diagnosis.level]
     head = diagnosis_row(Diagnosis(first.strip(), diagnosis.level), "", problems, width)
-    kept = [TextRun(fit(" " * _INDENT + line, width, Charset.BRAILLE), ink) for line in others[: _MOST - 1]]
+    kept = [TextRun(fit(" " * _INDENT + line, width, Charset.BRAILLE), ink) for line in others]
     return [head, *([run] for run in kept)]
 
 

@@ -252,6 +252,13 @@ def test_a_sentence_that_stays_is_shown_whole_on_several_lines() -> None:
     assert " ".join(" ".join(shown).replace("!", " ").split()) == sentence
 
 
+def test_a_sentence_too_long_for_its_lines_says_so() -> None:
+    sentence = f"the run is over: {'word ' * 80}"
+    rows = diagnosis_rows(Diagnosis(sentence, DiagnosisLevel.TROUBLE, stays=True), "", "", 80)
+    assert len(rows) == 4
+    assert "".join(run.text for run in rows[-1]).rstrip().endswith("word …")
+
+
 def test_a_sentence_of_the_moment_keeps_to_one_line() -> None:
     assert len(diagnosis_rows(Diagnosis("word " * 60, DiagnosisLevel.TROUBLE), "", "", 80)) == 1
 
