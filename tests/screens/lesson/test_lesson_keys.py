@@ -151,7 +151,11 @@ async def test_of_two_restarts_at_once_only_the_last_run_starts(monkeypatch: pyt
     async with console() as (app, pilot):
         may_stop, begun = threading.Event(), list[FakeSession]()
         monkeypatch.setattr(FakeSession, "stop", lambda session: session.started and may_stop.wait(30))
-        monkeypatch.setattr(FakeSession, "start", begun.append)
+
+        def start(session: FakeSession) -> None:
+            begun.append(session)
+
+        monkeypatch.setattr(FakeSession, "start", start)
         screen = app.screen
         assert isinstance(screen, LessonScreen)
         both = asyncio.gather(*(screen.restarts.again(screen.changes) for _ in range(2)))
