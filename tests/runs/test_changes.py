@@ -25,9 +25,24 @@ from sim.engine.setup import GroupChange, PeriodChange, RobotUse, RunSetup
 from sim.ros.middleware.callback_overrides import GroupChoice
 from sim.trace.events import EntityKind
 from sim.trace.timeline import Timeline
+from tests.support.engine_runs import program_setup, run_to_end
 from tests.support.runs import Run, dummy_server_run, shared_group_run
 
 ODOM = ("/sub_node", "odom_callback")
+SCRIPT = """
+import rclpy
+
+rclpy.init()
+node = rclpy.create_node("plain")
+
+
+def tick():
+    pass
+
+
+timer = node.create_timer(0.1, tick)
+rclpy.spin(node)
+"""
 TIMER = ("/sub_node", "timer_callback")
 WHOLE = Changes(
     threads=4,
@@ -223,19 +238,41 @@ def test_a_program_that_takes_arguments_gets_them() -> None:
 def test_a_cure_by_threads_has_the_lines_that_spin_them_unless_they_are_there() -> None:
     more = Changes(threads=2)
     made = "executor = MultiThreadedExecutor(num_threads=2)"
-    assert code_of_cure(more, ABOUT) == [made, "executor.add_node(node)", "executor.spin()"]
-    assert code_of_cure(more, replace(ABOUT, executor_now="MultiThreadedExecutor(1)")) == [made]
+    source = "from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor\n"
+    assert code_of_cure(more, ABOUT, source) == [made, "executor.add_node(node)", "executor.spin()"]
+    assert code_of_cure(more, replace(ABOUT, executor_now="MultiThreadedExecutor(1)"), source) == [made]
+
+
+def test_a_cure_has_the_imports_that_the_program_lacks() -> None:
+    apart = Changes(threads=2, groups={ODOM: "own"})
+    assert code_of_cure(apart, ABOUT, "import rclpy\n\nrclpy.spin(node)\n")[:2] == [
+        "from rclpy.callback_groups import MutuallyExclusiveCallbackGroup",
+        "from rclpy.executors import MultiThreadedExecutor",
+    ]
+
+
+def test_a_script_without_a_class_has_no_self_in_its_code(tmp_path: Path) -> None:
+    path = tmp_path / "script.py"
+    path.write_text(SCRIPT)
+    callbacks = callbacks_of(run_to_end(program_setup(path, 0.5)).timeline)
+    about = replace(ABOUT, callbacks=tuple(callbacks.values()))
+    tick = ("/plain", "tick")
+    assert code_of(Changes(groups={tick: "own"}, periods={tick: 200_000_000}), about) == [
+        "tick_group = MutuallyExclusiveCallbackGroup()",
+        "node.create_timer(…, tick,\n    callback_group=tick_group)",
+        "node.create_timer(0.2, tick, …)",
+    ]
 
 
 @pytest.mark.parametrize("wish", GROUP_CHOICES)
 def test_a_callback_without_a_name_is_left_out_of_the_code(wish: str) -> None:
-    assert "lambda" not in "".join(code_of_group("<lambda>", EntityKind.TIMER, wish))
+    assert "lambda" not in "".join(code_of_group("<lambda>", EntityKind.TIMER, "self", wish))
 
 
 @pytest.mark.parametrize("wish", GROUP_CHOICES)
 @pytest.mark.parametrize("kind", [kind for kind in EntityKind if kind is not EntityKind.WAITABLE])
 def test_the_lines_fit_in_the_narrowest_window(wish: str, kind: EntityKind) -> None:
-    lines = "\n".join(code_of_group("SetBool_callback", kind, wish)).splitlines()
+    lines = "\n".join(code_of_group("SetBool_callback", kind, "self", wish)).splitlines()
     assert max(map(len, lines)) <= 72
 
 

@@ -73,7 +73,7 @@ def cures_of(explanation: Explanation, before: Changes, timeline: Timeline) -> I
         changes, edited = _without_edit(remedy, before, timeline), ""
         if remedy.edit is not None:
             file = remedy.edit.file
-            text = before.texts.get(file) or _text_of(Path(file))
+            text = before.texts.get(file) or text_of(Path(file))
             new = remedy.edit.applied(text)
             if new is None:
                 continue
@@ -89,8 +89,8 @@ def _without_edit(remedy: Remedy, before: Changes, timeline: Timeline) -> Change
     return changes
 
 
-def _text_of(path: Path) -> str:
-    """The text of a program's file; "" if it cannot be read, or is none."""
+def text_of(path: Path) -> str:
+    """Return the text of a program's file; "" if it cannot be read, or is none."""
     with suppress(OSError, UnicodeDecodeError):
         return read_text(path, MAX_PROGRAM_BYTES)
     return ""

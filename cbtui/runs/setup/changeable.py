@@ -1,5 +1,7 @@
 """What can be changed about a run from the keyboard: callbacks' groups and periods, and numbers."""
 
+import linecache
+import re
 from dataclasses import dataclass
 
 from cbtui.runs.setup.changes import CallbackPlace
@@ -20,13 +22,14 @@ from sim.trace.timeline import Timeline
 @dataclass(frozen=True, slots=True)
 class ChangeableCallback:
     """A callback with its current settings; ``group`` describes its group, ``period`` is 0 if it has no
-    timer.
+    timer. ``maker`` is the expression for the node where its program makes it: ``self`` or ``node``.
     """
 
     place: CallbackPlace
     kind: EntityKind
     group: str
     period: Nanoseconds
+    maker: str = "self"
 
     @property
     def name(self) -> str:
@@ -93,7 +96,10 @@ def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
         if programs_own(entity):
             place = place_of(entity, timeline)
             found.setdefault(
-                place, ChangeableCallback(place, entity.kind, _group_of(entity, timeline), entity.period)
+                place,
+                ChangeableCallback(
+                    place, entity.kind, _group_of(entity, timeline), entity.period, _maker_of(entity)
+                ),
             )
     return found
 
@@ -101,6 +107,12 @@ def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
 def place_of(entity: EntityInfo, timeline: Timeline) -> CallbackPlace:
     """Return the names by which a change identifies an entity's callback."""
     return timeline.nodes.get(entity.node, ""), entity.callback or entity.name
+
+
+def _maker_of(entity: EntityInfo) -> str:
+    """Return the expression for the node in the line that makes an entity; ``self`` if none is there."""
+    made = re.search(r"(\w[\w.]*)\.create_", linecache.getline(*entity.made_at))
+    return made[1] if made else "self"
 
 
 def is_set_bool(entity: EntityInfo) -> bool:

@@ -1,5 +1,6 @@
 """Source code that is equivalent to a person's changes at the keyboard."""
 
+import re
 from collections.abc import Iterator
 
 from cbtui.runs.setup.changeable import ChangeableSetup
@@ -11,25 +12,31 @@ from sim.trace.events import EntityKind
 
 _EXCLUSIVE = "MutuallyExclusiveCallbackGroup()"
 _REENTRANT = "ReentrantCallbackGroup()"
-_SOME_MAKER = "self.create_…(…, {}, …"
-_MAKERS = {
-    EntityKind.TIMER: "self.create_timer(…, {}",
-    EntityKind.SUBSCRIPTION: "self.create_subscription(…, {}, …",
-    EntityKind.SERVICE: "self.create_service(…, {}",
-    EntityKind.CLIENT: "self.create_client(…, {}",
-    EntityKind.GUARD: "self.create_guard_condition({}",
+_SOME_MAKING = "create_…(…, {}, …"
+_MAKING = {
+    EntityKind.TIMER: "create_timer(…, {}",
+    EntityKind.SUBSCRIPTION: "create_subscription(…, {}, …",
+    EntityKind.SERVICE: "create_service(…, {}",
+    EntityKind.CLIENT: "create_client(…, {}",
+    EntityKind.GUARD: "create_guard_condition({}",
+}
+_MODULES = {
+    "MutuallyExclusiveCallbackGroup": "rclpy.callback_groups",
+    "MultiThreadedExecutor": "rclpy.executors",
 }
 
 
 def code_of(changes: Changes, about: ChangeableSetup) -> list[str]:
     """Return the statements for all changes, some of several lines."""
-    kinds = {callback.place: callback.kind for callback in about.callbacks}
     statements = [
         statement
         for place, wish in changes.groups.items()
-        for statement in code_of_group(place[1], _kind(place, kinds), wish)
+        for statement in code_of_group(place[1], *_kind_and_maker(place, about), wish)
     ]
-    statements += [code_of_period(place[1], period) for place, period in changes.periods.items()]
+    statements += [
+        code_of_period(place[1], period, _kind_and_maker(place, about)[1])
+        for place, period in changes.periods.items()
+    ]
     statements += _command_line(changes, about)
     if changes.threads is not None and about.threads_argument is None:
         statements.append(code_of_threads(changes.threads, about))
@@ -40,13 +47,18 @@ def code_of(changes: Changes, about: ChangeableSetup) -> list[str]:
     return list(dict.fromkeys(statements))
 
 
-def code_of_cure(changes: Changes, about: ChangeableSetup) -> list[str]:
-    """Return the statements for all changes; for threads, also those that spin the new executor."""
+def code_of_cure(changes: Changes, about: ChangeableSetup, source: str = "") -> list[str]:
+    """Return the statements for all changes, with the imports that ``source`` lacks.
+
+    For threads, those that spin the new executor are among them.
+    """
     statements = code_of(changes, about)
     if changes.threads is not None and about.threads_argument is None:
         is_spun = about.executor_now.startswith("MultiThreadedExecutor")
         statements += [] if is_spun else ["executor.add_node(node)", "executor.spin()"]
-    return statements
+    needed = [name for name in _MODULES if any(name in each for each in statements)]
+    lacking = [name for name in needed if not re.search(rf"import\b[^=.:]*\b{name}\b", source)]
+    return [f"from {_MODULES[name]} import {name}" for name in lacking] + statements
 
 
 def code_of_threads(threads: int, about: ChangeableSetup) -> str:
@@ -56,9 +68,9 @@ def code_of_threads(threads: int, about: ChangeableSetup) -> str:
     return f"executor = MultiThreadedExecutor(num_threads={threads})"
 
 
-def code_of_period(callback: str, period: int) -> str:
-    """Return the line that makes a timer with a period in nanoseconds."""
-    return f"self.create_timer({period / SECOND:g}, {_method(callback)}, …)"
+def code_of_period(callback: str, period: int, maker: str) -> str:
+    """Return the line in which ``maker`` makes a timer with a period in nanoseconds."""
+    return f"{maker}.create_timer({period / SECOND:g}, {_function(callback, maker)}, …)"
 
 
 def code_of_argument(argument: str, number: float) -> str:
@@ -78,19 +90,20 @@ def code_of_release(release: str) -> str:
     return f"# cbtui: distro = {release}{caveat}"
 
 
-def code_of_group(callback: str, kind: EntityKind, wish: str) -> list[str]:
-    """Return the statements that put a callback into a group; a waitable's are generic."""
-    what = f'"{callback}"' if kind is EntityKind.CLIENT else _method(callback)
-    making = _MAKERS.get(kind, _SOME_MAKER).format(what)
+def code_of_group(callback: str, kind: EntityKind, maker: str, wish: str) -> list[str]:
+    """Return the statements in which ``maker`` puts a callback into a group; a waitable's are generic."""
+    what = f'"{callback}"' if kind is EntityKind.CLIENT else _function(callback, maker)
+    making = f"{maker}.{_MAKING.get(kind, _SOME_MAKING).format(what)}"
     match wish:
         case "default":
             return [f"{making})  # no group named"]
         case "own":
-            name, made = f"self.{_group_name(callback)}", _EXCLUSIVE
+            name, made = _group_name(callback), _EXCLUSIVE
         case "shared":
-            name, made = "self.shared_group", _EXCLUSIVE
+            name, made = "shared_group", _EXCLUSIVE
         case _:
-            name, made = "self.reentrant_group", _REENTRANT
+            name, made = "reentrant_group", _REENTRANT
+    name = f"{_owner(maker)}{name}"
     return [f"{name} = {made}", f"{making},\n    callback_group={name})"]
 
 
@@ -102,15 +115,24 @@ def _command_line(changes: Changes, about: ChangeableSetup) -> Iterator[str]:
         yield "node.py … " + " ".join(f"{name} {number:g}" for name, number in given.items())
 
 
-def _kind(place: CallbackPlace, kinds: dict[CallbackPlace, EntityKind]) -> EntityKind:
-    """The kind of a callback's entity: of a node, or of the first node with such a callback."""
+def _kind_and_maker(place: CallbackPlace, about: ChangeableSetup) -> tuple[EntityKind, str]:
+    """The kind of a callback's entity, of a node or of the first with such a callback, and what makes it."""
     node, name = place
-    fitting = (kind for (owner, callback), kind in kinds.items() if callback == name and node in {"", owner})
-    return next(fitting, EntityKind.WAITABLE)
+    fitting = (
+        (each.kind, each.maker)
+        for each in about.callbacks
+        if each.place[1] == name and node in {"", each.place[0]}
+    )
+    return next(fitting, (EntityKind.WAITABLE, "self"))
 
 
-def _method(callback: str) -> str:
-    return f"self.{callback}" if callback.isidentifier() else "…"
+def _owner(maker: str) -> str:
+    """What methods and attributes are named by where ``maker`` makes a callback; "" outside a class."""
+    return "self." if maker.partition(".")[0] == "self" else ""
+
+
+def _function(callback: str, maker: str) -> str:
+    return f"{_owner(maker)}{callback}" if callback.isidentifier() else "…"
 
 
 def _group_name(callback: str) -> str:

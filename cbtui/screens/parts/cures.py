@@ -7,7 +7,7 @@ from itertools import chain, takewhile
 from threading import Event
 
 from cbtui.engines.follow import GivenUpError
-from cbtui.runs.judged.cures import Cure, TriedRun, cures_of, helps, problem_of, try_run, with_inputs
+from cbtui.runs.judged.cures import Cure, TriedRun, cures_of, helps, problem_of, text_of, try_run, with_inputs
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changeable import changeable
@@ -71,8 +71,9 @@ class CureTrial:
             return ()
         setup, timeline = self.run.setup, self.run.timeline
         about = changeable(self.trials.subject, setup, timeline)
+        source = text_of(self.trials.subject.node_path)
         return tuple(
-            replace(each, code=tuple(code_of_cure(each.changes.without(self.changes), about)))
+            replace(each, code=tuple(code_of_cure(each.changes.without(self.changes), about, source)))
             for each in cures_of(found.explanation, self.changes, timeline)
         )
 

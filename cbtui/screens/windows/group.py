@@ -57,5 +57,5 @@ class GroupScreen(ChoiceScreen[str]):
         if choice == UNCHANGED:
             code = ["# as it is written"]
         else:
-            code = code_of_group(self._callback.name, self._callback.kind, choice)
+            code = code_of_group(self._callback.name, self._callback.kind, self._callback.maker, choice)
         self.query_one(".code", Static).update(Content("\n".join(code)))

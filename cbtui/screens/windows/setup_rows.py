@@ -168,7 +168,7 @@ def _period_row(callback: ChangeableCallback) -> ValueRow[float]:
         PERIOD.shown(callback.period / SECOND),
         chosen,
         changed,
-        lambda seconds: code_of_period(callback.name, nearest_ns(seconds)),
+        lambda seconds: code_of_period(callback.name, nearest_ns(seconds), callback.maker),
     )
 
 
