@@ -36,16 +36,6 @@ def own_frame(frame: FrameType | None) -> FrameType | None:
     return next(filter(is_own, outwards(frame)), None)
 
 
-def awaiting_frames(coroutine: object) -> tuple[tuple[str, str, int], ...]:
-    """The learner's own lines at which a suspended coroutine awaits, each behind its file and function."""
-    found = []
-    while (frame := getattr(coroutine, "cr_frame", None)) is not None:
-        if is_own(frame):
-            found.append((frame.f_code.co_filename, frame.f_code.co_name, frame.f_lineno))
-        coroutine = getattr(coroutine, "cr_await", None)
-    return tuple(found)
-
-
 def place_of(frame: FrameType | None) -> str:
     """The line of the innermost frame of the learner's own, as ``node.py:12, in tick``; "" for none."""
     own = own_frame(frame)

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from sim.interpreter.exception_text import error_line
 from sim.interpreter.function_marks import sends_responses
 from sim.probes.on_path.cbtui_probe.naming import callback_name, written_at
-from sim.probes.own_code import awaiting_frames, call_into_ros, has_timeout, place_of_caller, raised_at
+from sim.probes.on_path.cbtui_probe.own_lines import awaiting_frames
+from sim.probes.own_code import call_into_ros, has_timeout, is_own, place_of_caller, raised_at
 from sim.probes.traced import MessageContents, TracedEntity
 from sim.trace import events
 from sim.trace.events import (
@@ -233,7 +234,7 @@ class Probe:
         """Record that a callback is suspended where its coroutine awaits, and leaves the calling thread."""
         self._here.entity = outer
         if entity.traced:
-            frames = awaiting_frames(coroutine)
+            frames = awaiting_frames(coroutine, is_own)
             self._sink(events.CallbackSuspended(self._now(), entity.trace_id, self.thread(), frames))
 
     def callback_resumed(self, entity: TracedEntity) -> int:

@@ -247,7 +247,11 @@ class Program:
 def ended_by(uncaught: Uncaught, name: str, advice: str = "") -> Cause:
     """The end by an exception of the program that people know as ``name``."""
     failure = Failure(
-        uncaught.file, uncaught.line, f"{name} raised {uncaught.error}", advice, uncaught.exception
+        uncaught.file,
+        uncaught.line,
+        f"{name} raised {uncaught.error}",
+        uncaught.advice or advice,
+        uncaught.exception,
     )
     return Cause(failure.sentence, True, uncaught.error, failure)
 

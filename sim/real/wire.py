@@ -122,10 +122,12 @@ class Uncaught(msgspec.Struct, frozen=True, array_like=True, tag="uncaught"):
     error: str
     """Its class and text."""
     file: str
-    """Innermost file of the program's own code."""
+    """Innermost file of the program's own code, or that of what made rclpy raise it."""
     line: int
     exception: str = ""
     """Its class."""
+    advice: str = ""
+    """What to do about it; "" if the probe does not know."""
 
 
 class Left(msgspec.Struct, frozen=True, array_like=True, tag="left"):

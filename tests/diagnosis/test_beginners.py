@@ -42,6 +42,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "future.add_done_callback(lambda:",
             "write lambda future: …",
         ),
+        ("hides_a_name", "program-raised", "def handle(self, message):", "hides Node.handle"),
         ("wait_for_service", "service-never-comes", "self.client.wait_for_service()", "start the node"),
         ("wait_in_service", "service-never-comes", "self.client.wait_for_service(", "start the node"),
         ("lock_across_callbacks", "self-made-deadlock", "with self.", "in the same order"),

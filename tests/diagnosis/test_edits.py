@@ -7,7 +7,7 @@ import pytest
 from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.diagnosis.edits.functions import fit_parameters, hand_over_function, return_response
 from sim.diagnosis.edits.groups import give_own_group
-from sim.diagnosis.edits.names import rename
+from sim.diagnosis.edits.names import rename, rename_definition
 from sim.diagnosis.edits.polling import leave_out
 from sim.diagnosis.edits.profiles import match_quality
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
@@ -302,3 +302,26 @@ def test_an_end_of_a_topic_gets_the_profile_that_fits(
     text = node(f"def __init__(self):\n    {made}", QOS)
     lines = changed(text, match_quality, policy)
     assert (None if lines is None else [each for each in lines if each[0] == "+"]) == brought
+
+
+def test_what_hides_a_name_of_a_node_gets_another_one_wherever_it_is_used() -> None:
+    text = node(
+        """
+        def __init__(self):
+            self.create_timer(1.0, self.handle)
+
+        def handle(self):  # here
+            self.door.handle()
+        """
+    )
+    assert changed(text, rename_definition) == [
+        "-        self.create_timer(1.0, self.handle)",
+        "+        self.create_timer(1.0, self.my_handle)",
+        "-    def handle(self):  # here",
+        "+    def my_handle(self):  # here",
+    ]
+    assert changed(node("handle = None  # here"), rename_definition) == [
+        "-    handle = None  # here",
+        "+    my_handle = None  # here",
+    ]
+    assert changed("def handle():  # here\n    pass\n", rename_definition) is None

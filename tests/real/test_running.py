@@ -2,10 +2,12 @@
 
 from pathlib import Path
 
+import msgspec
 import pytest
 
 from sim.diagnosis import diagnose
 from sim.diagnosis.rule import CodeLocation
+from sim.engine.setup import RealRos
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import (
     CallbackFailed,
@@ -25,8 +27,10 @@ from sim.trace.events import (
 )
 from tests.real import programs
 from tests.real.programs import entity_named, needs_ros, whole
-from tests.support.engine_runs import Run
+from tests.support.engine_runs import Run, program_setup, run_to_end
 
+BEGINNERS = Path(__file__).parents[1] / "diagnosis" / "beginners"
+OF = ("", "_of_timer", "_of_service", "_of_done_callback")
 pytestmark = [needs_ros, pytest.mark.slow]
 
 
@@ -174,6 +178,26 @@ def test_an_exception_ends_the_program_and_is_placed(tmp_path: Path) -> None:
         "the program raised ValueError: no more",
         CodeLocation(failed.file, failed.line, failed.line),
     )
+
+
+@pytest.mark.parametrize("program", ["hides_a_name", *(f"wrong_arity{of}" for of in OF)])
+def test_what_makes_rclpy_raise_is_told_at_its_definition_as_on_the_model(program: str) -> None:
+    setup = program_setup(BEGINNERS / f"{program}.py", 3.0)
+    real, model = (
+        run_to_end(each).ending
+        for each in (msgspec.structs.replace(setup, clock="real", real=RealRos()), setup)
+    )
+    assert real.place[1] > 0
+    assert (real.place, real.advice) == (model.place, model.advice)
+
+
+def test_a_wait_for_a_reply_by_await_is_told_at_its_line(tmp_path: Path) -> None:
+    body = programs.AWAITS.replace("ReentrantCallbackGroup()", "MutuallyExclusiveCallbackGroup()")
+    timeline = programs.run(tmp_path, body, "SingleThreadedExecutor()", seconds=2.3).timeline
+    [found] = [each for each in diagnose(timeline) if each.rule.id == "self-made-deadlock"]
+    place = found.rule.explain(found, timeline).place
+    assert place is not None
+    assert "await" in Path(place.file).read_text().splitlines()[place.first_line - 1]
 
 
 def test_a_goal_of_an_action_is_seen_at_work_as_on_the_model(tmp_path: Path) -> None:

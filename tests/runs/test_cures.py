@@ -88,6 +88,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("wrong_arity", [FIT]),
         ("wrong_arity_of_timer", [FIT]),
         ("wrong_arity_of_done_callback", [FIT]),
+        ("hides_a_name", ["give it another name (diff)"]),
         ("wait_for_service", [LATER]),
         ("wait_in_service", ["return the response from grip at once if the service is not there (diff)"]),
         (

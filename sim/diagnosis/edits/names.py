@@ -1,8 +1,8 @@
-"""Edits of the names of topics and services."""
+"""Edits of names: of topics and services, and of what a class defines."""
 
 import ast
 
-from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
+from sim.diagnosis.edits.source_editor import Function, NotSimpleError, SourceEditor
 
 
 def rename(source: SourceEditor, line: int, name: str, new: str) -> None:
@@ -21,3 +21,33 @@ def rename(source: SourceEditor, line: int, name: str, new: str) -> None:
     quote = source.code_of(texts[0])[-1]
     is_relative = texts[0].value != name and name.rpartition("/")[0] == new.rpartition("/")[0]
     source.replace(texts[0], f"{quote}{new.rpartition('/')[2] if is_relative else new}{quote}")
+
+
+def rename_definition(source: SourceEditor, line: int) -> None:
+    """Begin the name of a method or class attribute that a line defines with ``my_``, and all its uses."""
+    names = [
+        each.targets[0] if isinstance(each, ast.Assign) else _name_of(each)
+        for owner in source.nodes(ast.ClassDef)
+        for each in owner.body
+        if each.lineno == line and isinstance(each, ast.Assign | ast.FunctionDef | ast.AsyncFunctionDef)
+    ]
+    if len(names) != 1 or not isinstance(names[0], ast.Name):
+        raise NotSimpleError
+    source.insert_before(names[0], "my_")
+    for used in source.nodes(ast.Attribute):
+        if used.attr == names[0].id and ast.unparse(used.value) == "self":
+            source.replace(used, f"self.my_{used.attr}")
+
+
+def _name_of(function: Function) -> ast.Name:
+    """Return the name in the line that defines a function, as a node of its own."""
+    begin = "def " if isinstance(function, ast.FunctionDef) else "async def "
+    start = function.col_offset + len(begin)
+    end = start + len(function.name.encode())
+    return ast.Name(
+        function.name,
+        lineno=function.lineno,
+        col_offset=start,
+        end_lineno=function.lineno,
+        end_col_offset=end,
+    )

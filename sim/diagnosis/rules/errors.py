@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator
 
 from sim.diagnosis.edits.functions import fit_parameters, hand_over_function
+from sim.diagnosis.edits.names import rename_definition
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, line_location, made_at, place_of
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of
 from sim.diagnosis.words import often, who
@@ -46,7 +47,10 @@ class ProgramRaised(Rule):
         for pattern, its_why, its_cure in _KNOWN:
             if known := pattern.fullmatch(ended.error or ""):
                 why, cure = known.expand(its_why), known.expand(its_cure)
-        remedies = by_edit(place, "define it with the parameters it is called with", fit_parameters)
+        remedies = (
+            *by_edit(place, "define it with the parameters it is called with", fit_parameters),
+            *by_edit(place, "give it another name", rename_definition),
+        )
         if (entity := _called_too_soon(ended, timeline)) is not None:
             why = f"this {entity.kind.value} was made with what a call returned, in place of a function"
             cure = "hand over the function itself, without calling it: self.tick, not self.tick()"

@@ -2,19 +2,14 @@
 
 import ast
 import builtins
-import inspect
 import sys
 from collections.abc import Iterable
-from dataclasses import dataclass
 from difflib import get_close_matches
-from traceback import walk_tb
 from types import FrameType, ModuleType
 
 from sim.engine.failures.missing_names import on_missing_name, on_newer
-from sim.probes.own_code import is_own
 from sim.ros.exceptions import NotInitializedException
 from sim.ros.middleware.process import current_process
-from sim.trace.events import EntityKind
 
 
 def advice_on(error: BaseException, frame: FrameType | None) -> str:
@@ -42,55 +37,6 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
         case _:
             advice = ""
     return advice
-
-
-@dataclass(frozen=True, slots=True)
-class RejectedCallback:
-    """A callback with other parameters than rclpy passes: where it is written, and what to do."""
-
-    file: str
-    line: int
-    advice: str
-
-
-def rejected_callback(error: BaseException) -> RejectedCallback | None:
-    """Return the callback whose wrong parameters made rclpy raise an exception; None for another cause."""
-    frames = [frame for frame, _ in walk_tb(error.__traceback__)]
-    if not frames or not isinstance(error, TypeError | RuntimeError) or is_own(frames[-1]):
-        return None
-    inside = frames[-1].f_locals
-    caller = inside.get("self")
-    kind = getattr(caller, "kind", EntityKind.SUBSCRIPTION)
-    callback = inside.get("callback", getattr(caller, "callback", None))
-    if callback is None and _calls_with_future(caller):
-        callback, kind = getattr(caller, "_handler", None), EntityKind.CLIENT
-    code = getattr(callback, "__code__", None)
-    if code is None or not any(each in str(error) for each in ("positional argument", "callback should")):
-        return None
-    taken = ", ".join([*(["self"] if inspect.ismethod(callback) else []), *_PARAMETERS[kind]])
-    written = (
-        f"lambda {taken}: …".replace(" :", ":")
-        if code.co_name == "<lambda>"
-        else f"def {code.co_name}({taken})"
-    )
-    return RejectedCallback(
-        code.co_filename, code.co_firstlineno, f"rclpy calls it with other arguments; write {written}"
-    )
-
-
-def _calls_with_future(task: object) -> bool:
-    """Return whether a task of an executor, the model's or rclpy's, runs a done-callback of a future."""
-    return any(hasattr(each, "add_done_callback") for each in getattr(task, "_args", None) or ())
-
-
-_PARAMETERS = {
-    EntityKind.TIMER: [],
-    EntityKind.GUARD: [],
-    EntityKind.SUBSCRIPTION: ["message"],
-    EntityKind.SERVICE: ["request", "response"],
-    EntityKind.CLIENT: ["future"],
-    EntityKind.WAITABLE: [],
-}
 
 
 def _on_unready_node(attribute: str, obj: object) -> str:

@@ -5,9 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
-from sim.engine.failures.advice import advice_on, rejected_callback
+from sim.engine.failures.advice import advice_on
 from sim.engine.failures.missing_names import names_for_programs
 from sim.interpreter.exception_text import error_text
+from sim.probes.on_path.cbtui_probe.own_lines import culprit_of
+from sim.probes.own_code import is_own
 
 _MODEL = Path(__file__).parents[2]
 
@@ -41,9 +43,10 @@ def failure(error: BaseException, path: str, folder: str) -> Failure:
     if isinstance(error, SyntaxError) and error.filename and _is_own(error.filename, path, folder):
         return Failure(error.filename, error.lineno or 0, str(error.msg), exception=exception)
     what = f"the program raised {exception}{f': {text}' if text else ''}"
-    rejected = rejected_callback(error)
-    if rejected is not None and _is_own(rejected.file, path, folder):
-        return Failure(rejected.file, rejected.line, what, rejected.advice, exception)
+    culprit = culprit_of(error, is_own)
+    if culprit is not None and _is_own(culprit[0], path, folder):
+        file, line, advice = culprit
+        return Failure(file, line, what, advice, exception)
     found = _innermost(error, path, folder)
     if found is None:
         return Failure(path, 0, what, advice_on(error, None), exception)

@@ -139,6 +139,16 @@ FILES = {
         f"node.py:9: {RAISED} AttributeError: 'A' object has no attribute '_node_entities'; "
         "A.__init__ has to call super().__init__('name of the node') first",
     ),
+    "a method that hides one of Node's": Bad(
+        HEAD + "rclpy.init()\nclass A(Node):\n    def handle(self):\n        pass\nA('a')\n",
+        f"node.py:9: {RAISED} TypeError: 'method' object does not support the context manager protocol; "
+        "A.handle hides Node.handle, which rclpy itself uses; give it another name, such as my_handle",
+    ),
+    "an attribute that hides one of Node's": Bad(
+        HEAD + "rclpy.init()\nclass A(Node):\n    rate = 5\n    handle = None\nA('a')\n",
+        f"node.py:10: {RAISED} TypeError: 'NoneType' object does not support the context manager protocol; "
+        "A.handle hides Node.handle",
+    ),
     "raises in a callback": Bad(
         NODE + "def tick():\n    1 / 0\nnode.create_timer(1.0, tick)\nrclpy.spin(node)",
         f"node.py:10: {RAISED} ZeroDivisionError: division by zero",

@@ -8,6 +8,7 @@ import sys
 import time
 from typing import TYPE_CHECKING, Any
 
+from .own_lines import awaiting_frames
 from .recorder import now
 from .unseen import leave_out_probe
 
@@ -155,9 +156,10 @@ class Calls:
         age = max(0, time.time_ns() - sent)
         self._recorder.put("taken", now(), self._entity.number, here.thread, sent, age)
 
-    def suspend(self, outer: int) -> None:
-        """Record that the callback is suspended; ``outer`` runs on the calling thread again."""
-        self._leave(self._recorder.here, outer, "callback_suspend")
+    def suspend(self, outer: int, coroutine: Any) -> None:
+        """Record where the callback is suspended; ``outer`` runs on the calling thread again."""
+        frames = awaiting_frames(coroutine, is_own)
+        self._leave(self._recorder.here, outer, "callback_suspend", frames)
 
     def resume(self) -> int:
         """Record that the callback is resumed; returns the entity that ran on the thread before."""
@@ -177,11 +179,11 @@ class Calls:
             here.spinner.busy[thread] = entity.number
         return outer
 
-    def _leave(self, here: Here, outer: int, tag: str = "callback_end") -> None:
+    def _leave(self, here: Here, outer: int, tag: str = "callback_end", *more: Any) -> None:
         here.entity = outer
         if outer == 0 and here.spinner is not None:
             here.spinner.busy.pop(here.thread, None)
-        self._recorder.put(tag, now(), self._entity.number, here.thread)
+        self._recorder.put(tag, now(), self._entity.number, here.thread, *more)
 
     def _fail(self, error: BaseException) -> None:
         """Record an exception of the callback, which is raised again."""
@@ -226,7 +228,7 @@ class _Steps:
                     return stop.value
                 if not suspended:
                     suspended = True
-                    self._calls.suspend(self.outer)
+                    self._calls.suspend(self.outer, coroutine)
                 yield wanted
         finally:
             coroutine.close()

@@ -5,10 +5,11 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from .callbacks import raised_at
+from .callbacks import is_own, raised_at
 from .clients import watch_clients, watch_services
 from .entities import Entities
 from .executors import Executors
+from .own_lines import culprit_of
 from .positions import PositionSampler
 from .recorder import Recorder, now
 from .sockets import Server
@@ -31,6 +32,7 @@ def install(folder: str) -> None:
     import rclpy.node
     import rclpy.publisher
     import rclpy.service
+    import rclpy.task
     import rclpy.timer
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
@@ -53,6 +55,7 @@ def install(folder: str) -> None:
     watch_clients(recorder, rclpy.client.Client)
     watch_services(recorder, rclpy.service.Service, rclpy_implementation)
     _watch_log(recorder, rclpy_implementation)
+    _watch_tasks(rclpy.task.Task)
     _watch_end(recorder)
 
 
@@ -67,13 +70,28 @@ def _watch_log(recorder: Recorder, rclpy_implementation: Any) -> None:
     rclpy_implementation.rclpy_logging_rcutils_log = write_known
 
 
+def _watch_tasks(task_class: Any) -> None:
+    """Let a task that raised keep its function: no frame shows one that was not even entered."""
+    complete = task_class._complete_task
+
+    def complete_and_keep(task: Any) -> None:
+        ran = task._handler, task._args
+        complete(task)
+        if task._exception is not None:
+            task._handler, task._args = ran
+
+    task_class._complete_task = complete_and_keep
+
+
 def _watch_end(recorder: Recorder) -> None:
     report = sys.excepthook
 
     def report_known(kind: Any, error: Any, _trace: Any) -> None:
-        if not issubclass(kind, KeyboardInterrupt):
-            recorder.put("uncaught", now(), *raised_at(error), type(error).__name__)
         leave_out_probe(error)
+        if not issubclass(kind, KeyboardInterrupt):
+            text, *place = raised_at(error)
+            *place, advice = culprit_of(error, is_own) or (*place, "")
+            recorder.put("uncaught", now(), text, *place, type(error).__name__, advice)
         report(kind, error, error.__traceback__)
 
     sys.excepthook = report_known

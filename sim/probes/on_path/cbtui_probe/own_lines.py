@@ -1,0 +1,114 @@
+"""Finds lines of the program's own that neither a stack nor a traceback shows."""
+
+from __future__ import annotations
+
+import inspect
+import linecache
+import re
+from contextlib import suppress
+from itertools import takewhile
+from traceback import walk_tb
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from types import FrameType
+
+    IsOwn = Callable[[FrameType], bool]
+    """Whether a frame runs the program's own code."""
+
+_PARAMETERS = {"subscription": ["message"], "service": ["request", "response"], "client": ["future"]}
+_KINDS = {0: "timer", 2: "service"}
+"""The kinds of callbacks by the number of their arguments; rclpy's frames show no other sign of them."""
+
+
+def awaiting_frames(coroutine: Any, is_own: IsOwn) -> tuple[tuple[str, str, int], ...]:
+    """The own lines at which a suspended coroutine awaits, each behind its file and function."""
+    found = []
+    while (frame := getattr(coroutine, "cr_frame", None)) is not None:
+        if is_own(frame):
+            found.append((frame.f_code.co_filename, frame.f_code.co_name, frame.f_lineno))
+        coroutine = getattr(coroutine, "cr_await", None)
+    return tuple(found)
+
+
+def culprit_of(error: BaseException, is_own: IsOwn) -> tuple[str, int, str] | None:
+    """File and line of the definition that made rclpy raise an exception, and advice; None for another cause.
+
+    That is a callback with wrong parameters, or what hides a name of ``Node`` that rclpy uses.
+    """
+    frames = list(walk_tb(error.__traceback__))
+    if not frames or is_own(frames[-1][0]):
+        return None
+    return _rejected_callback(error, frames[-1][0]) or _hiding(error, frames, is_own)
+
+
+def _rejected_callback(error: BaseException, frame: FrameType) -> tuple[str, int, str] | None:
+    is_typical = isinstance(error, TypeError | RuntimeError)
+    if not is_typical or not any(each in str(error) for each in ("positional argument", "callback should")):
+        return None
+    inside = frame.f_locals
+    caller = inside.get("self")
+    callback: Any = inside.get("callback", getattr(caller, "callback", None))
+    given = inside.get("args")
+    number = len(given) if isinstance(given, tuple) else 1
+    kind = getattr(caller, "kind", _KINDS.get(number, "subscription"))
+    if callback is None and _calls_with_future(caller):
+        callback, kind = getattr(caller, "_handler", None), "client"
+    callback = inspect.unwrap(callback)
+    code = getattr(callback, "__code__", None)
+    if code is None:
+        return None
+    taken = [*(["self"] if inspect.ismethod(callback) else []), *_PARAMETERS.get(kind, [])]
+    written = (
+        f"lambda {', '.join(taken)}: …".replace(" :", ":")
+        if code.co_name == "<lambda>"
+        else f"def {code.co_name}({', '.join(taken)})"
+    )
+    return (
+        code.co_filename,
+        code.co_firstlineno,
+        f"rclpy calls it with other arguments; write {written}",
+    )
+
+
+def _calls_with_future(task: object) -> bool:
+    """Whether a task of an executor, the model's or rclpy's, runs a done-callback of a future."""
+    return any(hasattr(each, "add_done_callback") for each in getattr(task, "_args", None) or ())
+
+
+def _hiding(
+    error: BaseException, frames: list[tuple[FrameType, int]], is_own: IsOwn
+) -> tuple[str, int, str] | None:
+    if not isinstance(error, TypeError | AttributeError):
+        return None
+    for frame, line in takewhile(lambda each: not is_own(each[0]), reversed(frames)):
+        used = re.findall(r"\.(\w+)", linecache.getline(frame.f_code.co_filename, line))
+        for node in frame.f_locals.values():
+            classes = type(node).__mro__
+            base = next((each for each in classes if (each.__module__, each.__name__) == _NODE), None)
+            for owner in classes[: classes.index(base)] if base else ():
+                for name in filter(vars(owner).__contains__, used):
+                    file, number = _written_at(owner, name)
+                    if hasattr(base, name) and file:
+                        return file, number, _HIDES.format(f"{owner.__name__}.{name}", name)
+    return None
+
+
+_NODE = ("rclpy.node", "Node")
+_HIDES = "{0} hides Node.{1}, which rclpy itself uses; give it another name, such as my_{1}"
+
+
+def _written_at(owner: type, name: str) -> tuple[str, int]:
+    """File and line of an attribute of a class; "" if they are not known."""
+    value = vars(owner)[name]
+    code = getattr(getattr(value, "fget", value), "__code__", None)
+    if code is not None:
+        return code.co_filename, code.co_firstlineno
+    with suppress(OSError, TypeError):
+        lines, first = inspect.getsourcelines(owner)
+        file = inspect.getsourcefile(owner) or ""
+        for number, line in enumerate(lines, first):
+            if re.match(rf"\s+{name}\s*[:=]", line):
+                return file, number
+    return "", 0
