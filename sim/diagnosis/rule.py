@@ -1,7 +1,7 @@
 """The interface of a rule, its findings and their explanations."""
 
 from abc import ABC, abstractmethod
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum, StrEnum
@@ -169,15 +169,33 @@ def loop_beside_spin(at: Nanoseconds, timeline: Timeline) -> CodeLocation | None
 
 
 def line_of(entity: EntityId, window: Window, timeline: Timeline) -> CodeLocation | None:
-    """Return the line at which a callback was longest in a window; all of its lines if that is unknown."""
-    lasted: Counter[tuple[str, int]] = Counter()
+    """Return the line at which a callback was longest in a window; all of its lines if that is unknown.
+
+    That is a line of its own, or of a function that it calls if most of the time there went by at one line.
+    Of lines that took about as long it is the first, so that chance does not decide. Where calls run at once
+    on several threads, the longest counts.
+    """
+    on_threads: defaultdict[ThreadId, Counter[tuple[tuple[str, int], ...]]] = defaultdict(Counter)
     for each in timeline.positions_of(entity, window):
         end = each.end_at(timeline.end)
-        lasted[each.file, each.line] += min(end, window.end) - max(each.start, window.start) + 1
-    if not lasted:
-        return place_of(entity, timeline)
-    ((file, line), _) = lasted.most_common(1)[0]
-    return CodeLocation(file, line, line)
+        path = tuple((frame.file, frame.line) for frame in each.frames)
+        on_threads[each.thread][path] += min(end, window.end) - max(each.start, window.start) + 1
+    lasted = max(on_threads.values(), key=Counter.total, default=Counter())
+    found: tuple[str, int] | None = None
+    while lasted:
+        lines: Counter[tuple[str, int]] = Counter()
+        for path, length in lasted.items():
+            lines.update({path[0]: length} if path else {})
+        longest = max(lines.values(), default=0)
+        if found is not None and 2 * longest <= lasted.total():
+            break
+        found = min(line for line, length in lines.items() if length >= _ABOUT * longest)
+        lasted = Counter({path[1:]: length for path, length in lasted.items() if path[:1] == (found,)})
+    return place_of(entity, timeline) if found is None else CodeLocation(*found, found[1])
+
+
+_ABOUT = 0.75
+"""The share of the longest time at a line that counts as equally long."""
 
 
 def by_edit(

@@ -1,7 +1,10 @@
 """Callbacks that overlap themselves, overrun their period, or sleep among sensors."""
 
+from pathlib import Path
+
 import pytest
 
+from sim.diagnosis import diagnose
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
@@ -10,6 +13,7 @@ from sim.ros.scheduling.callback_groups import (
 )
 from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, once, spin
 from tests.support.builder import ns
+from tests.support.engine_runs import program_setup, run_to_end
 from tests.support.simulation import Simulation
 
 
@@ -115,3 +119,46 @@ def test_a_sleep_in_a_group_of_its_own_is_well() -> None:
 
 def test_a_short_sleep_among_sensors_is_well() -> None:
     assert sleeper_and_sensor(same_group=True, length=0.4).problems() == set()
+
+
+CALLS_TICK = """
+import time
+import rclpy
+from rclpy.node import Node
+
+class Worker(Node):
+    def __init__(self):
+        super().__init__("worker")
+        self.create_timer(0.2, self.on_timer)
+
+    def on_timer(self):
+        self.tick()
+
+    def tick(self):
+        time.sleep({0})
+        time.sleep({1})
+        time.sleep({2})
+
+rclpy.init()
+rclpy.spin(Worker())
+"""
+
+
+@pytest.mark.parametrize(
+    ("sleeps", "line"),
+    [
+        ((0.1, 0.09, 0.11), "self.tick()"),
+        ((0.1, 0.11, 0.1), "self.tick()"),
+        ((0.05, 0.3, 0.05), "sleep(0.3)"),
+    ],
+)
+def test_a_long_call_is_told_at_the_line_that_took_most_of_it_or_that_led_to_such_lines(
+    tmp_path: Path, sleeps: tuple[float, ...], line: str
+) -> None:
+    path = tmp_path / "worker.py"
+    path.write_text(CALLS_TICK.format(*sleeps))
+    timeline = run_to_end(program_setup(path, 3.0)).timeline
+    [found] = [each for each in diagnose(timeline) if each.rule.id == "overrun-timer"]
+    place = found.rule.explain(found, timeline).place
+    assert place is not None
+    assert line in path.read_text().splitlines()[place.first_line - 1]
