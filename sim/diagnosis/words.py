@@ -20,6 +20,17 @@ def who(entity: EntityId, timeline: Timeline) -> str:
     return name_of(entity, timeline)
 
 
+def must_answer(entity: EntityId, timeline: Timeline) -> bool:
+    """Return whether a callback has to return something, as a service's does: it cannot go on later."""
+    known = timeline.entities.get(entity)
+    return known is not None and known.kind in (EntityKind.SERVICE, EntityKind.WAITABLE)
+
+
+def awaiting(subject: str) -> str:
+    """The cure of a callback that waits for a future, as a coroutine."""
+    return f"await the future in an async def {subject} with a callback group of its own"
+
+
 def group_of(entity: EntityId, timeline: Timeline) -> str:
     """The group of an entity: ``group A``."""
     known = timeline.entities.get(entity)

@@ -17,6 +17,13 @@ PROGRAMS = Path(__file__).parent / "beginners"
     ("program", "rule", "culprit", "cure"),
     [
         ("nested_spin", "nested-spin", "rclpy.spin_until_future_complete(self, future)", "add_done_callback"),
+        ("spin_in_service", "nested-spin", "spin_until_future_complete(", "await the future in an async def"),
+        (
+            "call_in_service",
+            "self-made-deadlock",
+            "self.adder.call(",
+            "await the future in an async def cook",
+        ),
         ("spin_once", "nested-spin", "rclpy.spin_once(self)", "leave spin_once() out"),
         ("wait_for_event", "endless-wait", "self.opened.wait()", "give go a callback group of its own"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
@@ -99,3 +106,11 @@ def test_a_callback_that_sleeps_by_a_rate_alone_in_its_group_needs_only_a_thread
     told = found.rule.explain(found, timeline)
     assert told.cure.endswith("; or keep it, and spin with MultiThreadedExecutor(num_threads=2)")
     assert told.remedies[-1].own_groups == ()
+
+
+@pytest.mark.parametrize("program", ["spin_in_service", "call_in_service"])
+def test_a_service_is_not_told_to_go_on_after_it_has_returned(program: str) -> None:
+    timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 2.0)).timeline
+    told = [each.rule.explain(each, timeline) for each in diagnose(timeline)]
+    assert told
+    assert "done_callback" not in "".join(each.cure for each in told)

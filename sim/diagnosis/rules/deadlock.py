@@ -18,7 +18,7 @@ from sim.diagnosis.rule import (
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_rounds, edits_for_steps
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES, StuckCallback, WaitForGraph, stands
-from sim.diagnosis.words import often, threads_for, until_when, who, with_threads
+from sim.diagnosis.words import awaiting, must_answer, often, threads_for, until_when, who, with_threads
 from sim.trace.events import EntityId, EntityKind, Reason
 from sim.trace.model import AWAIT, Blocked, Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -60,15 +60,19 @@ class SelfMadeDeadlock(Rule):
             cure = f"return, and let a timer of the node's clock do what comes later; or {apart}"
         stands = timeline.positions_of(found.subject, Window(found.at, found.until + 1))
         awaits = bool(stands) and stands[-1].call == AWAIT
+        answers = must_answer(found.subject, timeline)
         if awaits:
-            cure = f"return from {subject} and go on in future.add_done_callback(), or {apart}"
+            later = f"return from {subject} and go on in future.add_done_callback(), or "
+            cure = apart if answers else later + apart
+        if not cure and answers:
+            cure = f"after call_async() {awaiting(subject)}; to wait inside it, {apart}"
         if not cure:
             if not stands or stands[-1].call in ("", "Client.call"):
                 cure = f"use call_async() and return from {subject}, or {apart}"
             else:
                 cure = (
-                    f"return from {subject} and go on in future.add_done_callback(), or await the future in "
-                    f"an async def {subject} with a callback group of its own; to wait inside it, {apart}"
+                    f"return from {subject} and go on in future.add_done_callback(), or {awaiting(subject)}; "
+                    f"to wait inside it, {apart}"
                 )
         threads = 0
         if (
@@ -120,7 +124,10 @@ class NeedsOneMoreWorker(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         why = f"{found.size} callbacks in call() at once need at least {found.size + 1} threads"
-        cure = f"spin with {with_threads(found.size + 1)}, or use call_async()"
+        other = "use call_async()"
+        if must_answer(found.subject, timeline):
+            other = f"after call_async() {awaiting(who(found.subject, timeline))}"
+        cure = f"spin with {with_threads(found.size + 1)}, or {other}"
         place = _line_of(found.subject, found, timeline)
         edits = edits_for_reply(place, found.subject, timeline)
         return _explanation(found, why, cure, (Remedy(threads=found.size + 1), *edits), timeline)

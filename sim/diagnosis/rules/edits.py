@@ -4,7 +4,7 @@ from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.polling import go_on_where_set, leave_out, look_again, one_round_a_call, step_by_step
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
 from sim.diagnosis.rule import CodeLocation, by_edit, made_at
-from sim.diagnosis.words import who
+from sim.diagnosis.words import must_answer, who
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.timeline import Timeline
 
@@ -12,7 +12,9 @@ from sim.trace.timeline import Timeline
 def edits_for_reply(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
     """Return edits of a callback that waits for a reply at a place."""
     subject, made = who(entity, timeline), made_at(timeline.entities[entity])
-    later = by_edit(place, "go on in a done-callback of the future", go_on_in_done_callback)
+    later: tuple[Remedy, ...] = ()
+    if not must_answer(entity, timeline):
+        later = by_edit(place, "go on in a done-callback of the future", go_on_in_done_callback)
     if place is None or made is None or made.file != place.file:
         return later
     words = f"await the reply in an async def {subject}, and give {subject} a callback group of its own"

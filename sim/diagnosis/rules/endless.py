@@ -8,7 +8,7 @@ from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, line_location
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_waiting
 from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import listed, often, who
+from sim.diagnosis.words import listed, must_answer, often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import doing_of
@@ -26,6 +26,9 @@ _LEAVE = (
     "keep the state in self and return: {0} is called again; or do one step of the loop at each call of a "
     "timer"
 )
+
+
+_LEAVE_WITH_RESPONSE = "return the response from {0}, and do one step of the loop at each call of a timer"
 
 
 class EndlessWait(Rule):
@@ -154,7 +157,7 @@ class StillComputing(Rule):
         return Explanation(
             f"{subject} computes{where} and {how_long}",
             _KEPT.format(subject),
-            _LEAVE.format(subject),
+            _leaving(found.subject, timeline),
             place,
             for_ever=found.until >= timeline.end,
             remedies=(
@@ -202,7 +205,7 @@ class StaysInLoop(Rule):
         return Explanation(
             f"{subject} has been in the loop of line {at.loop[1]} for {duration(found.lasted)}{only}",
             _KEPT.format(subject),
-            _LEAVE.format(subject),
+            _leaving(found.subject, timeline),
             loop,
             remedies=(*((room,) if kept else ()), *edits_for_waiting(loop, found.subject, timeline)),
         )
@@ -238,6 +241,11 @@ def _kept_waiting(found: Finding, timeline: Timeline) -> list[EntityId]:
 def _computes(notice: Notice, view: TimelineView) -> bool:
     at = view.timeline.positions_of(notice.entity, Window(notice.t, notice.t + 1))
     return all(each.doing is not Doing.WAITS for each in at)
+
+
+def _leaving(entity: EntityId, timeline: Timeline) -> str:
+    text = _LEAVE_WITH_RESPONSE if must_answer(entity, timeline) else _LEAVE
+    return text.format(who(entity, timeline))
 
 
 def _moment(found: Finding) -> Window:

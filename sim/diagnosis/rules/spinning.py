@@ -8,7 +8,7 @@ from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES
-from sim.diagnosis.words import group_of, listed, often, threads_for, who, with_threads
+from sim.diagnosis.words import awaiting, group_of, listed, must_answer, often, threads_for, who, with_threads
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import Doing, EntityKind, GroupKind, SpinClashed
 from sim.trace.model import Nanoseconds, Position, Window
@@ -180,8 +180,13 @@ def _cure(clash: SpinClashed, subject: str, timeline: Timeline) -> str:
     threads = ""
     if threads_for([clash.entity], clash.t, timeline) == 1:
         threads = f", and spin with {with_threads(2)}"
+    if must_answer(clash.entity, timeline):
+        return (
+            f"after call_async() {awaiting(subject)}; to wait inside {subject}, use client.call(), and give "
+            f"{subject} a callback group of its own{threads}"
+        )
     return (
-        f"after call_async() let {subject} return and go on in future.add_done_callback(), or await the "
-        f"future in an async def {subject} with a callback group of its own; to wait inside {subject}, use "
-        f"client.call() of a client with a callback group of its own{threads}"
+        f"after call_async() let {subject} return and go on in future.add_done_callback(), or "
+        f"{awaiting(subject)}; to wait inside {subject}, use client.call() of a client with a callback group "
+        f"of its own{threads}"
     )
