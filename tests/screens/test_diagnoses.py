@@ -36,6 +36,8 @@ from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.rows import MemberLane
 from sim.diagnosis import Diagnoses, Finding
+from sim.diagnosis.cures import Remedy
+from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.engine.commands import Pause
 from sim.recording import RecordingMetadata, read
 from sim.trace.events import AnyEvent
@@ -323,7 +325,7 @@ class Trial:
 
     def helps(
         self, _told: ExplainedFinding, cure: Cure, _given_up: Event, note: Callable[[int], object]
-    ) -> bool:
+    ) -> bool | None:
         self.tried.append(cure)
         note(40)
         return cure is EDIT
@@ -364,6 +366,46 @@ async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.M
         now[0] += 7
         await until(pilot, lambda: "A cure is being tried, for 7 s now: 20 %." in text_of(app))
         await press(pilot, "escape")
+
+
+@pytest.mark.parametrize(
+    ("answer", "told"),
+    [
+        (False, "2 cures tried, none helps here: spin with two threads; let it sleep less."),
+        (
+            None,
+            "Whether a cure helps is not known: the run that was made to try one did not show this problem.",
+        ),
+    ],
+)
+async def test_that_no_cure_helps_is_told_with_what_was_tried(answer: bool | None, told: str) -> None:
+    class InVain(Trial):
+        def helps(
+            self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
+        ) -> bool | None:
+            return answer
+
+    async with console() as (app, pilot):
+        findings = told_of(shared_group_run().until(TURNED))
+        await app.push_screen(DiagnosesScreen(findings, Charset.BRAILLE, InVain()))
+        await app.workers.wait_for_complete()
+        await pilot.pause()
+        assert f"· {told}" in " ".join(line.strip("│ ") for line in text_of(app).splitlines())
+
+
+async def test_where_the_code_is_of_no_simple_shape_it_is_told_that_no_cure_is_offered() -> None:
+    [worst, *_] = told_of(shared_group_run().until(TURNED))
+    explanation = replace(worst.explanation, remedies=(Remedy(edit=CodeEdit("a.py", "", print, ())),))
+
+    class Nothing(Trial):
+        def cures(self, told: ExplainedFinding) -> Sequence[Cure]:
+            return ()
+
+    async with console() as (app, pilot):
+        listed = [replace(worst, explanation=explanation)]
+        await app.push_screen(DiagnosesScreen(listed, Charset.BRAILLE, Nothing()))
+        await pilot.pause()
+        assert "· No cure is offered: only simple code" in text_of(app)
 
 
 @pytest.mark.slow

@@ -1,6 +1,6 @@
 """Tries a cure in the background: runs with and without it, on virtual time at full speed."""
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,6 +18,7 @@ from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import diff
 from sim.engine.setup import RunSetup, TimedInput
 from sim.files.untrusted import MAX_PROGRAM_BYTES, read_text
+from sim.quantities.plural import counted
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -113,6 +114,16 @@ def helps(problem: Problem, before: TriedRun, after: TriedRun) -> bool:
         and problem not in after.problems
         and replace(after, problems=left).badness < before.badness
     )
+
+
+def tried_in_vain(cures: Sequence[Cure], *, is_known: bool) -> str:
+    """Return a sentence on cures of which none helps, or of which that is not known."""
+    if not is_known:
+        return (
+            "Whether a cure helps is not known: the run that was made to try one did not show this problem."
+        )
+    none = "none helps" if len(cures) > 1 else "it does not help"
+    return f"{counted(len(cures), 'cure')} tried, {none} here: {'; '.join(each.words for each in cures)}."
 
 
 def try_run(

@@ -1,7 +1,7 @@
 """A lesson or a file in lines, with the commands of its engine."""
 
 import asyncio
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from threading import Event, Thread
@@ -11,7 +11,7 @@ from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.learning.lesson_page import introduction
 from cbtui.learning.outcome import Observe
 from cbtui.runs.judged.compared_problems import ComparedProblems
-from cbtui.runs.judged.cures import Cure
+from cbtui.runs.judged.cures import Cure, tried_in_vain
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
@@ -231,16 +231,26 @@ class CuresByNumber(ScreenPart):
             self.host.tell(f"It is tried in the background: {cure.words}.")
 
         def try_out() -> None:
-            helpful = next((each for each in offered if trial.helps(found, each, self.given_up)), None)
+            answers: list[bool | None] = []
+            for each in offered:
+                answers.append(trial.helps(found, each, self.given_up))
+                if answers[-1]:
+                    break
             self.host.post(
-                lambda: self._take_verdict(found, helpful) if self.host.runs.number == number else None
+                lambda: (
+                    self._take_verdict(found, offered, answers) if self.host.runs.number == number else None
+                )
             )
 
         Thread(target=try_out, name="cure", daemon=True).start()
 
-    def _take_verdict(self, found: ExplainedFinding, helpful: Cure | None) -> None:
-        if helpful is None:
-            self.host.tell(f"Tried, it does not help: {found.name} stays, or something worse comes.")
+    def _take_verdict(
+        self, found: ExplainedFinding, tried: Sequence[Cure], answers: Sequence[bool | None]
+    ) -> None:
+        """Tell which of the cures helps, the last one that was tried if any, and run again with it."""
+        helpful = tried[len(answers) - 1]
+        if not answers[-1]:
+            self.host.tell(tried_in_vain(tried, is_known=None not in answers))
             return
         self.host.tell(f"Tried, it helps: {helpful.words}. With that there is no {found.name} any more.")
         self.host.tell("To have this in the file, write:" if helpful.code else None)

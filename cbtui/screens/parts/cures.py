@@ -79,21 +79,21 @@ class CureTrial:
 
     def helps(
         self, found: ExplainedFinding, cure: Cure, given_up: Event, note: Note = lambda _: None
-    ) -> bool:
+    ) -> bool | None:
         """Tell whether a cure ends a finding; takes two runs, for further cures of a finding one.
 
-        If the run without a cure does not show the finding in time, no cure is tried.
+        None if the run without a cure does not show the finding in time: then no cure is tried.
         """
         problem = problem_of(found.finding, self.run.timeline)
         try:
             if self._before is None:
                 self._before = self._try(self.changes, given_up, lambda done: note(done // 2))
             if problem not in self._before.problems:
-                return False
+                return None
             after = self._try(cure.changes, given_up, lambda done: note(50 + done // 2))
             return helps(problem, self._before, after)
         except (GivenUpError, OSError, UnknownInputError):
-            return False
+            return None
 
     @cached_property
     def inputs(self) -> tuple[TimedInput, ...]:

@@ -18,7 +18,7 @@ from textual.widgets.option_list import Option
 from cbtui.keys.action import Scope
 from cbtui.keys.keymap import Keymap
 from cbtui.looks.theme import GLYPHS, Charset
-from cbtui.runs.judged.cures import Cure
+from cbtui.runs.judged.cures import Cure, tried_in_vain
 from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
 from cbtui.screens.windows.window import PlainOptionList, WindowScreen
 from cbtui.text.cells import visible
@@ -29,6 +29,7 @@ from sim.quantities.durations import timestamp
 from sim.quantities.plural import counted
 
 _ALL_IS_WELL = "✓ Nothing has gone wrong so far: no rule has found a problem."
+_NOT_SIMPLE = "No cure is offered: only simple code, in the program's own file, is changed by itself."
 _TIME = 10
 _CHECK_INTERVAL = 0.5
 """Seconds between two looks at the current findings."""
@@ -46,8 +47,8 @@ class Trial(Protocol):
 
     def helps(
         self, found: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
-    ) -> bool:
-        """Try a cure and tell whether it ends a finding; called on a worker thread.
+    ) -> bool | None:
+        """Try a cure and tell whether it ends a finding, None if that stays unknown; for a worker thread.
 
         Returns soon after ``given_up`` is set. ``note`` gets the progress in per cent.
         """
@@ -114,6 +115,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         """The number of untried cures of each finding."""
         self._cures = [(place, cure) for place, each in enumerate(cures) for cure in each]
         self._helpful: list[tuple[int, Cure]] = []
+        self._unjudged: set[int] = set()
+        """The findings with a cure of which it stays unknown whether it helps."""
         self._percent: dict[int, int] = {}
         """The progress of the current trial, by the index of its finding."""
         self._trying_since = monotonic()
@@ -197,13 +200,15 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             self._percent[place] = percent
             self.app.call_from_thread(self._tell_highlighted)
 
-    def _note_tried(self, place: int, cure: Cure, helps: bool) -> None:
+    def _note_tried(self, place: int, cure: Cure, helps: bool | None) -> None:
         """Offer to try a cure if it helps; the highlight stays where it is."""
         chosen = self._chosen
         self._untried[place] -= 1
         self._percent[place] = 0
         if helps:
             self._helpful.append((place, cure))
+        elif helps is None:
+            self._unjudged.add(place)
         self._rows = tuple(self._list_rows())
         self._show_options().highlighted = 0 if chosen is None else self._rows.index(chosen)
 
@@ -249,12 +254,19 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         self.query_one(".told", Static).update(details)
 
     def _about_trial(self, place: int) -> str:
-        """The sentence on the trial of a finding's cures; "" if there is none."""
+        """The sentence on the trial of a finding's cures, or on why there is none; "" if one helps."""
+        cures = [cure for about, cure in self._cures if about == place]
         if left := self._untried[place]:
-            of = sum(about == place for about, _ in self._cures)
+            of = len(cures)
             percent = (100 * (of - left) + self._percent.get(place, 0)) // of
             return f"A cure is being tried, for {monotonic() - self._trying_since:.0f} s now: {percent} %."
-        return self._trial.refusal if self._trial and self._findings[place].is_problem else ""
+        if cures and all(about != place for about, _ in self._helpful):
+            return tried_in_vain(cures, is_known=place not in self._unjudged)
+        found = self._findings[place]
+        if cures or self._trial is None or not found.is_problem:
+            return ""
+        has_edit = any(each.edit for each in found.explanation.remedies)
+        return self._trial.refusal or (_NOT_SIMPLE if has_edit else "")
 
     @on(OptionList.OptionHighlighted)
     def _tell(self) -> None:
