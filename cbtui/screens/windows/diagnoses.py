@@ -29,7 +29,7 @@ from sim.quantities.durations import timestamp
 from sim.quantities.plural import counted
 
 _ALL_IS_WELL = "✓ Nothing has gone wrong so far: no rule has found a problem."
-_NOT_SIMPLE = "No cure is offered: only simple code, in the program's own file, is changed by itself."
+_NOT_SIMPLE = "No cure is offered: only simple code is changed by itself."
 _TIME = 10
 _CHECK_INTERVAL = 0.5
 """Seconds between two looks at the current findings."""
