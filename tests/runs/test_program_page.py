@@ -55,3 +55,8 @@ def test_a_problem_promises_a_cure_only_where_there_is_one(
     problem = Explanation("tick waits", "", "", place)
     page = page_of_program("node.py", "virtual", Timeline(), [problem, problem], has_cures=has_cures)
     assert f"- tick waits. {said}, and 1 further problem." in page["tries"].splitlines()
+
+
+def test_a_problem_of_a_lambda_names_it() -> None:
+    page = page_of_program("node.py", "virtual", Timeline(), [Explanation("<lambda> waits", "", "", None)])
+    assert r"- \<lambda\> waits. `d` says what to do." in page["tries"].splitlines()

@@ -12,6 +12,7 @@ from cbtui.runs.live.playhead import Playhead
 from cbtui.runs.recorded.recording_file import date_text, setup_of
 from cbtui.runs.setup.own_files import PROGRAMS
 from cbtui.runs.setup.shown_program import ShownProgram
+from cbtui.text.markdown import as_it_is
 from sim.engine.setup import RunSetup
 from sim.files.untrusted import read_text
 from sim.recording import Recording, RecordingError, RecordingMetadata, read
@@ -172,7 +173,7 @@ def of_recording(recording: Recording) -> ShownProgram:
     title = _plain(about.title) or _plain(recording.path.name)
     return ShownProgram(
         heading=title,
-        guide=_GUIDE.format(title=_escaped(title), facts="\n".join(facts_on(recording))),
+        guide=_GUIDE.format(title=as_it_is(title), facts="\n".join(facts_on(recording))),
         node_path=path,
         service="" if setup.service is None else setup.service.name,
         executor="",
@@ -206,14 +207,14 @@ _NO_SOURCE = "# The recording holds no source of this program, and this machine 
 def facts_on(recording: Recording) -> list[str]:
     """Return the facts about a recorded run as a list in Markdown."""
     about = recording.about
-    facts = [f"- file: {_escaped(_plain(str(recording.path)))}"]
+    facts = [f"- file: {as_it_is(_plain(str(recording.path)))}"]
     if about.recorded:
-        facts.append(f"- recorded: {date_text(about.recorded)} by cbtui {_escaped(_plain(about.version))}")
-    facts.append(f"- clock: {_escaped(_plain(about.clock)) or 'unknown'}")
+        facts.append(f"- recorded: {date_text(about.recorded)} by cbtui {as_it_is(_plain(about.version))}")
+    facts.append(f"- clock: {as_it_is(_plain(about.clock)) or 'unknown'}")
     facts.append(f"- threads: {_threads(about)}")
-    facts += [f"- program: {_escaped(_plain(program))}" for program in about.programs]
+    facts += [f"- program: {as_it_is(_plain(program))}" for program in about.programs]
     if about.arguments:
-        facts.append(f"- arguments: {_escaped(_plain(' '.join(about.arguments)))}")
+        facts.append(f"- arguments: {as_it_is(_plain(' '.join(about.arguments)))}")
     return facts
 
 
@@ -224,8 +225,3 @@ def _threads(about: RecordingMetadata) -> str:
 def _plain(text: str) -> str:
     """A recorded text without unprintable characters."""
     return "".join(character for character in text if character.isprintable())
-
-
-def _escaped(text: str) -> str:
-    """A text that Markdown shows as it is."""
-    return "".join(f"\\{each}" if each in r"\`*_{}[]()<>#+-.!|~&" else each for each in text)

@@ -61,7 +61,7 @@ class OwnFile(ScreenPart):
         return page_of_program(self.file.name, run.setup.clock, run.timeline, problems, has_cures=has_cures)
 
     def update_guide(self) -> None:
-        """Write the guide again if the findings changed in more than their durations.
+        """Write the guide again if the findings changed.
 
         A program that fails before it has a callback, for example with a syntax error, is shown at its line.
         """
@@ -71,7 +71,7 @@ class OwnFile(ScreenPart):
             *(min(len(each), MOST + 1) for each in what),
             timeline.ended is None,
             timeline.arena is None,
-            [(each.finding.rule.id, each.finding.subject) for each in findings if each.is_problem],
+            [each.explanation for each in findings if each.is_problem],
         )
         if state != self._shown:
             self._shown = state

@@ -7,9 +7,10 @@ from cbtui.app import CbtuiApp
 from cbtui.screens.parts.own_file import FileRead
 from sim.engine.commands import CallService, Pause
 from sim.engine.setup import ProgramSetup
-from sim.trace.events import RunEnded
+from sim.trace.events import Reason, RunEnded, TimePassed
 from tests.support.builder import Run
 from tests.support.console import NARROW, TALL, WIDE, settle
+from tests.support.exercises import until
 from tests.support.fake_session import FakeEngines
 from tests.support.pictures import text_of
 from tests.support.runs import dummy_server_run, ns
@@ -77,6 +78,22 @@ async def test_the_guide_tells_what_was_found_and_what_to_try(tmp_path: Path) ->
         assert "What was found" in told
         assert "timer_callback every 1" in told
         assert "C compares both runs" in told
+
+
+async def test_the_guide_follows_how_long_something_waits(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    run = Run()
+    timer = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.wait(timer, 1.0, reason=Reason.NOBODY_SPINS)
+    passed = [TimePassed(ns(end)) for end in (3.5, 4.5)]
+    engines = FakeEngines([*run.events, *passed], ns(3.5))
+    app = CbtuiApp(start_file=(file, [], "real"), open_session=engines)
+    async with app.run_test(size=TALL) as pilot:
+        await settle(pilot)
+        await until(pilot, lambda: "has been ready for 2.5 s" in text_of(app))
+        engines.latest.play(ns(4.5))
+        await until(pilot, lambda: "has been ready for 3.5 s" in text_of(app))
 
 
 async def test_a_file_is_run_again_when_it_is_saved_and_only_then(tmp_path: Path) -> None:
