@@ -125,6 +125,14 @@ def test_of_a_callback_that_computes_it_is_said_how_long_and_not_that_it_never_e
     assert what == "odom_callback computes and has not come back for 1.5 s"
 
 
+def test_on_the_real_clock_a_callback_that_computes_has_not_come_back_for_longer_and_longer() -> None:
+    start, begun = RunStarted(0, "t", "real", 0), CallbackStarted(5, 1, 1, 0, 0, 0)
+    problem = "has not come back for 1.5 s"
+    notice = Notice(ns(1.5), Severity.WARN, "words", 1, kind=NoticeKind.NO_PROGRESS, problem=problem)
+    ((what, _),) = explained(start, begun, notice, TimePassed(ns(4.0)), rule="still-computing")
+    assert what == "odom_callback computes and has not come back for 4.0 s"
+
+
 @pytest.mark.parametrize("watch", [hung_callbacks, outside_time])
 def test_a_callback_that_computes_is_reported_after_one_and_a_half_seconds(watch: Any) -> None:
     assert pytest.approx(1.5) == watch._LOOK * watch._PATIENCE

@@ -57,7 +57,7 @@ class EndlessWait(Rule):
         how = "is in a deadlock" if _is_deadlock(notice) else "stands still"
         what = f" {how}: {notice.problem}" if notice.problem else f": {notice.text}"
         if notice.kind is NoticeKind.NO_PROGRESS and at:
-            what = f" {doing_of(at[-1])} and {notice.problem}"
+            what = f" {doing_of(at[-1])} and {_how_long(found, timeline)}"
         cure, kept = notice.advice or _ADVICE, _kept_waiting(found, timeline)
         room = remedy_for_waits(kept, found.subject, Window(found.at, found.until + 1), timeline)
         if room.words(timeline):
@@ -149,13 +149,12 @@ class StillComputing(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
-        how_long = _notice_of(found).problem or "has not come back for long"
         at = timeline.positions_of(found.subject, _moment(found))
         loop = line_location(*at[-1].loop) if at else None
         place = loop or line_of(found.subject, _moment(found), timeline)
         where = f" in the loop of line {loop.first_line}" if loop else ""
         return Explanation(
-            f"{subject} computes{where} and {how_long}",
+            f"{subject} computes{where} and {_how_long(found, timeline)}",
             _KEPT.format(subject),
             _leaving(found.subject, timeline),
             place,
@@ -255,6 +254,14 @@ def _moment(found: Finding) -> Window:
 def _notice_of(found: Finding) -> Notice:
     assert isinstance(found.event, Notice)
     return found.event
+
+
+def _how_long(found: Finding, timeline: Timeline) -> str:
+    """For how long a call has not come back: on virtual time, which may stand still, as the engine says."""
+    spans = timeline.spans_of(found.subject, _moment(found))
+    if spans and timeline.started is not None and timeline.started.clock == "real":
+        return f"has not come back for {duration(found.until - spans[-1].start)}"
+    return _notice_of(found).problem or "has not come back for long"
 
 
 def _is_deadlock(notice: Notice) -> bool:

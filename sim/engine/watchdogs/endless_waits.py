@@ -68,9 +68,7 @@ class EndlessWaits:
                 self._tell_of_deadlock(wait, cycle_of(wait.thread))
             elif wait.entity and not wait.told and self._lasted(wait) >= _PATIENCE:
                 wait.told = True
-                self._record(
-                    long_wait(wait.thread, self._lasted(wait)).notice(self._clock.now(), wait.entity)
-                )
+                self._record(long_wait(wait.thread, wait.since).notice(self._clock.now(), wait.entity))
 
     def finish(self) -> None:
         """Check the waits for the last time, at the end of the run."""

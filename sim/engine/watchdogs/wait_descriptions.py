@@ -9,6 +9,7 @@ from itertools import takewhile
 from sim.clock.virtual_threads import VirtualThread
 from sim.engine.watchdogs.thread_positions import place_in, place_of
 from sim.probes.own_code import is_own, outwards
+from sim.quantities.durations import timestamp
 from sim.trace.events import EntityId, Notice, NoticeKind, Severity
 
 _AWAITS = threading.Condition.wait.__code__
@@ -50,10 +51,9 @@ def deadlock_of_last(thread: VirtualThread) -> WaitProblem:
     return WaitProblem(problem, _cure(thread), is_deadlock=True)
 
 
-def long_wait(thread: VirtualThread, lasted: int) -> WaitProblem:
-    """Describe a thread that has waited ``lasted`` nanoseconds for what another thread might still do."""
-    seconds = f"{lasted / 1e9:.1f}".removesuffix(".0")
-    return WaitProblem(f"{waits(thread)}, for {seconds} s already", _cure(thread), is_deadlock=False)
+def long_wait(thread: VirtualThread, since: int) -> WaitProblem:
+    """Describe a thread that has waited since a moment for what another thread might still do."""
+    return WaitProblem(f"{waits(thread)}, since {timestamp(since)}", _cure(thread), is_deadlock=False)
 
 
 def waits(thread: VirtualThread) -> str:

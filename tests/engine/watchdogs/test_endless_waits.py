@@ -216,7 +216,7 @@ def test_a_lock_taken_twice_and_an_event_that_nobody_sets_are_told_with_their_pl
     assert (twice, waits) == (Severity.ERROR, Severity.WARN)
     assert once.startswith("deadlock: ThreadPoolExecutor-0_")
     assert "(node.py:20, in again) waits for the lock that it took itself at node.py:16, in twice; " in once
-    assert "(node.py:27, in wait) waits in Event.wait(), for " in long
+    assert "(node.py:27, in wait) waits in Event.wait(), since 0.100 s; " in long
     assert [what.partition(": ")[0] for what in found(run)] == ["wait stands still"]
 
 
