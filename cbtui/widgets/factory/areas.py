@@ -32,8 +32,11 @@ class AreaPainter:
         at, end = self.columns.belts + 2, self.columns.right_wall
         at = self.canvas.write(at, line, f" {area.group.letter}", Ink(Role.LETTER, area.number), end - at)
         at = self._texture(area, at, line, end)
-        seats = first_fitting([f" {text} " for text in admission_texts(area)], end - at - 1)
-        at = self.canvas.write(at, line, seats, PLAIN, len(seats))
+        seats, kept = admission_texts(area), _LONGEST_QUEUE if area.waiting else 0
+        crewed = [f" {text} " for text in (f"{seats[0]}, {area.crew}", area.crew)] if area.crew else []
+        text = first_fitting(crewed, end - at - 1 - kept)
+        text = text or first_fitting([f" {each} " for each in seats], end - at - 1)
+        at = self.canvas.write(at, line, text, PLAIN, len(text))
         if area.waiting:
             ways = ("waits outside", "waits") if area.waiting == 1 else ("wait outside", "wait")
             text = first_fitting([f" {area.waiting} {words} " for words in ways], end - at - 2)

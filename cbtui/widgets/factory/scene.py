@@ -1,9 +1,9 @@
 """The state of the factory at one moment: who sits, who walks, what lies on which belt."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
-from functools import cached_property
+from functools import cached_property, partial
 
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.rows import (
@@ -13,6 +13,7 @@ from cbtui.widgets.lanes.rows import (
     ThreadLane,
     all_lanes,
     ever_ran,
+    first_spans,
     never_ran,
 )
 from sim.diagnosis.words import thread_count
@@ -96,6 +97,8 @@ class Area:
     kept: tuple[EntityInfo, ...]
     more: int = 0
     """Callbacks of the group without a belt, if there are too many."""
+    crew: str = ""
+    """The thread, or the pool, that serves it; "" if one serves all areas, or as long as none did."""
 
     @property
     def is_open(self) -> bool:
@@ -172,7 +175,12 @@ class _SceneBuilder:
             FactoryWorker(f"worker {number + 1}", self._before_work())
             for number in range(len(workers), hired)
         ]
-        areas = tuple(self._area(group, members[group.id], workers) for group in groups.values())
+        crews = {group: self._crew(members[group]) for group in groups}
+        several = len({*crews.values()} - {""}) > 1
+        areas = tuple(
+            self._area(group, members[group.id], workers, crews[group.id] if several else "")
+            for group in groups.values()
+        )
         more = roster_of(self._timeline).groups - len(areas)
         return FactoryScene(self._timeline, self._now, tuple(workers), areas, more)
 
@@ -212,7 +220,18 @@ class _SceneBuilder:
                 return max(ended, key=lambda span: span.end_at(self._now))
         return None
 
-    def _area(self, group: GroupInfo, members: list[EntityInfo], workers: list[FactoryWorker]) -> Area:
+    def _crew(self, members: Sequence[EntityInfo]) -> str:
+        """The thread or pool that ran the first calls of a group; "" for none yet."""
+        for member in members:
+            for span in first_spans(partial(self._timeline.spans_of, member.id), self._now)[:1]:
+                thread = self._timeline.threads[span.thread]
+                name = short_thread(thread.name)
+                return name.rpartition("_")[0] if thread.executor else name.partition(" (")[0]
+        return ""
+
+    def _area(
+        self, group: GroupInfo, members: list[EntityInfo], workers: list[FactoryWorker], crew: str
+    ) -> Area:
         ids = {member.id for member in members}
         visitors = tuple(worker for worker in workers if worker.span and worker.span.entity in ids)
         seated = {worker.span.entity for worker in visitors if worker.inside and worker.span}
@@ -220,7 +239,7 @@ class _SceneBuilder:
         kept = tuple(self._timeline.entities[holder] for holder in holders if holder not in seated)
         belts = tuple(self._belt(member) for member in members)
         more = roster_of(self._timeline).size(group.id) - len(belts)
-        return Area(group, self._numbers[group.id], belts, visitors, kept, more)
+        return Area(group, self._numbers[group.id], belts, visitors, kept, more, crew)
 
     def _belt(self, entity: EntityInfo) -> Belt:
         wait = self._moment.waiting.get(entity.id)

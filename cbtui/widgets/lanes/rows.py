@@ -1,11 +1,13 @@
 """The lanes of a run, and the choice of those to show if not all fit."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import TypeAlias
 
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, GroupId, ThreadId
-from sim.trace.model import EntityInfo, GroupInfo, Nanoseconds, ThreadInfo, Window
+from sim.trace.model import EntityInfo, GroupInfo, Nanoseconds, Span, ThreadInfo, Window
 from sim.trace.roster import MOST_LANES, roster_of
 from sim.trace.timeline import Timeline
 
@@ -86,12 +88,17 @@ def _working_threads(timeline: Timeline) -> list[ThreadInfo]:
 
 def ever_ran(timeline: Timeline, thread: ThreadId, at: Nanoseconds) -> bool:
     """Whether a thread ran a callback up to ``at``; examines only the first calls."""
+    return bool(first_spans(partial(timeline.spans_on, thread), at))
+
+
+def first_spans(spans: Callable[[Window], Sequence[Span]], at: Nanoseconds) -> Sequence[Span]:
+    """Return the first calls up to ``at``, and maybe some more; ``spans`` returns those in a window."""
     reach = SECOND
     while reach < at:
-        if timeline.spans_on(thread, Window(0, reach)):
-            return True
+        if found := spans(Window(0, reach)):
+            return found
         reach *= 2
-    return bool(timeline.spans_on(thread, Window(0, at + 1)))
+    return spans(Window(0, at + 1))
 
 
 def never_ran(timeline: Timeline, thread: ThreadId) -> bool:

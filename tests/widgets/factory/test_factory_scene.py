@@ -297,3 +297,17 @@ def test_walls_stand_still_whatever_happens(width: int, height: int) -> None:
 
     for timeline in RUNS[:2]:
         assert len({tuple(walls(timeline, at / 10)) for at in range(0, 300, 7)}) == 1
+
+
+def test_areas_of_several_executors_say_whose_they_are() -> None:
+    run = Run()
+    main, beside = run.thread("MainThread"), run.thread("Thread-1 (spin)")
+    timers = [run.timer(run.exclusive(run.node(f"/{name}")), name, 1.0) for name in ("a", "b")]
+    run.callback(timers[0], main, 1.0, 0.1)
+    run.callback(timers[1], beside, 2.0, 0.1)
+    timeline = told(run)
+    assert [area.crew for area in scene_at(timeline, 1.5).areas] == ["", ""]
+    assert [area.crew for area in scene_at(timeline, 9.0).areas] == ["MainThread", "Thread-1"]
+    picture = plain(FactoryPainter().paint(timeline, ns(9.0), 78, 14))
+    assert " A ██ MainThread ━" in picture
+    assert " B ·· one seat, Thread-1 ━" in picture
