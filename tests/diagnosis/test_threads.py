@@ -50,6 +50,19 @@ def test_more_threads_than_ever_needed_are_remarked_on() -> None:
     assert run.explained("threads-never-used").what == "2 of 4 threads were ever needed at once"
 
 
+def test_threads_of_an_executor_are_not_judged_by_those_of_others() -> None:
+    def program(simulation: Simulation) -> None:
+        executors = executor_of(4), executor_of(None)
+        for place, executor in enumerate(executors):
+            node = Node(f"n{place}")
+            node.create_timer(1.0, lambda: simulation.sleep(0.1))
+            executor.add_node(node)
+        simulation.start(executors[0].spin)
+        executors[1].spin()
+
+    assert rules(diagnosed(program, until=5.0)) == []
+
+
 def test_as_many_threads_as_needed_are_well() -> None:
     assert rules(two_timers(two_groups(), threads=2)) == []
 

@@ -16,7 +16,7 @@ _WARMED_UP: Nanoseconds = SECOND
 
 
 class ThreadsNeverUsed(Rule):
-    """An executor has more threads than ever ran callbacks at once."""
+    """An executor has more threads than ever ran callbacks at once; not told where others run some, too."""
 
     id = "threads-never-used"
     summary = "fewer threads would have done"
@@ -27,7 +27,8 @@ class ThreadsNeverUsed(Rule):
         """Compare the threads needed with those available."""
         threads = sum(each.threads for each in _with_workers(view.timeline))
         needed = view.threads_needed
-        if view.end >= _WARMED_UP and 0 < needed < threads and _only_group(view.timeline) is None:
+        is_judged = view.end >= _WARMED_UP and 0 < needed < threads and _only_group(view.timeline) is None
+        if is_judged and _runs_on_one_executor(view):
             yield Finding(self, 0, view.end, size=needed, detail=str(threads))
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
@@ -100,6 +101,11 @@ def _abbreviated(letters: list[str]) -> list[str]:
 
 def _with_workers(timeline: Timeline) -> list[ExecutorInfo]:
     return [each for each in timeline.executors.values() if each.threads > 1]
+
+
+def _runs_on_one_executor(view: TimelineView) -> bool:
+    threads = view.timeline.threads.values()
+    return len({each.executor for each in threads if view.timeline.spans_on(each.id, view.window)}) == 1
 
 
 def _only_group(timeline: Timeline) -> GroupInfo | None:
