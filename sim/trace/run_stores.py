@@ -54,6 +54,9 @@ class RunStores:
         self.positions = Positions(spill)
         self.queues: defaultdict[EntityId, QueueHistory] = defaultdict(lambda: QueueHistory(spill))
         self.dropped_at = IntegerTable(spill, 1)
+        self.cancels: defaultdict[EntityId, History[ev.TimerCancelled]] = defaultdict(
+            lambda: History(attrgetter("t"), ev.TimerCancelled, spill)
+        )
         self.publications = Publications(spill)
         self.calls = ServiceCalls(spill)
         self.sendings = Sendings(spill)
@@ -112,6 +115,7 @@ class RunStores:
             ev.EntityAppeared: self._entity_appeared,
             ev.EntityGone: self._entity_gone,
             ev.EntityReady: self._ready,
+            ev.TimerCancelled: lambda event: self.cancels[event.entity].add(event),
             ev.MessageDropped: self._message_dropped,
             ev.WaitStarted: self.waiting.start,
             ev.WaitEnded: self._wait_ended,

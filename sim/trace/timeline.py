@@ -260,6 +260,11 @@ class Timeline:
         times = (time for each in asked for time in self._events_beside(each, at, step))
         return min(times, default=None) if step > 0 else max(times, default=None)
 
+    def cancelled_since(self, timer: EntityId, since: Nanoseconds, at: Nanoseconds) -> bool:
+        """Whether a timer was cancelled between two moments, these included."""
+        latest = self._run.cancels[timer].latest(at)
+        return latest is not None and latest.t >= since
+
     @property
     def names_sent(self) -> Collection[str]:
         """The topics and services on which something was sent, in order of the first messages."""

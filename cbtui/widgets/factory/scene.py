@@ -254,6 +254,8 @@ class _SceneBuilder:
         if not spans or period <= 0:
             return TimerTick(None, 0)
         last = spans[-1]
+        if self._timeline.cancelled_since(timer.id, last.start, self._now):
+            return TimerTick(None, last.age)
         due = last.start - last.age + period
         if due < last.start:
             due += (1 + (last.start - due) // period) * period

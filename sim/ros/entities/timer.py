@@ -110,6 +110,7 @@ class Timer(Entity):
         with self._host.lock:
             self._canceled = True
             self.become_idle()
+            self.node.context.probe.timer_cancelled(self)
 
     def reset(self) -> None:
         """Restart the timer, cancelled or not: it is due one period from now."""

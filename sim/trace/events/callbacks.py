@@ -40,6 +40,12 @@ class EntityReady(TraceEvent, frozen=True, tag="ready"):
     message: Maybe[MessageId]
 
 
+class TimerCancelled(TraceEvent, frozen=True, tag="timer_cancel"):
+    """A timer was cancelled: it falls due no more, until it is reset."""
+
+    entity: EntityId
+
+
 class MessageDropped(TraceEvent, frozen=True, tag="message_drop"):
     """A queue lost a message.
 

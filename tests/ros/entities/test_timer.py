@@ -10,6 +10,7 @@ from sim.ros.exceptions import RCLError, ROSInterruptException
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from sim.trace.events import TimerCancelled
 from tests.support.simulation import Simulation, Trace, simulate
 
 
@@ -116,7 +117,9 @@ def test_a_cancelled_timer_rests_until_it_is_reset() -> None:
         simulation.at(0.75, timer.reset)
         rclpy.spin(node)
 
-    assert simulate(program, until=2.0).times("tick") == [0.1, 0.85]
+    trace = simulate(program, until=2.0)
+    assert trace.times("tick") == [0.1, 0.85]
+    assert [event.t for event in trace.of(TimerCancelled)] == [100_000_000, 850_000_000]
 
 
 def test_a_reset_puts_off_the_next_call_by_a_whole_period() -> None:

@@ -8,7 +8,7 @@ from rich.cells import cell_len
 from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.factory import FactoryPainter
 from cbtui.widgets.factory.scene import Area, FactoryScene, WorkerState, scene_of
-from sim.trace.events import Reason
+from sim.trace.events import Reason, TimerCancelled
 from sim.trace.timeline import Timeline
 from tests.support.properties import examples
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
@@ -311,3 +311,18 @@ def test_areas_of_several_executors_say_whose_they_are() -> None:
     picture = plain(FactoryPainter().paint(timeline, ns(9.0), 78, 14))
     assert " A ██ MainThread ━" in picture
     assert " B ·· one seat, Thread-1 ━" in picture
+
+
+def test_a_timer_that_was_cancelled_has_no_next_tick_until_it_is_called_again() -> None:
+    run = Run()
+    timer, thread = run.timer(run.exclusive(run.node("/n")), "tick", 1.0), run.thread("MainThread")
+    run.callback(timer, thread, 1.0, 0.1)
+    run.add(TimerCancelled(ns(1.05), timer))
+    run.callback(timer, thread, 3.0, 0.1)
+    timeline = told(run)
+
+    def due(at: float) -> int | None:
+        (belt,) = only_area(timeline, at).belts
+        return None if belt.tick is None else belt.tick.due
+
+    assert [due(at) for at in (1.02, 1.06, 2.5, 3.5)] == [ns(2.0), None, None, ns(4.0)]
