@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from lessons.catalogue import is_built_in
 from lessons.lesson import Lesson
+from sim.files.untrusted import program_text
 from sim.quantities.nanoseconds import SECOND
 
 if TYPE_CHECKING:
@@ -32,6 +33,12 @@ def why_no_preview(lesson: Lesson) -> str | None:
     if lesson.setup.clock == "real":
         return f"on the real clock that would take {LENGTH / SECOND:g} s of computing"
     return None
+
+
+def code_asked_about(lesson: Lesson) -> str:
+    """Return the source of a lesson's node from its first class on; "" if it cannot be read."""
+    source = program_text(lesson.node_path) or ""
+    return source[source.find("\nclass ") + 1 :]
 
 
 class PreviewRun:

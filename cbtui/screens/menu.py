@@ -18,7 +18,7 @@ from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.learning.lesson_page import short_description
-from cbtui.learning.preview import CALLS, LENGTH, why_no_preview
+from cbtui.learning.preview import CALLS, LENGTH, code_asked_about, why_no_preview
 from cbtui.learning.stage import Stage, is_revealed, puzzle_note, stage_note, stage_of, stage_of_puzzle
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import RecentEntry, RecentList
@@ -231,6 +231,8 @@ class MenuScreen(SizedScreen[None]):
         lesson, asked = self._previewed, self._asked_first(self._list.chosen)
         subject = None if lesson is None else self._previews.subjects.get(lesson.id)
         self._miniature.sentence = subject if isinstance(subject, str) else asked or _WAIT
+        chosen = self._list.chosen
+        self._miniature.code = code_asked_about(chosen) if asked and isinstance(chosen, Lesson) else ""
         self._miniature.subject = subject if isinstance(subject, PreviewPicture) else None
 
     # the search

@@ -22,6 +22,8 @@ SPEED = 2
 """Seconds of the run per real second."""
 _LEAST_SCENE = 10
 """The least rows in which a robot's map can be recognised."""
+_LEAST_CODE = 12
+"""The least rows in which lines of code tell something."""
 _STATUSES = (25, 16, 10, 0)
 """The widths of the status columns in the lane painter's layouts."""
 
@@ -45,6 +47,8 @@ class Miniature(PaintedWidget):
     now: reactive[int] = painted(0)
     sentence: reactive[str] = painted("")
     """The text without a picture."""
+    code: reactive[str] = painted("")
+    """The lines of code that are shown below the sentence, where there is room."""
 
     _began = 0.0
     _sweep: Timer | None = None
@@ -52,7 +56,7 @@ class Miniature(PaintedWidget):
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the lanes, or the sentence."""
         if self.subject is None or not size.width:
-            return sentence_rows(self.sentence, size)
+            return sentence_rows(self.sentence, size, self.code)
         return miniature(self.subject, self.now, size)
 
     def watch_subject(self, subject: PreviewPicture | None) -> None:
@@ -96,9 +100,12 @@ def miniature(subject: PreviewPicture, now: int, size: Size) -> list[Sequence[Te
     return [*rows, [TextRun(" " * size.width, Ink(Role.TEXT))], *below] if below else rows
 
 
-def sentence_rows(sentence: str, size: Size) -> list[Sequence[TextRun]]:
-    """Paint a wrapped sentence; ``size`` may be empty."""
+def sentence_rows(sentence: str, size: Size, code: str = "") -> list[Sequence[TextRun]]:
+    """Paint a wrapped sentence, and below it the first lines of code that fit; ``size`` may be empty."""
     if not size.width:
         return []
-    lines = lines_of_text(sentence, size.width)[: size.height]
-    return [[TextRun(fit(line, size.width, Charset.BRAILLE), Ink(Role.FAINT))] for line in lines]
+    lines = [(line, Ink(Role.FAINT)) for line in lines_of_text(sentence, size.width)[: size.height]]
+    room = size.height - len(lines) - 1
+    if code and room >= _LEAST_CODE:
+        lines += [("", Ink(Role.TEXT)), *((line, Ink(Role.TEXT)) for line in code.splitlines()[:room])]
+    return [[TextRun(fit(line, size.width, Charset.BRAILLE), ink)] for line, ink in lines]

@@ -204,6 +204,16 @@ def test_a_sentence_is_wrapped_and_cut_to_the_room() -> None:
     assert sentence_rows("one", Size(0, 0)) == []
 
 
+@pytest.mark.parametrize(("height", "shown"), [(13, 0), (14, 12), (20, 18)])
+def test_below_a_question_the_code_that_it_is_about_is_shown_if_much_of_it_fits(
+    height: int, shown: int
+) -> None:
+    code = "".join(f"line {number}\n" for number in range(40))
+    rows = sentence_rows("What does it do?", Size(40, height), code)
+    lines = ["".join(run.text for run in row).rstrip() for row in rows]
+    assert lines == ["What does it do?", *(["", *code.splitlines()[:shown]] if shown else [])]
+
+
 # with a real engine
 
 
