@@ -6,6 +6,7 @@ themselves, since Python builds them on what is replaced here.
 """
 
 import queue
+import sys
 import threading
 import time
 from collections.abc import Callable
@@ -15,11 +16,13 @@ from typing import Any
 
 from sim.clock.paced import PacedClock
 from sim.interpreter.function_marks import waits_for_time
+from sim.interpreter.guarding import takes_to_guard
 from sim.quantities.nanoseconds import wait_ns
 
 _allocate_lock = threading.Lock
 _RLock: Any = type(threading.RLock())
 _thread_join = threading.Thread.join
+_LIBRARY = {threading.__file__, queue.__file__}
 
 _SLICE = 0.02
 """Real seconds between two checks of a timeout: the pace may have changed."""
@@ -51,7 +54,7 @@ class PacedLock:
         self.locked = lock.locked
         self.release = lock.release
         self.holder_ident = 0
-        """The identifier of the thread that last took the lock by ``with``; 0 after ``acquire``."""
+        """The identifier of the thread that took the lock to guard something; 0 if it may be a signal."""
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock; False if it is not available at once (or within ``timeout`` seconds)."""
@@ -60,7 +63,9 @@ class PacedLock:
         else:
             taken = _within(timeout, self._clock, lambda seconds: self._lock.acquire(timeout=seconds))
         if taken:
-            self.holder_ident = 0  # the lock may be a signal, which another thread releases
+            taker = sys._getframe(1)
+            guards = taker.f_code.co_filename not in _LIBRARY and takes_to_guard(taker)
+            self.holder_ident = get_ident() if guards else 0  # else another thread may release it
         return taken
 
     def __enter__(self) -> bool:

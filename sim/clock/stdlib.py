@@ -27,6 +27,7 @@ from sim.clock.replacing import Replacements
 from sim.clock.schedule import NO_ACCESSES
 from sim.clock.virtual import VirtualAutoResetEvent, VirtualClock
 from sim.clock.virtual_threads import VirtualThread, start_outside
+from sim.interpreter.guarding import takes_to_guard
 from sim.quantities.nanoseconds import wait_ns
 
 _allocate_lock = threading.Lock
@@ -153,6 +154,8 @@ class VirtualLock:
         self.holder = self._clock.current
         code = frame.f_code
         self.guards = code is _ENTERS or code is _RLOCK_TAKES or code is _RLOCK_TAKES_AGAIN
+        if code.co_filename not in _LIBRARY:
+            self.guards = takes_to_guard(frame)
         while code.co_filename in _LIBRARY and frame.f_back is not None:
             frame = frame.f_back
             code = frame.f_code

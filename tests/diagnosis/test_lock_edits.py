@@ -4,8 +4,14 @@ from textwrap import dedent, indent
 
 import pytest
 
-from sim.diagnosis.edits.locks import let_go_during_wait, make_reentrant, take_together
-from tests.diagnosis.edited_source import changed, node
+from sim.diagnosis.edits.locks import (
+    let_go_during_wait,
+    make_reentrant,
+    take_before,
+    take_by_with,
+    take_together,
+)
+from tests.diagnosis.edited_source import changed, edited, node
 
 LOCKS = """
 def move(self):
@@ -132,3 +138,90 @@ def test_a_lock_is_let_go_of_during_a_call_and_taken_again() -> None:
 )
 def test_what_needs_the_lock_keeps_it_during_a_call(block: str, lines: list[str] | None) -> None:
     assert changed(holding(block), let_go_during_wait) == lines
+
+
+BY_ACQUIRE = node(
+    """
+    def pay(self):
+        self.a.acquire()
+        self.count()
+        self.b.acquire()  # here
+        self.b.release()
+        self.a.release()
+
+    def earn(self):
+        self.b.acquire()
+        self.a.acquire()  # there
+        self.a.release()
+        self.b.release()
+    """
+)
+
+
+def line_with(text: str, mark: str) -> int:
+    return next(number for number, each in enumerate(text.splitlines(), 1) if mark in each)
+
+
+def test_locks_taken_by_acquire_are_taken_in_the_order_of_the_other_callback() -> None:
+    assert changed(BY_ACQUIRE, take_before, line_with(BY_ACQUIRE, "# there")) == [
+        "+        self.b.acquire()  # here",
+        "-        self.b.acquire()  # here",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("line", "instead"),
+    [
+        ("self.a.acquire()  # there", "self.c.acquire()  # there"),
+        (
+            "        self.b.acquire()  # here",
+            "        try:\n            self.b.acquire()  # here\n        finally: pass",
+        ),
+    ],
+)
+def test_locks_are_not_moved_out_of_a_try_nor_to_another_order(line: str, instead: str) -> None:
+    text = BY_ACQUIRE.replace(line, instead)
+    assert changed(text, take_before, line_with(text, "# there")) is None
+
+
+def test_a_lock_is_taken_by_with_up_to_its_last_release() -> None:
+    text = node(
+        """
+        def tick(self):
+            self.lock.acquire()  # here
+            if self.full:
+                self.lock.release()
+                return
+            # count
+            self.n += 1
+            self.lock.release()
+        """
+    )
+    assert (edited(text, take_by_with) or "").splitlines()[5:] == [
+        "        with self.lock:",
+        "            if self.full:",
+        "                return",
+        "            # count",
+        "            self.n += 1",
+    ]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "self.lock.acquire()  # here\nself.n += 1",
+        "self.lock.acquire()  # here\nself.lock.release()",
+        "self.lock.acquire()  # here\nself.n += 1\nself.lock.release()\nself.show()",
+        "self.lock.acquire()  # here\nself.lock.release()\nself.lock.acquire()\nself.lock.release()",
+        "if self.lock.acquire(False):  # here\n    self.lock.release()",
+    ],
+)
+def test_a_lock_that_is_not_released_last_stays_as_it_is(body: str) -> None:
+    assert changed(node(f"def tick(self):\n{indent(body, '    ')}"), take_by_with) is None
+
+
+def test_a_lock_that_one_function_alone_acquires_is_not_made_reentrant() -> None:
+    text = node(
+        "def tick(self):\n    self.lock.acquire()  # here", "import threading\nself.lock = threading.Lock()"
+    )
+    assert changed(text, make_reentrant) is None

@@ -2,6 +2,7 @@
 
 import ast
 
+from sim.diagnosis.edits.polling import leave_out
 from sim.diagnosis.edits.replies import future_of, is_at, plain_call
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
 
@@ -19,6 +20,73 @@ def take_together(source: SourceEditor, line: int, other: int) -> None:
     source.replace_lines(
         inner, inner, source.lines_moved(_header_end(inner), inner.body[-1], inner.col_offset)
     )
+
+
+def take_before(source: SourceEditor, line: int, other: int) -> None:
+    """Let the callback at a line take its locks by ``acquire`` in the order of that at line ``other``.
+
+    The lock that it takes at the line is taken before the first one. Only where no ``try`` is between them.
+    """
+    function = source.function_at(line)
+    taken = [each for each in function.body if _method_of(each, "acquire")]
+    wanted = [each for each in taken if each.lineno == line]
+    first, second = (_acquired(each) for each in _taken_before(source, other))
+    if len(wanted) != 1 or _acquired(wanted[0]) != first or wanted[0] is taken[0]:
+        raise NotSimpleError
+    if _acquired(taken[0]) != second:
+        raise NotSimpleError
+    moved = source.lines_behind(line - 1, wanted[0])
+    source.replace_lines(wanted[0], wanted[0], "")
+    source.replace_lines(taken[0], taken[0], moved + source.lines_behind(taken[0].lineno - 1, taken[0]))
+
+
+def take_by_with(source: SourceEditor, line: int) -> None:
+    """Take the lock of the ``acquire`` at a line by ``with``, up to the last statement that releases it.
+
+    Only for statements of one function's body, and a lock that is not taken there again.
+    """
+    function = source.function_at(line)
+    taken = [each for each in function.body if each.lineno == line and _method_of(each, "acquire")]
+    if len(taken) != 1:
+        raise NotSimpleError
+    lock = _acquired(taken[0])
+    behind = function.body[function.body.index(taken[0]) + 1 :]
+    parts = [each for part in behind for each in source.nodes(ast.Expr, part)]
+    releases = [each for each in parts if _method_of(each, "release", lock)]
+    again = [each for each in parts if _method_of(each, "acquire", lock)]
+    if again or not releases or releases[-1] is not behind[-1] or len(behind) < 2:
+        raise NotSimpleError
+    edited = SourceEditor(source.text)
+    for each in releases[:-1]:
+        leave_out(edited, each.lineno)
+    inside = SourceEditor(edited.result())
+    *_, last, _ = inside.function_at(line).body
+    body = inside.lines_moved(line, last, last.col_offset + 4)
+    source.replace_lines(taken[0], behind[-1], f"{indentation(taken[0])}with {lock}:\n{body}")
+
+
+def _taken_before(source: SourceEditor, line: int) -> tuple[ast.stmt, ast.stmt]:
+    """Return the first statement that takes a lock in the function at a line, and that at the line."""
+    taken = [each for each in source.function_at(line).body if _method_of(each, "acquire")]
+    at = [each for each in taken if each.lineno == line]
+    if len(at) != 1 or at[0] is taken[0]:
+        raise NotSimpleError
+    return taken[0], at[0]
+
+
+def _method_of(node: ast.AST, method: str, lock: str = "") -> ast.expr | None:
+    """Return the object of a statement that only calls a method, if it is ``lock`` ("": any); else None."""
+    match node:
+        case ast.Expr(value=ast.Call(func=ast.Attribute(value=found, attr=name), args=[], keywords=[])):
+            return found if name == method and lock in ("", ast.unparse(found)) else None
+    return None
+
+
+def _acquired(statement: ast.stmt) -> str:
+    found = _method_of(statement, "acquire")
+    if found is None:
+        raise NotSimpleError
+    return ast.unparse(found)
 
 
 def let_go_during_wait(source: SourceEditor, line: int) -> None:
@@ -96,11 +164,20 @@ def _made(source: SourceEditor, lock: str) -> list[ast.expr]:
 
 
 def make_reentrant(source: SourceEditor, line: int) -> None:
-    """Replace the lock that is taken at a line by an ``RLock``, which its holder may take again."""
+    """Replace the lock that is taken at a line by an ``RLock``, which its holder may take again.
+
+    Where it is taken by ``acquire``, only if another function takes it, too: else it was never released.
+    """
     blocks = [each for each in source.nodes(ast.With) if each.lineno <= line <= each.body[0].lineno]
-    if not blocks:
-        raise NotSimpleError
-    made = _made(source, _lock(source, blocks[-1]))
+    if blocks:
+        lock = _lock(source, blocks[-1])
+    else:
+        lock = _acquired(source.statement_at(line))
+        here = list(ast.walk(source.function_at(line)))
+        taken = [each for each in source.nodes(ast.Expr) if _method_of(each, "acquire", lock)]
+        if all(each in here for each in taken):
+            raise NotSimpleError
+    made = _made(source, lock)
     match made:
         case [
             ast.Call(func=ast.Attribute(value=ast.Name(id="threading"), attr="Lock"), args=[], keywords=[])

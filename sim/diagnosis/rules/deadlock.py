@@ -4,7 +4,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.edits.locks import let_go_during_wait, make_reentrant, take_together
+from sim.diagnosis.edits.locks import (
+    let_go_during_wait,
+    make_reentrant,
+    take_before,
+    take_by_with,
+    take_together,
+)
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
@@ -95,14 +101,10 @@ class SelfMadeDeadlock(Rule):
         if WaitedFor.LOCK not in found.waited_for:
             held = (replace(apart, edit=each.edit) for each in _letting_go(place))
             return apart, *edits_for_reply(place, found.subject, timeline), *held
-        if found.size == 1:
-            return by_edit(place, "make the lock a threading.RLock", make_reentrant)
         if WaitedFor.REPLY in found.waited_for:
             lines = _lines_of((found.subject, found.culprit), found, timeline)
             return tuple(each for line in lines for each in _letting_go(line))
-        other = _line_of(found.culprit, found, timeline)
-        order = f"take both locks at once, in the order of {who(found.culprit, timeline)}"
-        return () if other is None else by_edit(place, order, take_together, other.first_line)
+        return _lock_remedies(place, found, timeline)
 
 
 class NeedsOneMoreWorker(Rule):
@@ -160,6 +162,22 @@ _CURES = {
 
 def _letting_go(place: CodeLocation | None) -> tuple[Remedy, ...]:
     return by_edit(place, "let go of the lock during the call", let_go_during_wait)
+
+
+def _lock_remedies(place: CodeLocation | None, found: Finding, timeline: Timeline) -> tuple[Remedy, ...]:
+    """Return edits of a callback that waits for its own lock, or for that of one that waits for its."""
+    if found.size == 1:
+        words = "take the lock by with, which releases it whatever happens"
+        reentrant = by_edit(place, "make the lock a threading.RLock", make_reentrant)
+        return *reentrant, *by_edit(place, words, take_by_with)
+    other = _line_of(found.culprit, found, timeline)
+    if other is None:
+        return ()
+    order = f"in the order of {who(found.culprit, timeline)}"
+    return (
+        *by_edit(place, f"take both locks at once, {order}", take_together, other.first_line),
+        *by_edit(place, f"take both locks {order}", take_before, other.first_line),
+    )
 
 
 def _without_rate(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
