@@ -73,8 +73,9 @@ class EndlessWait(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Irrelevant if the wait ended after all."""
-        over = found.until < timeline.end and not _is_deadlock(_notice_of(found))
+        """Irrelevant if the wait ended after all, be it by an exception that ended the run."""
+        raised = any(span.error for span in timeline.spans_of(found.subject, _moment(found)))
+        over = (found.until < timeline.end or raised) and not _is_deadlock(_notice_of(found))
         return None if over else Weight.PROBLEM
 
 

@@ -94,6 +94,12 @@ _KNOWN = tuple(
             r"the callback of add_on_set_parameters_callback() returned nothing; rclpy needs its answer",
             r"end that callback with: return SetParametersResult(successful=True)",
         ),
+        (
+            r"EOFError: EOF when reading a line",
+            r"nobody types into this run, so input() found the end of what there is to read",
+            r"run it where somebody can type; in a callback, which keeps its thread so long, read in another "
+            r"thread",
+        ),
     )
 )
 """Exceptions that Python words alike in every program, each with the reason and the cure in rclpy's terms."""
