@@ -11,7 +11,7 @@ from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.lanes.names import short_thread
 from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
-from sim.trace.events import EntityId
+from sim.trace.events import Doing, EntityId
 from sim.trace.model import EntityInfo, Moment, Nanoseconds, Span, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
@@ -66,7 +66,10 @@ LineMarks: TypeAlias = dict[int, LineMark]
 
 
 def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, LineMarks]:
-    """Return the lines at which callbacks are at a moment, with the calls that led there."""
+    """Return the lines at which callbacks are at a moment, with the calls that led there.
+
+    Sleeps that follow each other at one line are one position, so the text tells how long it has been there.
+    """
     found: defaultdict[SourceFile, LineMarks] = defaultdict(dict)
     groups = list(timeline.groups)
     for thread, span in timeline.moment(at).running.items():
@@ -79,7 +82,8 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
             file = files.of(frame.file)
             if file is not None:
                 lasted = duration(at - position.start)
-                texts = (f"▶ {doing_of(position)}, {lasted}", f"▶ {lasted}", "") if frame is here else ()
+                since = f"here for {lasted}" if position.doing is Doing.SLEEPS else lasted
+                texts = (f"▶ {doing_of(position)}, {since}", f"▶ {lasted}", "") if frame is here else ()
                 found[file][frame.line] = LineMark(texts, number)
     return dict(found)
 

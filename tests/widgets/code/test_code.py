@@ -5,10 +5,11 @@ from textual.app import App, ComposeResult
 
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.code.highlight import TokenKind, highlight
-from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, marks_at
+from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, lines_at, marks_at
 from cbtui.widgets.code.source_files import SourceFiles
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
+from sim.trace.events import CallbackAt, Doing
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.pictures import lines_of
@@ -66,6 +67,21 @@ def test_a_running_callback_is_marked_with_its_thread(path: Path) -> None:
     assert (timer.doing, timer.first_line, timer.last_line) == (CallbackActivity.RUNS, 30, 33)
     assert timer.texts[0] == "▶ MainThread 5.0 s"
     assert timer.letter == "A"
+
+
+@pytest.mark.parametrize(
+    ("doing", "told"), [(Doing.SLEEPS, "▶ sleeps, here for 3.5 s"), (Doing.COMPUTES, "▶ computes, 3.5 s")]
+)
+def test_a_line_tells_how_long_a_callback_has_been_there_not_how_long_one_sleep_lasts(
+    path: Path, doing: Doing, told: str
+) -> None:
+    run, timeline = sleeper(str(path))
+    thread, timer = next(iter(timeline.threads)), list(timeline.entities)[-1]
+    at = CallbackAt(ns(1.0), timer, thread, doing, "", ((str(path), "timer_callback", 31),))
+    timeline = Timeline()
+    timeline.extend(sorted([*run.events, at], key=lambda event: event.t))
+    files = SourceFiles(path)
+    assert lines_at(timeline, ns(4.5), files)[files.main][31].texts[0] == told
 
 
 def test_a_waiting_callback_is_marked_with_the_reason(path: Path) -> None:
