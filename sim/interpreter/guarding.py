@@ -25,9 +25,14 @@ def _guarding_lines(file: str) -> frozenset[int]:
     for function in ast.walk(tree):
         if isinstance(function, ast.FunctionDef | ast.AsyncFunctionDef):
             taken, released = _calls(function, "acquire"), _calls(function, "release")
-            signals |= released.keys() - taken.keys()
+            signals |= {_name(lock) for lock in released.keys() - taken.keys()}
             found |= {(lock, line) for lock, lines in taken.items() if lock in released for line in lines}
-    return frozenset(line for lock, line in found if lock not in signals)
+    return frozenset(line for lock, line in found if _name(lock) not in signals)
+
+
+def _name(lock: str) -> str:
+    """The last name of an expression: two objects may have one lock."""
+    return lock.rpartition(".")[2]
 
 
 def _calls(function: ast.AST, method: str) -> dict[str, list[int]]:
