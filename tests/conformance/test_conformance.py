@@ -56,6 +56,22 @@ def test_an_order_that_real_ros_2_took_is_found_where_one_place_of_some_hundred_
 
 
 @pytest.mark.slow
+def test_an_order_that_real_ros_2_took_is_found_where_a_goal_is_aborted_while_others_go_on() -> None:
+    # Jazzy 7.1.5, 10 runs of 16: the goal that was sent first is executed first, and aborted last.
+    (case,) = decided([("1720-35", drawn("1720-35"))], JAZZY)
+    first, rest = case.model.words[:5], case.model.words[5:]
+    goes_on = [rest[place] for place in (1, 4, 0, 2, 3, 5)]
+    assert [*goes_on[:2], *rest[-2:]] == [
+        "action_3 #1 begins",
+        "wait_3 #1 waits",
+        "goal_0_3 #1 ends as 4",
+        "goal_0_3 #2 ends as 6",
+    ]
+    real = case.model._replace(words=(*first, *goes_on, "goal_0_3 #2 ends as 4", "goal_0_3 #1 ends as 6"))
+    assert Search(Result(case, Outcome.ORDER, (real,)), JAZZY).finds(48)
+
+
+@pytest.mark.slow
 def test_an_order_that_real_ros_2_took_is_found_where_a_wait_ends_with_what_came_first() -> None:
     # Jazzy 7.1.5: the executor's wait is over when the second goal is accepted, before what that one sends.
     (case,) = decided([("1717-176", drawn("1717-176"))], JAZZY)
