@@ -73,6 +73,8 @@ class Cycle:
         self._snapshot: deque[Entity] = deque()
         self._tasks: deque[Task[Any]] = deque()
         self._due_tasks: deque[Task[Any]] = deque()
+        self._fresh_tasks: tuple[Task[Any], ...] = ()
+        """The tasks of the present cycle, where they come before what it hands over again."""
         self.foreign_awaits: list[Task[Any]] = []
         """Tasks that await something unknown; they are resumed when the executor is next woken."""
         self._following = _TASKS
@@ -249,7 +251,8 @@ class Cycle:
         That is newer than the tasks that are due, so it comes first where the newest do. The cycle has no
         tasks that come later, for rclpy copies its list of them first.
         """
-        if self.pool is None or not self.pool.hand_over_again():
+        fresh, self._fresh_tasks = self._fresh_tasks, ()
+        if self.pool is None or not self.pool.hand_over_again(fresh):
             return False
         if self._newest_task_first:
             self._take_tasks()
@@ -305,6 +308,8 @@ class Cycle:
             self._due_tasks = deque(sorted(set(self._due_tasks), key=lambda task: task.number))
         if self._newest_task_first:
             self._due_tasks.reverse()
+        else:
+            self._fresh_tasks = tuple(self._due_tasks)
         if self._due_tasks:
             self._following = _GATHERING
         return bool(self._due_tasks)

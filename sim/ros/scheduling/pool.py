@@ -1,5 +1,6 @@
 """What the cycles of an executor ask of the workers that run what they yield."""
 
+from collections.abc import Collection
 from typing import Any, Protocol
 
 from sim.ros.scheduling.task import Task
@@ -20,5 +21,5 @@ class Pool(Protocol):
     def asked_again(self) -> list[Task[Any]]:
         """The tasks that await, and have to be asked behind the callbacks that are queued, too."""
 
-    def hand_over_again(self) -> bool:
-        """Begin a cycle with what no worker has begun; return whether that starts one."""
+    def hand_over_again(self, fresh: Collection[Task[Any]]) -> bool:
+        """Hand over what no worker has begun, except for ``fresh``; return whether that starts one."""

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from typing import TYPE_CHECKING, Any
 from weakref import WeakMethod
 
@@ -128,20 +128,25 @@ class WorkerPool:
                 last_callback = place
         return [task for task, place in last_places.items() if task._was_suspended and place < last_callback]
 
-    def hand_over_again(self) -> bool:
-        """Hand over again what no worker has begun; return whether that starts one.
+    def hand_over_again(self, fresh: Collection[Task[Any]]) -> bool:
+        """Hand over again what no worker has begun, except for ``fresh``; return whether that starts one.
 
-        Python's pool counts an idle worker less for each item, and starts one where none is left.
+        Python's pool counts an idle worker less for each item, and starts one where none is left
+        (``_adjust_thread_count``), also for what comes behind.
         """
-        waiting = len(self._not_begun()) if self._hands_over_again else 0
-        if not waiting or self._starting is not None or len(self._workers) >= self._executor.threads:
-            return False
+        waits = self._not_begun() if self._hands_over_again and self._may_start() else ()
+        waiting = sum(each not in fresh for each in waits)
         self._handed_over_again += waiting
-        spare = len(self._idle) + max(0, self._called_workers - len(self._queue))
-        if self._handed_over_again <= spare and not self.kept_busy():
-            return False
-        self._start_worker()
-        return True
+        starts = waiting > 0 and (self._none_is_idle() or self.kept_busy())
+        if starts:
+            self._start_worker()
+        return starts
+
+    def _may_start(self) -> bool:
+        return self._starting is None and len(self._workers) < self._executor.threads
+
+    def _none_is_idle(self) -> bool:
+        return self._handed_over_again > len(self._idle) + max(0, self._called_workers - len(self._queue))
 
     def _claimed(self) -> bool:
         return self._called_workers > 0 and len(self._queue) > 0
@@ -151,6 +156,8 @@ class WorkerPool:
         self._queue.append(work)
         if len(self._queue) > self._called_workers:
             self._call_worker()
+        if self._handed_over_again and self._may_start() and self._none_is_idle():
+            self._start_worker()
         self._surface_errors()
 
     def worker_looks(self) -> bool:

@@ -16,6 +16,7 @@ from sim.ros.entities.publisher import Publisher
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from sim.ros.scheduling.task import Future
 from sim.trace.events import CallbackFailed
 from tests.support.simulation import Simulation, simulate
 
@@ -450,6 +451,34 @@ def test_a_pool_that_a_message_keeps_busy_hands_over_what_is_ready_before_the_me
 
     simulate(program, until=1.0, distro=distro)
     assert said == ["serves", "hears", "serves", "runs", "hears"]
+
+
+@pytest.mark.parametrize(("waiting", "workers"), [(1, [1, 2, 2, 3, 3]), (2, [1, 2, 2, 3, 4])])
+@pytest.mark.parametrize("distro", ["jazzy@7.1.5", "kilted"])
+def test_a_pool_starts_a_worker_for_what_awaits_behind_a_timer_that_it_hands_over_again(
+    distro: str, waiting: int, workers: list[int]
+) -> None:
+    # Measured on Jazzy 7.1.5 and Kilted 9.1.2: 10 runs of 10 each; what awaits comes with the third tick.
+    counts: list[int] = []
+
+    def program(simulation: Simulation) -> None:
+        node, never = Node("n"), Future[None]()
+
+        async def wait() -> None:
+            await never
+
+        def count() -> None:
+            counts.append(len(executor._pool._workers))
+            for _ in range(waiting * (len(counts) == 3)):
+                executor.create_task(wait)
+
+        node.create_timer(0.1, count)
+        executor = MultiThreadedExecutor(4)
+        executor.add_node(node)
+        executor.spin()
+
+    simulate(program, until=0.55, distro=distro)
+    assert counts == workers
 
 
 @pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
