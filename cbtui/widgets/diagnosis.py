@@ -203,9 +203,9 @@ def call_note(timeline: Timeline, at: Nanoseconds) -> str:
 
 
 def _response(call: Call) -> str:
-    """The fields of a response, without the name of its class and an empty message."""
+    """The fields of a response without its class and an empty message; of a success, the message alone."""
     inside = call.response.partition("(")[2].removesuffix(")").removesuffix(", message=''")
-    return inside or call.response
+    return inside.removeprefix("success=True, message=") or call.response
 
 
 def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:

@@ -1,6 +1,7 @@
 """The diagnosis line at the bottom, with the number of problems."""
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 from re import finditer, search, sub
 from textwrap import wrap
 
@@ -98,7 +99,10 @@ def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) ->
         else f"line {place.first_line}: {diagnosis.text.removeprefix(diagnosis.time)}"
     )
     fitting = [each for each in texts if len(each) <= room] or [sign + cut]
-    with_note = (each for each in fitting if _fitting(note, room - len(each) - _INDENT))
+    beside = {each: room - len(each) - _INDENT for each in fitting}
+    # A reply is told whole; of a call without one only the service's name, its end, would be cut.
+    whole = (each for each in fitting if note.startswith("/") and beside[each] > len(note))
+    with_note = chain(whole, (each for each in fitting if _fitting(note, beside[each])))
     text = next(with_note, fitting[0]) if diagnosis.level is DiagnosisLevel.FINE else fitting[0]
     shown_note = _fitting(note, room - len(text) - _INDENT)
     runs = [

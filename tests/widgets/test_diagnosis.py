@@ -179,7 +179,7 @@ def test_a_call_is_followed_from_request_to_reply() -> None:
     timeline = timeline_of(dummy_server_run(), 10.0)
     assert call_note(timeline, ns(2.0)) == ""
     assert call_note(timeline, ns(5.15)) == "no reply for 2.6 s: /dummy_server_srv"
-    assert call_note(timeline, ns(8.0)) == "/dummy_server_srv replied success=True, message='TURNING'"
+    assert call_note(timeline, ns(8.0)) == "/dummy_server_srv replied 'TURNING'"
 
 
 def test_a_reply_does_not_stay_for_ever() -> None:
@@ -257,6 +257,14 @@ def test_a_sentence_too_long_for_its_lines_says_so() -> None:
     rows = diagnosis_rows(Diagnosis(sentence, DiagnosisLevel.TROUBLE, stays=True), "", "", 80)
     assert len(rows) == 4
     assert "".join(run.text for run in rows[-1]).rstrip().endswith("word …")
+
+
+def test_a_reply_is_told_whole_where_further_clauses_can_be_left_out() -> None:
+    well = Diagnosis("nothing waits; one thread does all the work", DiagnosisLevel.FINE)
+    row = diagnosis_row(well, "/sensors replied 'picture 5.900 s, scan 5.750 s'", "", 80)
+    line = "".join(run.text for run in row)
+    assert line.startswith(" ✓ nothing waits  ")
+    assert line.endswith("  /sensors replied 'picture 5.900 s, scan 5.750 s' ")
 
 
 def test_a_sentence_of_the_moment_keeps_to_one_line() -> None:
