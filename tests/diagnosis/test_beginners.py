@@ -27,6 +27,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("spin_once", "nested-spin", "rclpy.spin_once(self)", "leave spin_once() out"),
         ("wait_for_event", "endless-wait", "self.opened.wait()", "give go a callback group of its own"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
+        ("call_in_script", "self-made-deadlock", "client.call(", "give ask a callback group of its own"),
         ("call_in_subscription", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("wait_for_future", "self-made-deadlock", "time.sleep(0.1)", "add_done_callback"),
         ("while_true", "still-computing", "while True:", "keep the state in self and return"),

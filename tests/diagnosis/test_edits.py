@@ -325,3 +325,31 @@ def test_what_hides_a_name_of_a_node_gets_another_one_wherever_it_is_used() -> N
         "+    my_handle = None  # here",
     ]
     assert changed("def handle():  # here\n    pass\n", rename_definition) is None
+
+
+SCRIPT = "import rclpy\n\n\n{0}  # here\n    answer.success = True\n\n\nnode.{1}\n"
+
+
+@pytest.mark.parametrize(
+    ("definition", "made", "fitting"),
+    [
+        ("def hear():", "create_subscription(String, 'a', hear, 10)", "def hear(message):"),
+        ("def tick(event):", "create_timer(1.0, tick)", "def tick():"),
+        ("def tick(now, then):", "create_timer(1.0, tick)", "def tick():"),
+        ("def pong(request):", "create_service(Ping, 'p', pong)", "def pong(request, response):"),
+        ("def pong(a, b, c):", "create_service(Ping, 'p', pong)", "def pong(a, b):"),
+        ("def tick ():", "create_subscription(String, 'a', tick, 10)", None),
+        ("def tick(answer):", "create_timer(1.0, tick)", None),
+        ("def tick(event):", "create_timer(1.0, tick)\ntick(3)", None),
+    ],
+)
+def test_a_function_of_no_class_gets_the_parameters_that_it_is_called_with(
+    definition: str, made: str, fitting: str | None
+) -> None:
+    lines = changed(SCRIPT.format(definition, made), fit_parameters)
+    assert lines == (fitting and [f"-{definition}  # here", f"+{fitting}  # here"])
+
+
+def test_a_function_of_no_class_returns_its_response() -> None:
+    text = SCRIPT.format("def pong(request, answer):", "create_service(Ping, 'p', pong)")
+    assert changed(text, return_response) == ["+    return answer"]

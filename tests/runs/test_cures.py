@@ -77,6 +77,7 @@ FIT = "define it with the parameters it is called with (diff)"
                 AWAIT.format("on_order"),
             ],
         ),
+        ("call_in_script", [APART.replace("tick", "ask"), AWAIT.format("ask")]),
         ("call_in_service", [APART.replace("tick", "cook"), AWAIT.format("cook")]),
         ("spin_in_service", [AWAIT.format("cook")]),
         ("wait_for_future", [APART, DONE, AWAIT.format("tick")]),

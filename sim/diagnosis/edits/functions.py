@@ -3,7 +3,7 @@
 import ast
 from collections.abc import Sequence
 
-from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
+from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation, name_of
 
 _PARAMETERS = {
     "create_timer": (),
@@ -26,17 +26,33 @@ def fit_parameters(source: SourceEditor, line: int) -> None:
         source.replace(lambdas[0], source.code_of(lambdas[0]).replace("lambda", begin, 1))
         return
     callback = _defined_at(source, line)
-    wanted = _parameters(source, callback)
-    names = callback.args.args[1:]
-    surplus, missing = names[len(wanted) :], wanted[len(names) :]
+    wanted, own = _parameters(source, callback), _own(source, callback)
+    given = callback.args.args
+    surplus, missing = given[own + len(wanted) :], wanted[len(given) - own :]
     used = {each.id for each in source.nodes(ast.Name, callback)}
-    is_plain = ast.unparse(callback.args) == ", ".join(map(ast.unparse, callback.args.args))
+    is_plain = ast.unparse(callback.args) == ", ".join(map(ast.unparse, given))
     if not is_plain or used & {each.arg for each in surplus} or not (surplus or missing):
         raise NotSimpleError
-    if missing:
-        source.insert_behind(callback.args.args[-1], "".join(f", {each}" for each in missing))
+    if missing and given:
+        source.insert_behind(given[-1], "".join(f", {each}" for each in missing))
+    elif missing:
+        empty = name_of(callback)
+        assert empty.end_col_offset is not None
+        empty.end_col_offset += len("()")
+        if source.code_of(empty) != f"{callback.name}()":
+            raise NotSimpleError
+        source.replace(empty, f"{callback.name}({', '.join(missing)})")
+    elif surplus == given:
+        source.replace(surplus[0], "")
+        if surplus[1:]:
+            source.cut_behind(surplus[0], surplus[-1])
     else:
-        source.cut_behind(callback.args.args[len(wanted)], surplus[-1])
+        source.cut_behind(given[own + len(wanted) - 1], surplus[-1])
+
+
+def _own(source: SourceEditor, callback: ast.FunctionDef) -> int:
+    """Return how many of a callback's parameters nobody passes: 1, for ``self``, of a method."""
+    return 1 if source.is_method(callback) else 0
 
 
 def hand_over_function(source: SourceEditor, line: int) -> None:
@@ -62,7 +78,7 @@ def _parameters(source: SourceEditor, callback: ast.FunctionDef | ast.Lambda) ->
         if isinstance(call.func, ast.Attribute)
         and call.func.attr in _PARAMETERS
         and any(
-            each is callback or (isinstance(each, ast.Attribute) and each.attr == name) for each in call.args
+            each is callback or (name and ast.unparse(each).rpartition(".")[2] == name) for each in call.args
         )
     }
     if len(found) != 1:
@@ -74,7 +90,7 @@ def return_response(source: SourceEditor, line: int) -> None:
     """End the service's callback that is defined at a line by returning its response."""
     callback = _defined_at(source, line)
     returns = source.nodes(ast.Return, callback)
-    if len(callback.args.args) != 3 or returns:
+    if len(callback.args.args) != 2 + _own(source, callback) or returns:
         raise NotSimpleError
     last = callback.body[-1]
     response = callback.args.args[-1].arg
@@ -83,7 +99,7 @@ def return_response(source: SourceEditor, line: int) -> None:
 
 
 def _defined_at(source: SourceEditor, line: int) -> ast.FunctionDef:
-    callback = source.callback_at(line)
+    callback = source.uncalled_at(line)
     if callback.lineno != line:
         raise NotSimpleError
     return callback

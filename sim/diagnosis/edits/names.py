@@ -2,7 +2,7 @@
 
 import ast
 
-from sim.diagnosis.edits.source_editor import Function, NotSimpleError, SourceEditor
+from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, name_of
 
 
 def rename(source: SourceEditor, line: int, name: str, new: str) -> None:
@@ -26,7 +26,7 @@ def rename(source: SourceEditor, line: int, name: str, new: str) -> None:
 def rename_definition(source: SourceEditor, line: int) -> None:
     """Begin the name of a method or class attribute that a line defines with ``my_``, and all its uses."""
     names = [
-        each.targets[0] if isinstance(each, ast.Assign) else _name_of(each)
+        each.targets[0] if isinstance(each, ast.Assign) else name_of(each)
         for owner in source.nodes(ast.ClassDef)
         for each in owner.body
         if each.lineno == line and isinstance(each, ast.Assign | ast.FunctionDef | ast.AsyncFunctionDef)
@@ -37,17 +37,3 @@ def rename_definition(source: SourceEditor, line: int) -> None:
     for used in source.nodes(ast.Attribute):
         if used.attr == names[0].id and ast.unparse(used.value) == "self":
             source.replace(used, f"self.my_{used.attr}")
-
-
-def _name_of(function: Function) -> ast.Name:
-    """Return the name in the line that defines a function, as a node of its own."""
-    begin = "def " if isinstance(function, ast.FunctionDef) else "async def "
-    start = function.col_offset + len(begin)
-    end = start + len(function.name.encode())
-    return ast.Name(
-        function.name,
-        lineno=function.lineno,
-        col_offset=start,
-        end_lineno=function.lineno,
-        end_col_offset=end,
-    )

@@ -49,7 +49,7 @@ def await_reply(source: SourceEditor, line: int, made: int) -> None:
     ``made`` is the line that makes what calls it.
     """
     give_own_group(source, made)
-    callback = source.callback_at(line)
+    callback = source.uncalled_at(line)
     statement = _innermost(callback, line)
     if any(is_at(each, line) for each in source.nodes(ast.With, callback)):
         raise NotSimpleError  # it would keep a lock while others run on its thread

@@ -57,15 +57,24 @@ class SourceEditor:
 
     def callback_at(self, line: int) -> ast.FunctionDef:
         """Return the method around a line, if the program itself does not call it."""
-        function = self.function_at(line)
-        calls = (each.func for each in self.nodes(ast.Call))
-        called = {each.attr for each in calls if isinstance(each, ast.Attribute)}
-        is_method = any(function in each.body for each in self.nodes(ast.ClassDef))
-        is_plain = isinstance(function, ast.FunctionDef) and not function.decorator_list
-        if not (is_plain and is_method and function.args.args) or function.name in called:
+        function = self.uncalled_at(line)
+        if not self.is_method(function) or not function.args.args:
             raise NotSimpleError
-        assert isinstance(function, ast.FunctionDef)
         return function
+
+    def uncalled_at(self, line: int) -> ast.FunctionDef:
+        """Return the function around a line, be it a method, if the program itself does not call it."""
+        function = self.function_at(line)
+        calls = [each.func for each in self.nodes(ast.Call)]
+        called = {each.attr for each in calls if isinstance(each, ast.Attribute)}
+        called |= {each.id for each in calls if isinstance(each, ast.Name)}
+        if not isinstance(function, ast.FunctionDef) or function.decorator_list or function.name in called:
+            raise NotSimpleError
+        return function
+
+    def is_method(self, function: Function) -> bool:
+        """Return whether a function is a method of a class."""
+        return any(function in each.body for each in self.nodes(ast.ClassDef))
 
     def code_of(self, node: Positioned) -> str:
         """Return the text of a node."""
@@ -197,6 +206,14 @@ class SourceEditor:
 
 def _module(statement: ast.Import | ast.ImportFrom) -> str:
     return statement.module or "" if isinstance(statement, ast.ImportFrom) else statement.names[0].name
+
+
+def name_of(function: Function) -> ast.Name:
+    """Return the name in the line that defines a function, as a node of its own."""
+    start = function.col_offset + len("def " if isinstance(function, ast.FunctionDef) else "async def ")
+    end = start + len(function.name.encode())
+    line = function.lineno
+    return ast.Name(function.name, lineno=line, col_offset=start, end_lineno=line, end_col_offset=end)
 
 
 def indentation(statement: ast.stmt) -> str:
