@@ -353,3 +353,24 @@ def test_a_function_of_no_class_gets_the_parameters_that_it_is_called_with(
 def test_a_function_of_no_class_returns_its_response() -> None:
     text = SCRIPT.format("def pong(request, answer):", "create_service(Ping, 'p', pong)")
     assert changed(text, return_response) == ["+    return answer"]
+
+
+@pytest.mark.parametrize(
+    ("asked", "awaited"),
+    [
+        ("total = self.client.call(request).sum", "total = (await self.client.call_async(request)).sum"),
+        ("return self.client.call(request)", "return await self.client.call_async(request)"),
+    ],
+)
+def test_what_is_taken_from_a_reply_is_taken_once_that_is_there(asked: str, awaited: str) -> None:
+    text = node(
+        f"""
+        def __init__(self):
+            self.create_timer(1.0, self.tick)
+
+        def tick(self):
+            {asked}  # here
+        """
+    )
+    made = next(n for n, each in enumerate(text.splitlines(), 1) if "create_timer" in each)
+    assert f"+        {awaited}  # here" in (changed(text, await_reply, made) or [])

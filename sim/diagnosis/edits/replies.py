@@ -55,7 +55,8 @@ def await_reply(source: SourceEditor, line: int, made: int) -> None:
         raise NotSimpleError  # it would keep a lock while others run on its thread
     call = plain_call(statement)
     if call is not None:
-        source.replace(call, f"await {_asynchronous(source, call)}")
+        awaited = f"await {_asynchronous(source, call)}"
+        source.replace(call, awaited if getattr(statement, "value", None) is call else f"({awaited})")
     else:
         future = future_of(statement)
         awaited = f"await {future}{source.comment_behind(statement)}"
