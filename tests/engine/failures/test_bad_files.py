@@ -142,12 +142,17 @@ FILES = {
     "a method that hides one of Node's": Bad(
         HEAD + "rclpy.init()\nclass A(Node):\n    def handle(self):\n        pass\nA('a')\n",
         f"node.py:9: {RAISED} TypeError: 'method' object does not support the context manager protocol; "
-        "A.handle hides Node.handle, which rclpy itself uses; give it another name, such as my_handle",
+        "A.handle hides Node.handle, which every node has; give it another name, such as my_handle",
     ),
     "an attribute that hides one of Node's": Bad(
         HEAD + "rclpy.init()\nclass A(Node):\n    rate = 5\n    handle = None\nA('a')\n",
         f"node.py:10: {RAISED} TypeError: 'NoneType' object does not support the context manager protocol; "
         "A.handle hides Node.handle",
+    ),
+    "an attribute that hides a method of Node's": Bad(
+        NODE + "class A(Node):\n    def f(self):\n        self.get_clock = self.get_clock()\n"
+        "        self.get_clock()\nA('a').f()",
+        f"node.py:11: {RAISED} TypeError: 'ROSClock' object is not callable; A.get_clock hides Node",
     ),
     "raises in a callback": Bad(
         NODE + "def tick():\n    1 / 0\nnode.create_timer(1.0, tick)\nrclpy.spin(node)",

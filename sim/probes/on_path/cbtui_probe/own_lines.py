@@ -11,7 +11,7 @@ from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
     from types import FrameType
 
     IsOwn = Callable[[FrameType], bool]
@@ -38,14 +38,15 @@ def culprit_of(error: BaseException, is_own: IsOwn) -> tuple[str, int, str] | No
     That is a callback with wrong parameters, or what hides a name of ``Node`` that rclpy uses.
     """
     frames = list(walk_tb(error.__traceback__))
-    if not frames or is_own(frames[-1][0]):
+    if not frames or not isinstance(error, (TypeError, AttributeError, RuntimeError)):
         return None
-    return _rejected_callback(error, frames[-1][0]) or _hiding(error, frames, is_own)
+    if is_own(frames[-1][0]):
+        return _hiding_attribute(error, *frames[-1])
+    return _rejected_callback(error, frames[-1][0]) or _hiding(frames, is_own)
 
 
 def _rejected_callback(error: BaseException, frame: FrameType) -> tuple[str, int, str] | None:
-    is_typical = isinstance(error, TypeError | RuntimeError)
-    if not is_typical or not any(each in str(error) for each in ("positional argument", "callback should")):
+    if not any(each in str(error) for each in ("positional argument", "callback should")):
         return None
     inside = frame.f_locals
     caller = inside.get("self")
@@ -77,31 +78,46 @@ def _calls_with_future(task: object) -> bool:
     return any(hasattr(each, "add_done_callback") for each in getattr(task, "_args", None) or ())
 
 
-def _hiding(
-    error: BaseException, frames: list[tuple[FrameType, int]], is_own: IsOwn
-) -> tuple[str, int, str] | None:
-    if not isinstance(error, TypeError | AttributeError):
-        return None
+def _hiding(frames: list[tuple[FrameType, int]], is_own: IsOwn) -> tuple[str, int, str] | None:
     for frame, line in takewhile(lambda each: not is_own(each[0]), reversed(frames)):
-        used = re.findall(r"\.(\w+)", linecache.getline(frame.f_code.co_filename, line))
-        for node in frame.f_locals.values():
-            classes = type(node).__mro__
-            base = next((each for each in classes if (each.__module__, each.__name__) == _NODE), None)
-            for owner in classes[: classes.index(base)] if base else ():
-                for name in filter(vars(owner).__contains__, used):
-                    file, number = _written_at(owner, name)
-                    if hasattr(base, name) and file:
-                        return file, number, _HIDES.format(f"{owner.__name__}.{name}", name)
+        for _, base, owners, name in _used(frame, line):
+            for owner in owners:
+                file, number = _written_at(owner, name) if name in vars(owner) else ("", 0)
+                if file:
+                    return file, number, _HIDES.format(owner.__name__, name, base.__name__)
     return None
 
 
+def _hiding_attribute(error: BaseException, frame: FrameType, line: int) -> tuple[str, int, str] | None:
+    """What hides a method of ``Node`` that the program itself calls: an attribute of the node."""
+    if "object is not callable" not in str(error):
+        return None
+    for node, base, owners, name in _used(frame, line):
+        for owner in owners if name in vars(node) and callable(getattr(base, name)) else ():
+            file, number = _written_at(owner, name)
+            if file:
+                return file, number, _HIDES.format(owner.__name__, name, base.__name__)
+    return None
+
+
+def _used(frame: FrameType, line: int) -> Iterator[tuple[Any, type, tuple[type, ...], str]]:
+    """The nodes at hand at a line, with ``Node``, the own classes made of it, and a name of its there."""
+    used = re.findall(r"\.(\w+)", linecache.getline(frame.f_code.co_filename, line))
+    for node in frame.f_locals.values():
+        classes = type(node).__mro__
+        base = next((each for each in classes if (each.__module__, each.__name__) == _NODE), None)
+        for name in used if base else ():
+            if base and hasattr(base, name):
+                yield node, base, classes[: classes.index(base)], name
+
+
 _NODE = ("rclpy.node", "Node")
-_HIDES = "{0} hides Node.{1}, which rclpy itself uses; give it another name, such as my_{1}"
+_HIDES = "{0}.{1} hides {2}.{1}, which every node has; give it another name, such as my_{1}"
 
 
 def _written_at(owner: type, name: str) -> tuple[str, int]:
     """File and line of an attribute of a class; "" if they are not known."""
-    value = vars(owner)[name]
+    value = vars(owner).get(name)
     code = getattr(getattr(value, "fget", value), "__code__", None)
     if code is not None:
         return code.co_filename, code.co_firstlineno
@@ -109,6 +125,6 @@ def _written_at(owner: type, name: str) -> tuple[str, int]:
         lines, first = inspect.getsourcelines(owner)
         file = inspect.getsourcefile(owner) or ""
         for number, line in enumerate(lines, first):
-            if re.match(rf"\s+{name}\s*[:=]", line):
+            if re.match(rf"\s+(?:self\.)?{name}\s*[:=](?!=)", line):
                 return file, number
     return "", 0
