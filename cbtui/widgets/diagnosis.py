@@ -254,11 +254,13 @@ def _busy_threads(moment: Moment, timeline: Timeline) -> str:
     running = [name_of(span.entity, timeline) for span in moment.running.values()]
     if not running:
         return "no thread is free"
+    names = sorted(dict.fromkeys(running), key=running.count, reverse=True)[:2]
+    if len(running) < thread_count(timeline):  # others are of other executors, or about to take up work
+        return f"no thread is free for it: {' and '.join(names)} {'runs' if len(names) == 1 else 'run'}"
     if len(running) == 1:
         return f"the only thread runs {running[0]}"
-    names = sorted(dict.fromkeys(running), key=running.count, reverse=True)
     every = "both" if len(running) == 2 else f"all {len(running)}"
-    return f"{every} threads are busy with {' and '.join(names[:2])}"
+    return f"{every} threads are busy with {' and '.join(names)}"
 
 
 def _threads_needed(timeline: Timeline, peak: int) -> tuple[str, str]:

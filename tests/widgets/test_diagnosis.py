@@ -115,6 +115,8 @@ def test_a_wait_for_several_workers_names_what_keeps_most_of_them() -> None:
     run.callback(service, threads[2], 1.2)
     run.wait(timer, 2.0, None, Reason.NO_FREE_WORKER, workers_busy=True)
     assert said(run, 5.0).text == "tick waits 3.0 s: all 3 threads are busy with serve and tick"
+    run.end(timer, threads[0], 6.0)
+    assert said(run, 6.0).text == "tick waits 4.0 s: no thread is free for it: serve runs"
 
 
 def test_a_wait_in_the_event_queue_names_what_runs_before() -> None:
