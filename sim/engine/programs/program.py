@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import importlib.util
 import inspect
+import signal
 import sys
 import threading
 import traceback
@@ -32,7 +33,8 @@ if TYPE_CHECKING:
 STOPPED = "it was stopped"
 """The sentence on a program that was asked to end."""
 
-_INTERRUPTED = 130
+_INTERRUPTED = -signal.SIGINT
+"""The exit code that others see: Python ends itself by the signal of a KeyboardInterrupt nobody takes."""
 
 
 @dataclass(frozen=True, slots=True)

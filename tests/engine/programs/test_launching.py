@@ -99,6 +99,13 @@ def printed(run: Run) -> list[str]:
     return [event.text for event in run.events if isinstance(event, Printed)]
 
 
+def test_a_node_that_does_not_take_ctrl_c_ends_by_its_signal(package: Path) -> None:
+    uncaught = NODE.replace("except KeyboardInterrupt", "except ValueError")
+    (package / "counting" / "counter.py").write_text(uncaught)
+    said = printed(run(launch_file(package, 'Node(package="counting", executable="counter")')))
+    assert any("[ERROR] [counter-1]: process has died [pid 1, exit code -2, cmd" in line for line in said)
+
+
 def test_nodes_get_names_namespaces_parameters_and_time(package: Path) -> None:
     body = """
         DeclareLaunchArgument("period", default_value="1.0"),
