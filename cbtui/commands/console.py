@@ -1,6 +1,9 @@
 """``cbtui``, ``cbtui open`` and ``cbtui replay``: the commands that open the console."""
 
 import argparse
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
@@ -126,10 +129,37 @@ def run_console(look: Appearance, **begins_with: Any) -> int:
     """
     if look.screen_reader:
         return open_in_lines(look, **begins_with)
-    from cbtui.app import CbtuiApp
+    is_menu = all(each is None for each in begins_with.values())
+    with nullcontext() if is_menu else _opening():
+        from cbtui.app import CbtuiApp
 
-    app = CbtuiApp(
-        charset=look.charset, theme=look.theme, keys=look.keys, complaints=look.complaints, **begins_with
-    )
-    app.run()
+        if not is_menu:
+            import cbtui.screens.lesson  # noqa: F401 -- here, for once the app runs the screen is empty
+
+        app = CbtuiApp(
+            charset=look.charset, theme=look.theme, keys=look.keys, complaints=look.complaints, **begins_with
+        )
+        app.run()
     return app.return_code or 0
+
+
+@contextmanager
+def _opening() -> Iterator[None]:
+    """Say in the terminal's last line that something is opened, and leave no trace of it at the end.
+
+    The console draws on a screen of its own, and only once it has imported what it needs.
+    """
+    _write("opening ...\r")
+    try:
+        yield
+    finally:
+        _write(_CLEAR_LINE)
+
+
+def _write(text: str) -> None:
+    with suppress(OSError):  # the console tells of a terminal that is gone
+        sys.stderr.write(text)
+        sys.stderr.flush()
+
+
+_CLEAR_LINE = "\x1b[K"

@@ -59,3 +59,19 @@ def test_a_terminal_is_as_it_was_when_the_console_is_ended_from_outside(tmp_path
         console.process.terminate()
         assert console.ended() == 128 + SIGTERM
         assert console.left_on() == set()
+
+
+@pytest.mark.slow
+def test_that_something_is_opened_is_said_before_the_console_draws_and_leaves_no_trace(
+    tmp_path: Path,
+) -> None:
+    with opened(80, 24, tmp_path, "open", "split-groups") as console:
+        console.until("What do you expect?")
+        assert console.drawn.index(b"opening ...") < console.drawn.index(b"\x1b[?1049h")
+        console.press(_ESCAPE)
+        console.until("LIVE")
+        console.press("q")
+        console.until("Unit 5")
+        console.press("q")
+        assert console.ended() == 0, console.said()
+        assert b"\x1b[K" in console.drawn.rpartition(b"\x1b[?1049l")[2]
