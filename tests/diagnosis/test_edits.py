@@ -1,5 +1,8 @@
 """Edits of source: the lines that change, layout and comments that stay, and the shapes that are refused."""
 
+import ast
+from collections.abc import Callable
+from pathlib import Path
 from textwrap import indent
 
 import pytest
@@ -7,8 +10,9 @@ import pytest
 from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.diagnosis.edits.functions import fit_parameters, hand_over_function, return_response
 from sim.diagnosis.edits.groups import give_own_group
+from sim.diagnosis.edits.locks import make_reentrant
 from sim.diagnosis.edits.names import rename, rename_definition
-from sim.diagnosis.edits.polling import leave_out
+from sim.diagnosis.edits.polling import leave_out, step_by_step
 from sim.diagnosis.edits.profiles import match_quality
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
 from tests.diagnosis.edited_source import MARK, changed, edited, node
@@ -81,6 +85,19 @@ def test_a_function_of_no_class_and_what_is_no_python_is_not_edited() -> None:
     assert changed("def tick(self):\n    self.client.call(1)  # here\n", await_reply, 1) is None
     assert CodeEdit("a.py", "", await_reply, (1, 1)).applied("def tick(") is None
     assert CodeEdit("a.py", "", await_reply, (1, 1)).applied("") is None
+
+
+@pytest.mark.parametrize(
+    "change", [leave_out, fit_parameters, return_response, hand_over_function, make_reentrant, step_by_step]
+)
+def test_a_line_that_a_changed_file_has_no_more_and_any_other_are_no_error(
+    change: Callable[..., None],
+) -> None:
+    for path in sorted((Path(__file__).parent / "beginners").glob("l*.py")):
+        text = path.read_text()
+        for line in range(-1, text.count("\n") + 4):
+            new = CodeEdit(str(path), "", change, (line,)).applied(text)
+            assert new is None or ast.parse(new)
 
 
 def test_a_call_is_awaited_wherever_it_is_in_a_group_of_its_own() -> None:

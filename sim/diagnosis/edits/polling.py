@@ -139,10 +139,11 @@ def _negated(source: SourceEditor, condition: ast.expr) -> str:
 def leave_out(source: SourceEditor, line: int) -> None:
     """Remove the statement at a line of a method that only calls a function."""
     statement = source.statement_at(line)
-    around = [each for each in ast.walk(source.function_at(line)) if statement in getattr(each, "body", ())]
+    bodies = (getattr(each, "body", ()) for each in source.nodes(ast.stmt, source.function_at(line)))
+    around = [each for each in bodies if statement in each]
     if not around or not isinstance(statement, ast.Expr) or not isinstance(statement.value, ast.Call):
         raise NotSimpleError
-    is_alone = len(getattr(around[-1], "body", ())) == 1
+    is_alone = len(around[-1]) == 1
     source.replace_lines(statement, statement, f"{indentation(statement)}pass\n" if is_alone else "")
 
 

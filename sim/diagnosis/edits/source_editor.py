@@ -53,7 +53,10 @@ class SourceEditor:
 
     def statement_at(self, line: int) -> ast.stmt:
         """Return the innermost statement at a line."""
-        return [each for each in self.nodes(ast.stmt) if each.lineno <= line <= (each.end_lineno or 0)][-1]
+        around = [each for each in self.nodes(ast.stmt) if each.lineno <= line <= (each.end_lineno or 0)]
+        if not around:
+            raise NotSimpleError
+        return around[-1]
 
     def callback_at(self, line: int) -> ast.FunctionDef:
         """Return the method around a line, if the program itself does not call it."""
