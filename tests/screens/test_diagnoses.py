@@ -134,7 +134,7 @@ async def test_a_run_without_problems_says_so_and_offers_no_way() -> None:
     async with console(seconds=3.0) as (app, pilot):
         assert "problem" not in lines_of(app)[-2]
         await press(pilot, "d", "enter", "down")
-        assert "✓ Nothing has gone wrong so far" in text_of(app)
+        assert "No rule has found a problem so far." in text_of(app)
         assert "go there" not in text_of(app)
 
 
@@ -274,7 +274,7 @@ async def test_a_problem_that_comes_while_the_window_is_open_is_listed() -> None
         screen = DiagnosesScreen((), Charset.BRAILLE, latest=lambda: tuple(latest))
         await app.push_screen(screen)
         await settle(pilot)
-        assert "Nothing has gone wrong so far" in text_of(app)
+        assert "No rule has found a problem so far" in text_of(app)
         latest.extend(found)
         await until(pilot, lambda: title_of(found) in text_of(app))
         await until(

@@ -28,7 +28,7 @@ from sim.diagnosis import location_text, sentence
 from sim.quantities.durations import timestamp
 from sim.quantities.plural import counted
 
-_ALL_IS_WELL = "✓ Nothing has gone wrong so far: no rule has found a problem."
+_ALL_IS_WELL = "No rule has found a problem so far. What a program should do and does not, no rule can know."
 _NOT_SIMPLE = "No cure is offered: only simple code is changed by itself."
 _TIME = 10
 _CHECK_INTERVAL = 0.5
