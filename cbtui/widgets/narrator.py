@@ -44,6 +44,8 @@ class Narrator(PaintedWidget):
 
     timeline: reactive[Timeline] = painted(Timeline, always_update=True)
     now: reactive[Nanoseconds] = painted(0)
+    stepped: reactive[bool] = painted(False)
+    """Whether a step led to the moment, so that it is told even if nothing was decided then."""
     charset: reactive[Charset] = painted(Charset.BRAILLE)
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
@@ -51,7 +53,7 @@ class Narrator(PaintedWidget):
         width = max(20, size.width)
         glyphs = GLYPHS[self.charset]
         lines: list[tuple[str, Ink]] = []
-        for place, text in enumerate(narration(self.timeline, self.now)):
+        for place, text in enumerate(narration(self.timeline, self.now, self.stepped)):
             sign = f" {glyphs.forth} " if place == 0 else "   "
             for line in lines_of_text(text, width - 6, self.charset):
                 lines.append((f"{sign}{line}", _NEXT if place else _FIRST))
@@ -62,11 +64,16 @@ class Narrator(PaintedWidget):
         return [[TextRun(fit(line, width, self.charset), ink)] for line, ink in lines]
 
 
-def narration(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
-    """Return the executor's last action by a moment, and the callbacks that still waited, in its order."""
+def narration(timeline: Timeline, at: Nanoseconds, stepped: bool = False) -> tuple[str, ...]:
+    """Return the executor's last action by a moment, and the callbacks that still waited, in its order.
+
+    If time was ``stepped`` to a moment without an action, return what else happens at that moment.
+    """
     last = timeline.neighbour(at + 1, None, -1)
     if last is None:
         return ("nothing has happened yet",)
+    if stepped and last < at:
+        return _without_decision(timeline, at)
     moment = timeline.moment(last)
     left = [wait for wait in moment.waiting.values() if wait.holder != wait.entity]
     left.sort(key=lambda wait: _place(timeline.entities[wait.entity]))
@@ -79,6 +86,35 @@ def narration(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
     )
     first = f"{timestamp(last)}: {'; '.join(did) or 'the executor looks again'}"
     return (first, *_by_cause(left, timeline, last)) if left else (first, _at_rest(timeline, last))
+
+
+def _without_decision(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
+    """Tell a moment at which the executor decided nothing: what was sent, or that only time passed."""
+    moment = timeline.moment(at)
+    left = [wait for wait in moment.waiting.values() if wait.holder != wait.entity]
+    left.sort(key=lambda wait: _place(timeline.entities[wait.entity]))
+    then = "; ".join(_sent(timeline, at))
+    first = f"{timestamp(at)}: {then}" if then else f"nothing happens up to {timestamp(at)}"
+    running = dict.fromkeys(name_of(span.entity, timeline) for span in moment.running.values())
+    robot = timeline.robot(at)
+    goes_on = [f"{name} still runs" for name in running]
+    if robot is not None and (robot.linear or robot.angular):
+        goes_on.append("the robot drives on" if robot.linear else "the robot turns on")
+    first = f"{first}: {', '.join(goes_on)}" if goes_on and not then else first
+    return (first, *_by_cause(left, timeline, at)) if left else (first, _at_rest(timeline, at))
+
+
+def _sent(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    """What was sent at a moment."""
+    for call in timeline.calls_within(Window(max(0, at - 1), at + 1)):
+        if call.replied == at:
+            yield f"{call.service} replies"
+        elif call.sent == at:
+            yield f"{call.service} is called"
+    services = {call.service for call in timeline.calls}
+    for name in timeline.names_sent:
+        if name not in services and any(each.at == at for each in timeline.sent_on(name)):
+            yield f"a message is sent on {name}"
 
 
 def _place(entity: EntityInfo) -> tuple[int, int, EntityId]:

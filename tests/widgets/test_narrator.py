@@ -33,6 +33,20 @@ def test_a_start_tells_the_thread_the_reason_the_order_and_the_group() -> None:
     assert "tick returns after 1.0 s, group A is free" in ended[0]
 
 
+def test_a_step_to_a_moment_without_a_decision_is_told_at_its_time() -> None:
+    run = Run()
+    group = run.exclusive(run.node("/n"))
+    tick = run.timer(group, "tick", 1.0)
+    run.callback(tick, run.thread("MainThread"), 1.0, 3.0)
+    run.call("/empty", 2.0, 2.5)
+    run.robot(0.0, 0.0, 0.0)
+    timeline = told(run, until=2.9)
+    assert narration(timeline, ns(1.0), stepped=True) == narration(timeline, ns(1.0))
+    assert narration(timeline, ns(1.5), stepped=True)[0] == "nothing happens up to 1.500 s: tick still runs"
+    assert narration(timeline, ns(2.5), stepped=True)[0] == "2.500 s: /empty replies"
+    assert narration(timeline, ns(1.5))[0].startswith("1.000 s: ")
+
+
 def test_who_waits_for_a_group_is_told_with_its_holder() -> None:
     told_at = narration(RUNS[0], ns(6.0))
     assert any(

@@ -151,6 +151,8 @@ class LiveRun:
         self.speed = setup.speed if self.virtual else setup.speed or 1.0
         self.loss: str | None = None
         self.paused = False
+        self.stepped = False
+        """Whether the last command that concerned time was a step."""
         self._silent = False
         self._time_passes = True
         self._over = False
@@ -290,12 +292,12 @@ class LiveRun:
 
     def pause(self) -> None:
         """Stop time."""
-        self.paused, self._time_passes = True, False
+        self.paused, self.stepped, self._time_passes = True, False, False
         self._session.send(Pause())
 
     def resume(self) -> None:
         """Let time pass again."""
-        self.paused, self._time_passes = False, True
+        self.paused, self.stepped, self._time_passes = False, False, True
         self._session.send(Resume())
 
     def choose(self, option: int) -> None:
@@ -304,11 +306,12 @@ class LiveRun:
 
     def step(self) -> None:
         """Run to the next scheduling decision, and pause there."""
+        self.stepped = True
         self._session.send(Step())
 
     def run_until(self, moment: Nanoseconds) -> None:
         """Run to a future moment, and pause there."""
-        self.paused, self._time_passes = False, True
+        self.paused, self.stepped, self._time_passes = False, False, True
         self._session.send(RunUntil(moment))
 
     def reset_world(self) -> None:

@@ -9,6 +9,7 @@ from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.linear.dialogue import LineHost
 from cbtui.screens.linear.narrative import LEAST, Narrative, told_finding, told_moment
 from cbtui.screens.parts.copying import summary
+from cbtui.screens.parts.narration import was_stepped
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.parts.runs import RunController
@@ -108,7 +109,8 @@ class Telling(ScreenPart):
 
     def action_narrate(self) -> None:
         """Print the executor's last decision."""
-        for line in narration(self.runs.timeline, self.navigation.now):
+        stepped = was_stepped(self.runs.run, self.navigation)
+        for line in narration(self.runs.timeline, self.navigation.now, stepped):
             self.host.tell(line)
 
     def action_select(self) -> None:
@@ -125,7 +127,9 @@ class Telling(ScreenPart):
             what = "problem" if each.is_problem else "remark"
             self.host.tell(f"{number}: {what}: {told_finding(each)}")
         if not findings.findings:
-            self.host.tell("nothing has gone wrong so far: no rule has found a problem")
+            self.host.tell(
+                "no rule has found a problem so far; what a program should do and does not, no rule can know"
+            )
 
     def action_zoom_in(self) -> None:
         """Report shorter calls and waits."""
