@@ -14,8 +14,8 @@ from cbtui.runs.setup.lesson_setup import setup_to_judge
 from cbtui.widgets.code.marks import marks_at
 from cbtui.widgets.code.source_files import SourceFiles
 from cbtui.widgets.diagnosis import diagnosis_at
-from cbtui.widgets.factory.scene import scene_of
-from cbtui.widgets.factory.texts import wait_texts
+from cbtui.widgets.factory.scene import FactoryScene, scene_of
+from cbtui.widgets.factory.texts import headlines, wait_texts
 from cbtui.widgets.lanes.rows import GroupLane, all_lanes
 from cbtui.widgets.lanes.service_calls import LatestCalls
 from cbtui.widgets.lanes.status import LaneStatus
@@ -82,6 +82,7 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
     by_lanes = waiting_by_lanes(timeline, at)
     in_factory = {area.group.id: area.waiting for area in scene.areas}
     assert by_lanes == {group: in_factory[group] for group in by_lanes}
+    assert_headline_agrees(scene)
     told = diagnosis_at(timeline, at, Concurrency(timeline))
     in_code = {
         mark.entity: mark.texts[0] for marks in marks_at(timeline, at, files).values() for mark in marks
@@ -108,3 +109,13 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
         more = re.search(r"; (\d+) more", told.at_length)
         assert 1 + (int(more[1]) if more else 0) == len(waits)
     assert len(scene.workers) <= max(1, sum(executor.threads for executor in timeline.executors.values()))
+
+
+def assert_headline_agrees(scene: FactoryScene) -> None:
+    """Compare the factory's headline with what its belts say."""
+    belts = [wait_texts(belt, scene.timeline, scene.now) for area in scene.areas for belt in area.belts]
+    waits = [texts[0] for texts in belts if texts]
+    told = re.search(r"(\d+) callbacks? waits? for a worker", headlines(scene)[0].trouble)
+    assert (int(told[1]) if told else 0) == sum("no free worker" in text for text in waits)
+    if "no callback waits" in headlines(scene)[0].text:
+        assert all("its last call" in text for text in waits)

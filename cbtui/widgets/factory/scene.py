@@ -137,6 +137,11 @@ class FactoryScene:
         for area in self.areas:
             yield from (belt.wait for belt in area.belts if belt.wait and belt.waits_for_others)
 
+    def every_wait(self) -> Iterator[Wait]:
+        """Every wait that a belt tells, those for a callback's own last call included."""
+        for area in self.areas:
+            yield from (belt.wait for belt in area.belts if belt.wait)
+
 
 def scene_of(timeline: Timeline, now: Nanoseconds, glance: Nanoseconds) -> FactoryScene:
     """Return the factory at ``now``; who began or ended less than ``glance`` nanoseconds ago is shown
