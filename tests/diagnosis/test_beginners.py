@@ -32,6 +32,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("wait_for_future", "self-made-deadlock", "time.sleep(0.1)", "add_done_callback"),
         ("while_true", "still-computing", "while True:", "keep the state in self and return"),
         ("while_sleeping", "stays-in-loop", "while True:", "keep the state in self and return"),
+        ("loop_in_subscription", "stays-in-loop", "while True:", "on_start begins a timer"),
         ("loop_with_break", "stays-in-loop", "while True:", "keep the state in self and return"),
         ("qos_mismatch", "qos-mismatch", "self.create_subscription(", "the same QoSProfile"),
         ("rate_sleep", "self-made-deadlock", "self.rate.sleep()", "num_threads=2"),

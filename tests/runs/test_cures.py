@@ -84,6 +84,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("while_true", [LATER]),
         ("while_sleeping", [STEP.format("wander")]),
         ("loop_with_break", [STEP.format("drive")]),
+        ("loop_in_subscription", []),
         ("qos_mismatch", ["request no more than is offered (diff)"]),
         ("late_map", ["offer what is requested (diff)"]),
         ("function_called", ["hand over the function itself (diff)"]),

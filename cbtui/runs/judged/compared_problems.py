@@ -35,7 +35,10 @@ class _Known:
 
 @dataclass(frozen=True)
 class ComparedProblems:
-    """Tells of the problems of two runs, which may go on meanwhile. Not thread-safe, like their timelines."""
+    """Tells of the problems of two runs, which may go on meanwhile. Not thread-safe, like their timelines.
+
+    What was only an effect of another problem in the other run is nothing new or gone.
+    """
 
     first: Timeline
     second: Timeline

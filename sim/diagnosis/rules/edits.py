@@ -37,7 +37,9 @@ def edits_for_service(place: CodeLocation | None, entity: EntityId, timeline: Ti
 
 
 def edits_for_steps(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
-    """Return edits of a callback that is in an endless loop at a place."""
+    """Return edits of a callback in an endless loop at a place, for timers: they are called again."""
+    if timeline.entities[entity].kind is not EntityKind.TIMER:
+        return ()
     return by_edit(place, f"do one step of the loop at each call of {who(entity, timeline)}", step_by_step)
 
 

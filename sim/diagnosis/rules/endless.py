@@ -26,8 +26,10 @@ _LEAVE = (
     "keep the state in self and return: {0} is called again; or do one step of the loop at each call of a "
     "timer"
 )
-
-
+_LEAVE_FOR_TIMER = (
+    "keep the state in self and return: {0} begins a timer that does one step of the loop at each call"
+)
+"""For callbacks that may be called only once."""
 _LEAVE_WITH_RESPONSE = "return the response from {0}, and do one step of the loop at each call of a timer"
 
 
@@ -244,7 +246,9 @@ def _computes(notice: Notice, view: TimelineView) -> bool:
 
 
 def _leaving(entity: EntityId, timeline: Timeline) -> str:
-    text = _LEAVE_WITH_RESPONSE if must_answer(entity, timeline) else _LEAVE
+    text = _LEAVE if timeline.entities[entity].kind is EntityKind.TIMER else _LEAVE_FOR_TIMER
+    if must_answer(entity, timeline):
+        text = _LEAVE_WITH_RESPONSE
     return text.format(who(entity, timeline))
 
 
