@@ -45,6 +45,46 @@ def test_other_problems_are_gone_or_new_too() -> None:
     assert told(run_of("call_in_timer"), deaf) == "The deadlock is gone. New in run B: QoS mismatch."
 
 
+CAMERA = """
+import time
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from std_msgs.msg import Int32
+
+class Detector(Node):
+    def __init__(self):
+        super().__init__("detector")
+        self.create_subscription(Int32, "frames", self.on_frame, 10)
+        self.frames = self.create_publisher(Int32, "frames", 10)
+        self.create_timer(0.2, self.grab, MutuallyExclusiveCallbackGroup())
+        self.create_timer(0.1, self.beat, GROUP)
+
+    def grab(self):
+        self.frames.publish(Int32())
+
+    def on_frame(self, message):
+        time.sleep(0.6)
+
+    def beat(self):
+        pass
+
+rclpy.init()
+executor = MultiThreadedExecutor(num_threads=3)
+executor.add_node(Detector())
+executor.spin()
+"""
+
+
+def test_what_was_an_effect_of_another_problem_before_is_not_new(tmp_path: Path) -> None:
+    runs = []
+    for group in ("None", "MutuallyExclusiveCallbackGroup()"):
+        (tmp_path / "camera.py").write_text(CAMERA.replace("GROUP", group))
+        runs.append(run_to_end(program_setup(tmp_path / "camera.py", 8.0)).timeline)
+    assert told(*runs) == "Gone in run B: group starvation."
+
+
 def test_nothing_is_said_of_a_run_that_has_not_come_to_the_problem() -> None:
     early = run_of("sleep_in_service", seconds=0.2)
     for stuck in (run_of("call_in_timer"), run_of("held_group")):

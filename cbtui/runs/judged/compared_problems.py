@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from cbtui.runs.judged.cures import Problem, problem_of
 from sim.diagnosis import Diagnoses, Weight, sentence
+from sim.diagnosis.rule import Rule
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.figures.comparison_rows import RUNS
 from sim.trace.model import Nanoseconds
@@ -34,6 +35,14 @@ class _Known:
 
 
 @dataclass(frozen=True)
+class _Problems:
+    """The problems of a run, and the names of what is only an effect of one there."""
+
+    known: Mapping[Problem, _Known]
+    effects: frozenset[str]
+
+
+@dataclass(frozen=True)
 class ComparedProblems:
     """Tells of the problems of two runs, which may go on meanwhile. Not thread-safe, like their timelines.
 
@@ -49,14 +58,15 @@ class ComparedProblems:
 
         Nothing is said of a problem which the other run has not come to.
         """
-        first, second = (
+        found = (
             _problems_of(timeline, diagnoses)
             for timeline, diagnoses in zip((self.first, self.second), self._diagnoses, strict=True)
         )
+        first, second = found
         return " ".join(filter(None, (self._hangs(first, second), *self._others(first, second))))
 
-    def _hangs(self, *problems: Mapping[Problem, _Known]) -> str:
-        first, second = ({key: each for key, each in own.items() if each.hangs} for own in problems)
+    def _hangs(self, *runs: _Problems) -> str:
+        first, second = ({key: each for key, each in own.known.items() if each.hangs} for own in runs)
         names = [each.name for each in (*first.values(), *second.values())]
         name = min(names, default="")
         if not first:
@@ -68,10 +78,11 @@ class ComparedProblems:
             return f"The {name} is gone, but {RUNS[1]} has another one."
         return f"The {name} is gone." if _has_come_to(self.second, *first.values()) else ""
 
-    def _others(self, *problems: Mapping[Problem, _Known]) -> Iterator[str]:
-        first, second = ({each.name: each for each in own.values() if not each.hangs} for own in problems)
-        gone = [name for name in first if name not in second and _has_come_to(self.second, first[name])]
-        new = [name for name in second if name not in first and _has_come_to(self.first, second[name])]
+    def _others(self, *runs: _Problems) -> Iterator[str]:
+        first, second = ({each.name: each for each in own.known.values() if not each.hangs} for own in runs)
+        before, after = ({*own, *of_run.effects} for own, of_run in zip((first, second), runs, strict=True))
+        gone = [name for name in first if name not in after and _has_come_to(self.second, first[name])]
+        new = [name for name in second if name not in before and _has_come_to(self.first, second[name])]
         for what, names in (("Gone", gone), ("New", new)):
             if names:
                 yield f"{what} in {RUNS[1]}: {', '.join(names)}."
@@ -82,13 +93,19 @@ def _has_come_to(timeline: Timeline, *problems: _Known) -> bool:
     return timeline.end >= max(each.at for each in problems) + _NOTICED
 
 
-def _problems_of(timeline: Timeline, diagnoses: Diagnoses) -> Mapping[Problem, _Known]:
+def _problems_of(timeline: Timeline, diagnoses: Diagnoses) -> _Problems:
     found: dict[Problem, _Known] = {}
+    effects: set[str] = set()
     for each in diagnoses.update(timeline):
         if (each.rule.weigh(each, timeline) or each.rule.weight) is Weight.PROBLEM:
             told = each.rule.explain(each, timeline)
             hang = "deadlock" if each.waited_for or "deadlock" in told.what else "hang"
-            rule = each.rule.id
-            name = hang if told.for_ever else _NAMES.get(rule, rule.replace("-", " "))
+            name = hang if told.for_ever else _name_of(each.rule)
             found[problem_of(each, timeline)] = _Known(each.at, name, told.for_ever)
-    return found
+        elif each.due_to:
+            effects.add(_name_of(each.rule))
+    return _Problems(found, frozenset(effects))
+
+
+def _name_of(rule: Rule) -> str:
+    return _NAMES.get(rule.id, rule.id.replace("-", " "))
