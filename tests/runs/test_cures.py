@@ -12,8 +12,9 @@ from cbtui.runs.judged.cures import (
     Cure,
     Problem,
     TriedRun,
+    Verdict,
     cures_of,
-    helps,
+    judged,
     problem_of,
     try_run,
     with_inputs,
@@ -50,7 +51,11 @@ def helpful(program: str, folder: Path = PROGRAMS) -> list[str]:
     problem, setup, cures = offered(program, folder)
     before = try_run(setup, UNTIL, Event())
     runs = ((cure, try_run(cure.changes.applied(setup), UNTIL, Event())) for cure in cures)
-    return [f"{cure.words}{cure.diff and ' (diff)'}" for cure, after in runs if helps(problem, before, after)]
+    return [
+        f"{cure.words}{cure.diff and ' (diff)'}"
+        for cure, after in runs
+        if judged(problem, before, after).helps
+    ]
 
 
 APART = "give tick a callback group of its own, and spin with MultiThreadedExecutor(num_threads=2)"
@@ -141,7 +146,7 @@ def test_an_edited_copy_is_run_and_the_file_stays() -> None:
 def test_threads_alone_do_not_open_a_held_group() -> None:
     problem, setup, _ = offered("held_group")
     after = try_run(Changes(threads=6).applied(setup), UNTIL, Event())
-    assert not helps(problem, try_run(setup, UNTIL, Event()), after)
+    assert not judged(problem, try_run(setup, UNTIL, Event()), after).helps
 
 
 def test_a_second_cure_edits_what_the_first_made() -> None:
@@ -185,22 +190,57 @@ def test_a_trial_tells_how_far_it_is() -> None:
 def test_no_cure_helps_where_a_run_does_not_come_to_what_was_found_or_ends_too_soon() -> None:
     problem = ("group-starvation", "", "")
     bad, good = TriedRun({problem: True}), TriedRun({})
-    assert helps(problem, bad, good)
-    assert not helps(problem, good, good)
-    assert not helps(problem, bad, replace(good, is_whole=False))
-    assert not helps(problem, bad, bad)
+    assert judged(problem, bad, good).helps
+    assert not judged(problem, good, good).helps
+    assert not judged(problem, bad, replace(good, is_whole=False)).helps
+    assert not judged(problem, bad, bad).helps
 
 
 def test_a_crash_is_worse_than_what_comes_to_light_without_it() -> None:
     crash, slow = ("program-raised", "", ""), ("group-starvation", "", "")
-    assert helps(crash, TriedRun({crash: False}, is_whole=False), TriedRun({slow: False}))
+    assert judged(crash, TriedRun({crash: False}, is_whole=False), TriedRun({slow: False})).helps
+
+
+def test_a_problem_in_the_place_of_the_one_that_is_gone_is_named() -> None:
+    slow, stuck = ("group-starvation", "", ""), ("self-made-deadlock", "", "")
+    after = TriedRun({stuck: True}, names={stuck: "deadlock"})
+    assert judged(slow, TriedRun({slow: False}), after) == Verdict(False, "deadlock")
+
+
+def test_to_end_an_exception_helps_whatever_the_program_does_wrong_then() -> None:
+    crash, stuck = ("program-raised", "", ""), ("self-made-deadlock", "", "")
+    before = TriedRun({crash: False}, is_whole=False, end=1)
+    after = TriedRun({stuck: True}, names={stuck: "deadlock"}, end=9)
+    assert judged(crash, before, after) == Verdict(True, "deadlock")
+    assert judged(crash, before, replace(after, is_whole=False)) == Verdict(True, "deadlock")
+    assert not judged(crash, before, replace(after, is_whole=False, end=1)).helps
+
+
+def test_a_loop_without_a_wait_is_recognised_in_a_trial_of_a_run_on_the_real_clock(tmp_path: Path) -> None:
+    text = (PROGRAMS / "while_sleeping.py").read_text().replace("            time.sleep(0.1)\n", "")
+    program = tmp_path / "wanderer.py"
+    program.write_text(text)
+    setup = program_setup(program, 4.0)
+    timeline = run_to_end(msgspec.structs.replace(setup, clock="real", speed=1.0)).timeline
+    found = diagnose(timeline)[0]
+    assert found.rule.id == "stays-in-loop"
+    problem, before = problem_of(found, timeline), try_run(setup, UNTIL, Event())
+    cures = list(cures_of(found.rule.explain(found, timeline), Changes(), timeline))
+    after = {
+        cure.words: judged(problem, before, try_run(cure.changes.applied(setup), UNTIL, Event()))
+        for cure in cures
+    }
+    assert [words for words, verdict in after.items() if verdict.helps] == [
+        "do one step of the loop at each call of wander"
+    ]
+    assert "stands still while the loop computes" in judged(problem, before, before).reason
 
 
 def test_what_was_an_effect_of_the_problem_is_no_worse_one_in_its_place() -> None:
     starved, lost = ("group-starvation", "", ""), ("dropped-messages", "", "")
     before = TriedRun({starved: False}, effects=frozenset({"dropped-messages"}))
-    assert helps(starved, before, TriedRun({lost: False}))
-    assert not helps(starved, replace(before, effects=frozenset()), TriedRun({lost: False}))
+    assert judged(starved, before, TriedRun({lost: False})).helps
+    assert not judged(starved, replace(before, effects=frozenset()), TriedRun({lost: False})).helps
 
 
 def test_a_trial_tells_which_rules_found_effects_alone() -> None:

@@ -14,7 +14,7 @@ from textual.widgets import OptionList
 from cbtui.app import CbtuiApp
 from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.looks.theme import Charset
-from cbtui.runs.judged.cures import Cure
+from cbtui.runs.judged.cures import Cure, Verdict
 from cbtui.runs.live.findings import ExplainedFinding, FindingsMonitor
 from cbtui.runs.setup.changes import Changes
 from cbtui.screens.lesson import LessonScreen
@@ -323,12 +323,12 @@ class Trial:
     def cures(self, told: ExplainedFinding) -> Sequence[Cure]:
         return (APART, EDIT) if told.is_problem and not self.refusal else ()
 
-    def helps(
+    def judge(
         self, _told: ExplainedFinding, cure: Cure, _given_up: Event, note: Callable[[int], object]
-    ) -> bool | None:
+    ) -> Verdict:
         self.tried.append(cure)
         note(40)
-        return cure is EDIT
+        return Verdict(cure is EDIT)
 
 
 @pytest.mark.slow
@@ -349,13 +349,28 @@ async def test_a_cure_is_offered_once_it_was_found_to_help(keys: tuple[str, ...]
         assert chosen == [ChosenStep(findings[0], NextStep.CURE, EDIT)]
 
 
+async def test_beside_a_cure_that_helps_another_one_is_being_tried() -> None:
+    class EndlessSecond(Trial):
+        def judge(
+            self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
+        ) -> Verdict:
+            return Verdict(cure is APART or given_up.wait(10))
+
+    async with console() as (app, pilot):
+        screen = DiagnosesScreen(told_of(shared_group_run().until(TURNED)), Charset.BRAILLE, EndlessSecond())
+        await app.push_screen(screen)
+        await until(pilot, lambda: "→ tried, it helps: spin with two" in text_of(app))
+        await until(pilot, lambda: "· Another cure is being tried, for " in text_of(app))
+        await press(pilot, "escape")
+
+
 async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     class Endless(Trial):
-        def helps(
+        def judge(
             self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
-        ) -> bool:
+        ) -> Verdict:
             note(40)
-            return given_up.wait(10)
+            return Verdict(given_up.wait(10))
 
     now = [100.0]
     monkeypatch.setattr(diagnoses, "monotonic", lambda: now[0])
@@ -371,18 +386,28 @@ async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.M
 @pytest.mark.parametrize(
     ("answer", "told"),
     [
-        (False, "2 cures tried, none helps here: spin with two threads; let it sleep less."),
+        (Verdict(False), "2 cures tried, none helps here: spin with two threads; let it sleep less."),
         (
-            None,
+            Verdict(False, "deadlock"),
+            "2 cures tried, none is enough here: spin with two threads (with it this problem is gone, and "
+            "another one comes: deadlock); let it sleep less (with it this problem is gone, and another one "
+            "comes: deadlock).",
+        ),
+        (
+            Verdict(True, "deadlock"),
+            "A cure was tried: with it this problem is gone, and another one comes: deadlock.",
+        ),
+        (
+            Verdict(None),
             "Whether a cure helps is not known: the run that was made to try one did not show this problem.",
         ),
     ],
 )
-async def test_that_no_cure_helps_is_told_with_what_was_tried(answer: bool | None, told: str) -> None:
+async def test_that_no_cure_helps_is_told_with_what_was_tried(answer: Verdict, told: str) -> None:
     class InVain(Trial):
-        def helps(
+        def judge(
             self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
-        ) -> bool | None:
+        ) -> Verdict:
             return answer
 
     async with console() as (app, pilot):
@@ -405,7 +430,7 @@ async def test_where_the_code_is_of_no_simple_shape_it_is_told_that_no_cure_is_o
         listed = [replace(worst, explanation=explanation)]
         await app.push_screen(DiagnosesScreen(listed, Charset.BRAILLE, Nothing()))
         await pilot.pause()
-        assert "· No cure is offered: only simple code" in text_of(app)
+        assert "· No cure can be offered here: cbtui only makes small changes by itself" in text_of(app)
 
 
 @pytest.mark.slow

@@ -3,9 +3,8 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from cbtui.runs.judged.cures import Problem, problem_of
+from cbtui.runs.judged.cures import Problem, name_of, problem_of
 from sim.diagnosis import Diagnoses, Weight, sentence
-from sim.diagnosis.rule import Rule
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.figures.comparison_rows import RUNS
 from sim.trace.model import Nanoseconds
@@ -13,16 +12,6 @@ from sim.trace.timeline import Timeline
 
 _NOTICED: Nanoseconds = 2 * SECOND
 """How long after it began a problem is known as one."""
-
-_NAMES = {
-    "program-raised": "exception",
-    "qos-mismatch": "QoS mismatch",
-    "stays-in-loop": "long loop",
-    "nobody-offers": "service that nobody offers",
-    "service-never-comes": "wait for a service",
-    "node-never-spins": "node that nobody spins",
-}
-"""Problems whose rule has another name in sentences."""
 
 
 @dataclass(frozen=True)
@@ -97,15 +86,9 @@ def _problems_of(timeline: Timeline, diagnoses: Diagnoses) -> _Problems:
     found: dict[Problem, _Known] = {}
     effects: set[str] = set()
     for each in diagnoses.update(timeline):
+        told = each.rule.explain(each, timeline)
         if (each.rule.weigh(each, timeline) or each.rule.weight) is Weight.PROBLEM:
-            told = each.rule.explain(each, timeline)
-            hang = "deadlock" if each.waited_for or "deadlock" in told.what else "hang"
-            name = hang if told.for_ever else _name_of(each.rule)
-            found[problem_of(each, timeline)] = _Known(each.at, name, told.for_ever)
+            found[problem_of(each, timeline)] = _Known(each.at, name_of(each, told), told.for_ever)
         elif each.due_to:
-            effects.add(_name_of(each.rule))
+            effects.add(name_of(each, told))
     return _Problems(found, frozenset(effects))
-
-
-def _name_of(rule: Rule) -> str:
-    return _NAMES.get(rule.id, rule.id.replace("-", " "))

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from threading import Event
 from typing import TypeAlias
@@ -25,25 +25,66 @@ from sim.trace.timeline import Timeline
 _LIMIT = 15.0
 """Real seconds after which a run is given up."""
 
+_TIME_STOOD_STILL = (
+    "Whether a cure helps is not known: cures are tried on virtual time, which stands still while the loop "
+    "computes, so what would end the loop does not come."
+)
+_NOT_SHOWN = "Whether a cure helps is not known: the run that was made to try one did not show this problem."
+
 Problem: TypeAlias = tuple[str, str, str]
 """A rule's id, its subject and its culprit, by name: comparable between runs of a program."""
+
+_COMPUTES = "still-computing"
+_SAME = {"stays-in-loop": _COMPUTES}
+"""Rules that find one problem: which of them finds a loop without a wait depends on the clock."""
+_CRASH = "program-raised"
+
+_NAMES = {
+    "program-raised": "exception",
+    "qos-mismatch": "QoS mismatch",
+    "stays-in-loop": "long loop",
+    "nobody-offers": "service that nobody offers",
+    "service-never-comes": "wait for a service",
+    "node-never-spins": "node that nobody spins",
+}
+"""Problems whose rule has another name in sentences."""
 
 
 @dataclass(frozen=True)
 class TriedRun:
     """The problems of a run, each with whether it lasts for ever; ``is_whole`` if the run reached its end.
 
-    ``effects`` are the ids of the rules that found only effects of a problem.
+    ``effects`` are the ids of the rules that found only effects of a problem; ``names`` are the problems'
+    names in sentences. ``end`` is its length.
     """
 
     problems: Mapping[Problem, bool]
     is_whole: bool = True
     effects: frozenset[str] = frozenset()
+    names: Mapping[Problem, str] = field(default_factory=dict)
+    end: Nanoseconds = 0
 
     @property
     def badness(self) -> tuple[int, int]:
         """A rank, greater for worse: first endless problems and an early end count, then all problems."""
         return sum(self.problems.values()) + (not self.is_whole), len(self.problems)
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a trial of a cure told: whether the cure helps, None if that stays unknown for ``reason``.
+
+    ``instead`` is the name of the problem that comes with the cure in place of the one that it ends.
+    """
+
+    helps: bool | None
+    instead: str = ""
+    reason: str = _NOT_SHOWN
+
+    @property
+    def exchange(self) -> str:
+        """Say that one problem is gone and another one comes; "" if none does."""
+        return self.instead and f"with it this problem is gone, and another one comes: {self.instead}"
 
 
 @dataclass(frozen=True)
@@ -65,7 +106,14 @@ def problem_of(found: Finding, timeline: Timeline) -> Problem:
         known.spoken_name if (known := timeline.entities.get(each)) is not None else ""
         for each in (found.subject, found.culprit)
     )
-    return found.rule.id, one, other
+    return _SAME.get(found.rule.id, found.rule.id), one, other
+
+
+def name_of(found: Finding, explained: Explanation) -> str:
+    """Return what a problem is called in sentences."""
+    if explained.for_ever:
+        return "deadlock" if found.waited_for or "deadlock" in explained.what else "hang"
+    return _NAMES.get(found.rule.id, found.rule.id.replace("-", " "))
 
 
 def cures_of(explanation: Explanation, before: Changes, timeline: Timeline) -> Iterator[Cure]:
@@ -102,28 +150,39 @@ def with_inputs(setup: RunSetup, inputs: tuple[TimedInput, ...]) -> RunSetup:
     return msgspec.structs.replace(setup, inputs=inputs) if inputs else setup
 
 
-def helps(problem: Problem, before: TriedRun, after: TriedRun) -> bool:
+def judged(problem: Problem, before: TriedRun, after: TriedRun) -> Verdict:
     """Tell whether a cure ends a problem of the run ``before`` without a worse one in its place.
 
-    An effect of the problem before does not count if it remains as a problem of its own.
+    An effect of the problem before does not count if it remains as a problem of its own. After an exception
+    that ended the run, whatever else the program does wrong has its turn.
     """
+    if problem not in before.problems:
+        return Verdict(None)
+    if problem in after.problems:
+        stands_still = problem[0] == _COMPUTES and after.problems[problem]
+        return Verdict(None, reason=_TIME_STOOD_STILL) if stands_still else Verdict(False)
     left = {each: lasts for each, lasts in after.problems.items() if each[0] not in before.effects}
-    return (
-        problem in before.problems
-        and after.is_whole
-        and problem not in after.problems
-        and replace(after, problems=left).badness < before.badness
-    )
+    new = sorted((each for each in left if each not in before.problems), key=lambda each: not left[each])
+    instead = after.names.get(new[0], "") if new else ""
+    if problem[0] == _CRASH and not before.is_whole and (after.is_whole or after.end > before.end):
+        return Verdict(True, instead)
+    if after.is_whole and replace(after, problems=left).badness < before.badness:
+        return Verdict(True)
+    return Verdict(False, instead)
 
 
-def tried_in_vain(cures: Sequence[Cure], *, is_known: bool) -> str:
+def tried_in_vain(tried: Sequence[tuple[Cure, Verdict]]) -> str:
     """Return a sentence on cures of which none helps, or of which that is not known."""
-    if not is_known:
-        return (
-            "Whether a cure helps is not known: the run that was made to try one did not show this problem."
-        )
-    none = "none helps" if len(cures) > 1 else "it does not help"
-    return f"{counted(len(cures), 'cure')} tried, {none} here: {'; '.join(each.words for each in cures)}."
+    for _, verdict in tried:
+        if verdict.helps is None:
+            return verdict.reason
+    none = "none helps" if len(tried) > 1 else "it does not help"
+    if any(verdict.instead for _, verdict in tried):
+        none = "none is enough" if len(tried) > 1 else "it is not enough"
+    words = (
+        f"{cure.words} ({verdict.exchange})" if verdict.instead else cure.words for cure, verdict in tried
+    )
+    return f"{counted(len(tried), 'cure')} tried, {none} here: {'; '.join(words)}."
 
 
 def try_run(
@@ -145,7 +204,9 @@ def try_run(
             note(timeline.end)
     found = diagnose(timeline)
     wrong = [each for each in found if each.rule.weigh(each, timeline) is Weight.PROBLEM]
-    lasts = {problem_of(each, timeline): each.rule.explain(each, timeline).for_ever for each in wrong}
+    told = {problem_of(each, timeline): (each, each.rule.explain(each, timeline)) for each in wrong}
+    lasts = {problem: explained.for_ever for problem, (_, explained) in told.items()}
+    names = {problem: name_of(*each) for problem, each in told.items()}
     effects = {each.rule.id for each in found if each.due_to} - {each.rule.id for each in wrong}
     is_whole = timeline.ended is not None and timeline.ended.time_was_up
-    return TriedRun(lasts, is_whole, frozenset(effects))
+    return TriedRun(lasts, is_whole, frozenset(effects), names, timeline.end)

@@ -11,7 +11,7 @@ from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.learning.lesson_page import introduction
 from cbtui.learning.outcome import Observe
 from cbtui.runs.judged.compared_problems import ComparedProblems
-from cbtui.runs.judged.cures import Cure, tried_in_vain
+from cbtui.runs.judged.cures import Cure, Verdict, tried_in_vain
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
@@ -231,28 +231,25 @@ class CuresByNumber(ScreenPart):
             self.host.tell(f"It is tried in the background: {cure.words}.")
 
         def try_out() -> None:
-            answers: list[bool | None] = []
+            tried: list[tuple[Cure, Verdict]] = []
             for each in offered:
-                answers.append(trial.helps(found, each, self.given_up))
-                if answers[-1]:
+                tried.append((each, trial.judge(found, each, self.given_up)))
+                if tried[-1][1].helps:
                     break
             self.host.post(
-                lambda: (
-                    self._take_verdict(found, offered, answers) if self.host.runs.number == number else None
-                )
+                lambda: self._take_verdict(found, tried) if self.host.runs.number == number else None
             )
 
         Thread(target=try_out, name="cure", daemon=True).start()
 
-    def _take_verdict(
-        self, found: ExplainedFinding, tried: Sequence[Cure], answers: Sequence[bool | None]
-    ) -> None:
+    def _take_verdict(self, found: ExplainedFinding, tried: Sequence[tuple[Cure, Verdict]]) -> None:
         """Tell which of the cures helps, the last one that was tried if any, and run again with it."""
-        helpful = tried[len(answers) - 1]
-        if not answers[-1]:
-            self.host.tell(tried_in_vain(tried, is_known=None not in answers))
+        helpful, verdict = tried[-1]
+        if not verdict.helps:
+            self.host.tell(tried_in_vain(tried))
             return
         self.host.tell(f"Tried, it helps: {helpful.words}. With that there is no {found.name} any more.")
+        self.host.tell(f"Another problem comes: {verdict.instead}." if verdict.instead else None)
         self.host.tell("To have this in the file, write:" if helpful.code else None)
         for line in "\n".join(filter(None, [helpful.diff, *helpful.code])).splitlines():
             self.host.tell(line)

@@ -7,7 +7,17 @@ from itertools import chain, takewhile
 from threading import Event
 
 from cbtui.engines.follow import GivenUpError
-from cbtui.runs.judged.cures import Cure, TriedRun, cures_of, helps, problem_of, text_of, try_run, with_inputs
+from cbtui.runs.judged.cures import (
+    Cure,
+    TriedRun,
+    Verdict,
+    cures_of,
+    judged,
+    problem_of,
+    text_of,
+    try_run,
+    with_inputs,
+)
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changeable import changeable
@@ -52,7 +62,7 @@ class CureTrials:
 
 @dataclass
 class CureTrial:
-    """Tries several cures of a run up to a moment; ``helps`` is used on one thread, which may be another."""
+    """Tries several cures of a run up to a moment; ``judge`` is used on one thread, which may be another."""
 
     trials: CureTrials
     run: LiveRun
@@ -77,23 +87,23 @@ class CureTrial:
             for each in cures_of(found.explanation, self.changes, timeline)
         )
 
-    def helps(
+    def judge(
         self, found: ExplainedFinding, cure: Cure, given_up: Event, note: Note = lambda _: None
-    ) -> bool | None:
+    ) -> Verdict:
         """Tell whether a cure ends a finding; takes two runs, for further cures of a finding one.
 
-        None if the run without a cure does not show the finding in time: then no cure is tried.
+        Unknown if the run without a cure does not show the finding in time: then no cure is tried.
         """
         problem = problem_of(found.finding, self.run.timeline)
         try:
             if self._before is None:
                 self._before = self._try(self.changes, given_up, lambda done: note(done // 2))
             if problem not in self._before.problems:
-                return None
+                return Verdict(None)
             after = self._try(cure.changes, given_up, lambda done: note(50 + done // 2))
-            return helps(problem, self._before, after)
+            return judged(problem, self._before, after)
         except (GivenUpError, OSError, UnknownInputError):
-            return None
+            return Verdict(None)
 
     @cached_property
     def inputs(self) -> tuple[TimedInput, ...]:

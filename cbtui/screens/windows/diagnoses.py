@@ -18,7 +18,7 @@ from textual.widgets.option_list import Option
 from cbtui.keys.action import Scope
 from cbtui.keys.keymap import Keymap
 from cbtui.looks.theme import GLYPHS, Charset
-from cbtui.runs.judged.cures import Cure, tried_in_vain
+from cbtui.runs.judged.cures import Cure, Verdict, tried_in_vain
 from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
 from cbtui.screens.windows.window import PlainOptionList, WindowScreen
 from cbtui.text.cells import visible
@@ -29,7 +29,9 @@ from sim.quantities.durations import timestamp
 from sim.quantities.plural import counted
 
 _ALL_IS_WELL = "No rule has found a problem so far. What a program should do and does not, no rule can know."
-_NOT_SIMPLE = "No cure is offered: only simple code is changed by itself."
+_NOT_SIMPLE = (
+    "No cure can be offered here: cbtui only makes small changes by itself, and this needs one by you."
+)
 _TIME = 10
 _CHECK_INTERVAL = 0.5
 """Seconds between two looks at the current findings."""
@@ -45,10 +47,10 @@ class Trial(Protocol):
     def cures(self, found: ExplainedFinding) -> Sequence[Cure]:
         """Return the cures of a finding that can be tried."""
 
-    def helps(
+    def judge(
         self, found: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
-    ) -> bool | None:
-        """Try a cure and tell whether it ends a finding, None if that stays unknown; for a worker thread.
+    ) -> Verdict:
+        """Try a cure and tell whether it ends a finding; for a worker thread.
 
         Returns soon after ``given_up`` is set. ``note`` gets the progress in per cent.
         """
@@ -115,8 +117,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         """The number of untried cures of each finding."""
         self._cures = [(place, cure) for place, each in enumerate(cures) for cure in each]
         self._helpful: list[tuple[int, Cure]] = []
-        self._unjudged: set[int] = set()
-        """The findings with a cure of which it stays unknown whether it helps."""
+        self._verdicts: list[tuple[int, Cure, Verdict]] = []
+        """The verdicts on the tried cures, with the index of their finding."""
         self._percent: dict[int, int] = {}
         """The progress of the current trial, by the index of its finding."""
         self._trying_since = monotonic()
@@ -191,24 +193,25 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         findings = self._findings
         for place, cure in self._cures:
             note = partial(self._note_progress, place, given_up)
-            answer = not given_up.is_set() and trial.helps(findings[place], cure, given_up, note)
+            if given_up.is_set():
+                return
+            verdict = trial.judge(findings[place], cure, given_up, note)
             if not given_up.is_set():
-                self.app.call_from_thread(self._note_tried, place, cure, answer)
+                self.app.call_from_thread(self._note_tried, place, cure, verdict)
 
     def _note_progress(self, place: int, given_up: Event, percent: int) -> None:
         if percent != self._percent.get(place) and not given_up.is_set():
             self._percent[place] = percent
             self.app.call_from_thread(self._tell_highlighted)
 
-    def _note_tried(self, place: int, cure: Cure, helps: bool | None) -> None:
+    def _note_tried(self, place: int, cure: Cure, verdict: Verdict) -> None:
         """Offer to try a cure if it helps; the highlight stays where it is."""
         chosen = self._chosen
         self._untried[place] -= 1
         self._percent[place] = 0
-        if helps:
+        self._verdicts.append((place, cure, verdict))
+        if verdict.helps:
             self._helpful.append((place, cure))
-        elif helps is None:
-            self._unjudged.add(place)
         self._rows = tuple(self._list_rows())
         self._show_options().highlighted = 0 if chosen is None else self._rows.index(chosen)
 
@@ -254,14 +257,19 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         self.query_one(".told", Static).update(details)
 
     def _about_trial(self, place: int) -> str:
-        """The sentence on the trial of a finding's cures, or on why there is none; "" if one helps."""
+        """The sentence on the trial of a finding's cures, or on why there is none; "" if one simply helps."""
         cures = [cure for about, cure in self._cures if about == place]
         if left := self._untried[place]:
             of = len(cures)
             percent = (100 * (of - left) + self._percent.get(place, 0)) // of
-            return f"A cure is being tried, for {monotonic() - self._trying_since:.0f} s now: {percent} %."
-        if cures and all(about != place for about, _ in self._helpful):
-            return tried_in_vain(cures, is_known=place not in self._unjudged)
+            subject = "Another cure" if any(about == place for about, _ in self._helpful) else "A cure"
+            return f"{subject} is being tried, for {monotonic() - self._trying_since:.0f} s now: {percent} %."
+        tried = [(cure, verdict) for about, cure, verdict in self._verdicts if about == place]
+        if tried and not any(verdict.helps for _, verdict in tried):
+            return tried_in_vain(tried)
+        helpful = [verdict for _, verdict in tried if verdict.helps]
+        if helpful and helpful[0].instead:
+            return f"A cure was tried: {helpful[0].exchange}."
         found = self._findings[place]
         if cures or self._trial is None or not found.is_problem:
             return ""

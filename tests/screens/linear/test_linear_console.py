@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from cbtui.keys.keymap import Keymap
+from cbtui.runs.judged.cures import Verdict
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import of_lesson, of_puzzle
 from cbtui.screens.linear.choosing import ChoosingConsole
@@ -178,7 +179,7 @@ def test_a_cure_is_tried_by_its_number_and_the_run_with_it_is_compared(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     predict()
-    monkeypatch.setattr(CureTrial, "helps", lambda *_: True)
+    monkeypatch.setattr(CureTrial, "judge", lambda *_: Verdict(True, "deadlock"))
     script = [
         ("problem: ", "d"),
         ("Type the number of a problem", "1"),
