@@ -93,11 +93,10 @@ def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) ->
     sign = f" {_SIGNS[diagnosis.level]} "
     texts = (sign + each for each in _ways_to_say(diagnosis))
     place = diagnosis.place
-    cut = (
-        diagnosis.text
-        if place is None
-        else f"line {place.first_line}: {diagnosis.text.removeprefix(diagnosis.time)}"
-    )
+    cut = diagnosis.text
+    if place is not None:
+        cut = sub(rf" in the loop of line {place.first_line}\b", "", cut.removeprefix(diagnosis.time))
+        cut = f"line {place.first_line}: {cut}"
     fitting = [each for each in texts if len(each) <= room] or [sign + cut]
     beside = {each: room - len(each) - _INDENT for each in fitting}
     # A reply is told whole; of a call without one only the service's name, its end, would be cut.

@@ -310,7 +310,9 @@ class WaitForGraph:
             text = f"{needs} needs the only thread, which {self._names(pool)} keeps"
         else:
             every = "both" if len(pool) == 2 else f"all {len(pool)}"
-            text = f"{needs} needs a thread, and {every} stand still: {self._names(pool)}"
+            same = len({self._name(waiter) for waiter in pool}) == 1
+            where = f"{' in' if same else ':'} {self._names(pool)}"
+            text = f"{needs} needs a thread, and {every} stand still{where}"
         return Obstacle(wanted, text, pool, needs_worker=True)
 
     # threads and queues

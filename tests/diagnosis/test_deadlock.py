@@ -16,10 +16,12 @@ from sim.ros.scheduling.callback_groups import (
 )
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, serve_outside, spin
 from tests.support.builder import ns
-from tests.support.engine_runs import run_program
+from tests.support.engine_runs import program_setup, run_program, run_to_end
 from tests.support.simulation import Simulation
 
 Group = Callable[[], CallbackGroup]
+
+PROGRAMS = Path(__file__).parent / "beginners"
 
 
 def callers(count: int, threads: int | None, group: Group, timeout: float | None = None) -> Diagnosed:
@@ -74,6 +76,15 @@ def test_as_many_calls_as_threads_need_one_thread_more(count: int, kind: Group) 
     told = run.explained("needs-one-more-worker")
     assert f"{'both' if count == 2 else f'all {count}'} stand still: " in told.what
     assert f"num_threads={count + 1}" in told.cure
+
+
+def test_one_callback_on_all_threads_is_named_once_for_the_requests_and_replies_of_its_service() -> None:
+    run = run_to_end(program_setup(PROGRAMS / "call_in_reentrant_timer.py", 4.0))
+    found = diagnose(run.timeline)[0]
+    assert found.rule.explain(found, run.timeline).what == (
+        "deadlock: toggle waits for /light for ever; /light needs a thread, and both stand still in toggle "
+        "(call_in_reentrant_timer.py:26)"
+    )
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])

@@ -59,6 +59,17 @@ def test_lost_messages_are_counted_with_what_their_callback_waited_for() -> None
     assert told == "hear lost 20 messages while it waited (group A held by decide): its queue holds 10"
 
 
+def test_messages_lost_during_several_calls_are_not_said_to_be_lost_in_one() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        simulation.publisher_at_rate("t", 0.1, offset=0.05)
+        node.create_subscription(Int32, "t", lambda _: simulation.sleep(0.6), 10)
+        spin(node, None)
+
+    told = diagnosed(program).explained("dropped-messages").what
+    assert "messages while its calls ran: its queue holds 10" in told
+
+
 def test_a_queue_that_is_long_enough_loses_nothing() -> None:
     assert "dropped-messages" not in {rule for rule, _ in sensor_and_sleeper(100).told()}
 

@@ -321,6 +321,13 @@ def test_a_problem_names_its_line_before_all_that_can_be_left_out(width: int, sh
     assert line(problem, width, problems="").strip() == f"! {shown}"
 
 
+def test_a_line_before_a_sentence_that_is_cut_is_not_named_again_in_it() -> None:
+    text = "at 3.3 s: work computes in the loop of line 23 and has not come back for 1.5 s"
+    place = CodeLocation("/home/me/node.py", 23, 23)
+    told = Diagnosis(text, DiagnosisLevel.TROUBLE, place=place, time="at 3.3 s: ")
+    assert line(told, 60, problems="").rstrip() == " ! line 23: work computes and has not come back for 1.5 s"
+
+
 def test_a_line_that_the_sentence_names_is_not_named_again() -> None:
     place = CodeLocation("/home/me/node.py", 51, 51)
     problem = Diagnosis("tick is in the loop of line 51", DiagnosisLevel.TROUBLE, place=place)

@@ -282,7 +282,12 @@ def _found(
     timeline: Timeline,
 ) -> Finding:
     closing = deadlock[0]
-    detail = "; ".join(dict.fromkeys(each.obstacle.text for each in deadlock))
+    clauses: dict[object, str] = {}
+    for obstacle in (each.obstacle for each in deadlock):
+        # A request and a reply of one service that need a thread of the same ones are told once.
+        key = (obstacle.wanted, obstacle.by) if obstacle.needs_worker else obstacle.text
+        clauses.setdefault(key, obstacle.text)
+    detail = "; ".join(dict.fromkeys(clauses.values()))
     others = [each.entity for each in deadlock if each.entity != closing.entity]
     culprit = others[0] if others else closing.entity
     ring = (step for each in deadlock for step in (who(each.entity, timeline), *each.obstacle.steps))

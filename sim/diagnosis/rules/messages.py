@@ -62,7 +62,7 @@ class DroppedMessages(Rule):
         if waits:
             own = waits[-1].holder == entity.id
             because = (
-                " while its last call ran"
+                f" while its {'last call' if found.count == 1 else 'calls'} ran"
                 if own
                 else f" while it waited ({why_waiting(waits[-1], timeline)})"
             )
