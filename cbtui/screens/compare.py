@@ -33,7 +33,16 @@ from cbtui.widgets.lanes.keys import lane_keys
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
 from sim.trace.figures.comparison import compare_incrementally, first_difference
-from sim.trace.figures.comparison_rows import RUNS, Section, extent, is_tie, sections, stretch, verdict
+from sim.trace.figures.comparison_rows import (
+    RUNS,
+    Section,
+    ended_early,
+    extent,
+    is_tie,
+    sections,
+    stretch,
+    verdict,
+)
 from sim.trace.incremental import Incremental
 from sim.trace.model import Nanoseconds, Window
 
@@ -101,6 +110,7 @@ class CompareScreen(SizedScreen[None]):
         self._gone_or_new = ""
         self._verdict = ""
         self._is_tie = False
+        self._ended_early = ""
         self._first_difference: Nanoseconds | None = None
         self._has_moved = bounds is not None
 
@@ -206,16 +216,26 @@ class CompareScreen(SizedScreen[None]):
         self._rest_until = monotonic() + _REST_FACTOR * (worked + monotonic() - turn)
 
     def _show_first_difference(self) -> None:
-        """Show the verdict on whole runs, and their first difference unless the cursor was moved."""
+        """Show the verdict on what the table compares; of whole runs, go to their first difference.
+
+        That is not done once the cursor was moved.
+        """
         if not self._verdict:
+            self.query_one("#verdict", Static).update(self._gone_or_new)
             return
         at = self._first_difference
-        where = "No call differs" if at is None else f"They differ from {timestamp(at)} on"
+        where = "no call differs" if at is None else f"they differ from {timestamp(at)} on"
         verdict = f"{where}; {self._verdict[0].lower()}{self._verdict[1:]}"
-        if self._is_tie and any(side.alive() for side in self._sides):
+        if not self._whole:
+            verdict = f"On screen: {verdict}"
+        elif self._ended_early:
+            verdict = f"{self._ended_early}; {'until then ' if at is None else ''}{where}"
+        elif self._is_tie and any(side.alive() for side in self._sides):
             verdict = f"{where} so far; neither run is better yet: {_shorter(*self._sides)}"
-        self.query_one("#verdict", Static).update(f"{self._gone_or_new} {verdict}".strip())
-        if at is not None and not self._has_moved:
+        before = f"{self._gone_or_new} " if self._gone_or_new and self._whole else ""
+        verdict = f"{before}{verdict[0].upper()}{verdict[1:]}"
+        self.query_one("#verdict", Static).update(verdict)
+        if at is not None and self._whole and not self._has_moved:
             self.navigation.seek(at)
 
     def _title(self, words: str) -> None:
@@ -231,11 +251,13 @@ class CompareScreen(SizedScreen[None]):
     def _figures(self, asked: Window) -> Incremental[tuple[str, tuple[Section, ...]]]:
         first, second = self._sides
         if asked.length <= 0:
+            self._verdict = ""
             return f"{self._what}: nothing that both runs have; {_shorter(first, second)}", ()
         compared = yield from compare_incrementally(first.timeline, second.timeline, asked)
+        self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
+        self._verdict, self._is_tie = verdict(compared), is_tie(compared)
+        self._ended_early = ended_early(compared)
         if self._whole:
-            self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
-            self._verdict, self._is_tie = verdict(compared), is_tie(compared)
             yield
             self._gone_or_new = self._problems.told()
             return self._extent(asked), sections(compared)
@@ -247,7 +269,9 @@ class CompareScreen(SizedScreen[None]):
     def _what(self) -> str:
         if not self._whole:
             return "On screen"
-        return "Whole runs" if self._bounds is None else "As asked"
+        if self._bounds is not None:
+            return "As asked"
+        return "What both runs have" if self._ended_early else "Whole runs"
 
     def _extent(self, compared: Window) -> str:
         return f"{self._what}, {extent(compared, *(side.timeline.end for side in self._sides))}"

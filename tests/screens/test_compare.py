@@ -6,6 +6,7 @@ from contextlib import asynccontextmanager
 
 import pytest
 from textual.pilot import Pilot
+from textual.widgets import Static
 
 from cbtui.app import CbtuiApp
 from cbtui.keys.action import Scope
@@ -98,6 +99,10 @@ def lanes(app: ComparingConsole) -> tuple[Lanes, Lanes]:
 def title(app: ComparingConsole) -> str:
     """What the table says that it is about."""
     return next(line for line in lines_of(app) if line.endswith("──"))
+
+
+def verdict_of(app: ComparingConsole) -> str:
+    return str(app.comparison.query_one("#verdict", Static).content)
 
 
 async def test_both_runs_have_the_same_stretch_and_cursor_whatever_is_pressed() -> None:
@@ -307,6 +312,29 @@ async def test_a_problem_of_a_run_that_ended_early_is_gone_once_the_other_run_ha
         assert "Gone in run B" not in text_of(app)
         growing.extend([event for event in events if ns(3.0) < event.t <= ns(6.0)])
         await until(pilot, lambda: "Gone in run B: exception." in text_of(app))
+
+
+async def test_a_run_that_an_exception_ended_early_is_not_judged_by_what_came_before() -> None:
+    events = shared_group_run().events
+    failed, growing = Timeline(), Timeline()
+    failed.extend(
+        [*(each for each in events if each.t < ns(0.3)), RunEnded(ns(0.3), "it raised", failed=True)]
+    )
+    growing.extend([event for event in events if event.t <= ns(6.0)])
+    now = ComparedSide("now", growing, alive=lambda: True)
+    async with compared(ComparedSide("failed", failed), now) as (app, _):
+        assert "Run A ended at 0.3 s with an exception; run B goes on" in text_of(app)
+        assert "is better" not in text_of(app)
+        assert "What both runs have, 0 to 0.3 s; run B goes on to" in title(app)
+
+
+async def test_verdict_and_table_are_about_the_same_span() -> None:
+    async with compared(*sides()) as (app, pilot):
+        assert "On screen: " not in verdict_of(app)
+        await press(app, pilot, "greater_than_sign", "w")
+        assert verdict_of(app).startswith("On screen: they differ from")
+        await press(app, pilot, "w")
+        assert "On screen: " not in verdict_of(app)
 
 
 async def test_a_run_that_has_only_begun_gets_its_verdict_and_the_first_difference_later() -> None:

@@ -21,7 +21,14 @@ from sim.trace.events import (
     WaitStarted,
 )
 from sim.trace.figures.comparison import compare, first_difference
-from sim.trace.figures.comparison_rows import Assessment, ComparisonRow, extent, sections, verdict
+from sim.trace.figures.comparison_rows import (
+    Assessment,
+    ComparisonRow,
+    ended_early,
+    extent,
+    sections,
+    verdict,
+)
 from sim.trace.figures.comparison_text import comparison_lines, comparison_text
 from sim.trace.incremental import run_to_end
 from sim.trace.model import Nanoseconds, Window
@@ -298,6 +305,15 @@ def test_a_run_that_an_error_ends_and_one_that_hears_nothing_are_worse() -> None
     assert told == "run B is better: subscriptions that hear nothing 0 instead of 1"
     told = verdict(compare(run([ODOM], [*called(1, 1.0, 1.1), crash]), well, window))
     assert told == "run B is better: runs that an error ends 0 instead of 1"
+
+
+def test_a_run_that_an_exception_ended_while_the_other_goes_on_is_told_instead_of_a_verdict() -> None:
+    crash = RunEnded(ns(3.0), "the program raised", failed=True)
+    fails, works = run([ODOM], [*called(1, 1.0, 1.1), crash]), run([ODOM], called(1, 5.0, 6.0))
+    compared = compare(fails, works, Window(0, ns(3.0)))
+    assert ended_early(compared) == "Run A ended at 3 s with an exception; run B goes on"
+    assert "Run A ended at 3 s with an exception; run B goes on.\n" in comparison_text(compared, "a", "b")
+    assert ended_early(compare(works, works, Window(0, ns(3.0)))) == ""
 
 
 def test_runs_first_differ_where_a_call_does_otherwise() -> None:

@@ -96,6 +96,20 @@ def is_tie(comparison: Comparison) -> bool:
     return next(_differences(comparison), None) is None
 
 
+def ended_early(comparison: Comparison) -> str:
+    """Return which run an exception ended while the other one goes on; "" for neither.
+
+    Of such runs only the part before the exception can be compared, which speaks for no run.
+    """
+    runs = comparison.first, comparison.second
+    for place, run in enumerate(runs):
+        other = runs[1 - place]
+        if run.crashes and not other.crashes and run.end <= comparison.window.end < other.end:
+            told = f"{RUNS[place]} ended at {_seconds(run.end)} s with an exception"
+            return f"{told[0].upper()}{told[1:]}; {RUNS[1 - place]} goes on"
+    return ""
+
+
 def verdict(comparison: Comparison) -> str:
     """Return which run is better and by what, in one sentence that also names what is worse.
 

@@ -8,6 +8,7 @@ from sim.trace.figures.comparison_rows import (
     RUNS,
     ComparisonRow,
     Section,
+    ended_early,
     extent,
     sections,
     verdict,
@@ -33,7 +34,7 @@ def comparison_text(comparison: Comparison, first: str, second: str, before: str
         f"{RUNS[0]}  {first}",
         f"{RUNS[1]}  {second}",
         extent(comparison.window, comparison.first.end, comparison.second.end),
-        f"{before} {verdict(comparison)}.".lstrip(),
+        f"{before} {ended_early(comparison) or verdict(comparison)}.".lstrip(),
         "",
         _line(head, widths),
     ]
@@ -64,7 +65,7 @@ def _line(row: ComparisonRow, widths: tuple[int, int, int]) -> str:
 def comparison_lines(comparison: Comparison, first: str, second: str, before: str = "") -> Iterator[str]:
     """Yield the whole comparison as lines that can be listened to; the same, for the rest."""
     yield from (f"{run}: {name}" for run, name in zip(RUNS, (first, second), strict=True))
-    yield f"{before} {verdict(comparison)}.".lstrip()
+    yield f"{before} {ended_early(comparison) or verdict(comparison)}.".lstrip()
     yield extent(comparison.window, comparison.first.end, comparison.second.end)
     for section in sections(comparison):
         yield section.title
