@@ -46,7 +46,7 @@ FOR_EVER = (
     "deadlock: tick waits in spin_until_future_complete() for ever; "
     "all callbacks of its node are in group A, which tick holds"
 )
-TAKEN = "tick takes /caller from the executor that runs tick, by {}(): that executor no longer serves it"
+TAKEN = "{}() in tick moved node /caller to another executor; the first one no longer serves it"
 
 
 REPLY_HELD = (

@@ -60,8 +60,9 @@ class NestedSpin(Rule):
         )
         if clash.node:
             node = timeline.nodes.get(clash.node, "its node")
+            where = f" in {subject}" if clash.entity else ""
             what = (
-                f"{subject} takes {node} from {runner}, by {clash.function}(): that executor no longer "
+                f"{clash.function}(){where} moved node {node} to another executor; the first one no longer "
                 "serves it"
             )
             why = (
