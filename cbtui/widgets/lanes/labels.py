@@ -4,7 +4,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from cbtui.looks.theme import Glyphs, Ink, Role, TextRun, texture_of
-from cbtui.widgets.lanes.names import entity_name, group_name, shortened, sole_name, thread_name, told_apart
+from cbtui.widgets.lanes.names import (
+    entity_name,
+    group_name,
+    service_name,
+    sole_name,
+    thread_name,
+    told_apart,
+)
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from sim.trace.events import GroupId
 from sim.trace.model import EntityInfo, GroupInfo
@@ -43,7 +50,7 @@ class LaneLabels:
                 name = sole_name(self._name(entity), group, self.room_after(letter), ellipsis)
                 return [*letter, TextRun(name, _PLAIN)]
             case ServiceLane(service):
-                return [TextRun(shortened(service, self.width, ellipsis), _PLAIN)]
+                return [TextRun(service_name(service, self.width, ellipsis), _PLAIN)]
 
     def room_after(self, runs: Sequence[TextRun]) -> int:
         """Return the columns that are left after parts of a label."""

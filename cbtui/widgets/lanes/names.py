@@ -10,6 +10,8 @@ _LEAST_PROGRAM = 3
 """Columns below which a program's name cannot be recognised."""
 _BRIEF = 4
 """Letters that identify a kind of group."""
+_OF_ACTIONS = {"send_goal": "send", "get_result": "result", "cancel_goal": "cancel"}
+"""An action's services, by the word in which their names differ."""
 
 
 def short_thread(name: str) -> str:
@@ -39,6 +41,16 @@ def shortened(text: str, room: int, ellipsis: str) -> str:
         return text
     before = (room - 1) // 2
     return f"{text[:before]}{ellipsis}{text[len(text) - (room - 1 - before) :]}"
+
+
+def service_name(service: str, room: int, ellipsis: str) -> str:
+    """Return a service's name; of an action's services, what differs stays: ``fetch cancel``."""
+    action, of_action, part = service.partition("/_action/")
+    if len(service) <= room or not of_action:
+        return shortened(service, room, ellipsis)
+    action, word = action.removeprefix("/"), _OF_ACTIONS.get(part, part)
+    left = room - len(word) - 1
+    return f"{shortened(action, left, ellipsis)} {word}" if left >= min(len(action), 3) else word
 
 
 def group_name(group: GroupInfo, room: int) -> str:

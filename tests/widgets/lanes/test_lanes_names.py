@@ -1,6 +1,6 @@
 import pytest
 
-from cbtui.widgets.lanes.names import group_name, more_lanes, shortened, thread_name, told_apart
+from cbtui.widgets.lanes.names import group_name, more_lanes, service_name, shortened, thread_name, told_apart
 from cbtui.widgets.lanes.rows import ThreadLane, all_lanes, choose_lanes
 from sim.trace.events import GroupKind
 from sim.trace.model import GroupInfo, ThreadInfo, Window
@@ -53,6 +53,22 @@ def test_names_that_differ_at_an_end_stay_apart() -> None:
     names = ("front_wheel_odometry", "rear_wheel_odometry", "front_wheel_current")
     assert len({shortened(name, 9, "…") for name in names}) == 3
     assert shortened("odom", 9, "…") == "odom"
+
+
+@pytest.mark.parametrize(
+    ("service", "room", "shown"),
+    [
+        ("/fetch/_action/send_goal", 24, "/fetch/_action/send_goal"),
+        ("/fetch/_action/send_goal", 14, "fetch send"),
+        ("/fetch/_action/get_result", 14, "fetch result"),
+        ("/fetch/_action/cancel_goal", 12, "fetch cancel"),
+        ("/navigate_to_pose/_action/cancel_goal", 14, "nav…ose cancel"),
+        ("/fetch/_action/cancel_goal", 8, "cancel"),
+        ("/motor_power_of_all", 9, "/mot…_all"),
+    ],
+)
+def test_an_actions_services_differ_by_a_word(service: str, room: int, shown: str) -> None:
+    assert service_name(service, room, "…") == shown
 
 
 def test_lanes_of_one_group_have_names_of_their_own() -> None:
