@@ -497,3 +497,27 @@ async def test_enter_opens_the_lesson_that_shows_a_problem_and_q_comes_back(tmp_
         assert "mine.py" in text_of(app).splitlines()[0]
         assert "q menu" in text_of(app)
         assert not engines.sessions[0].stopped
+
+
+@pytest.mark.parametrize("size", [WIDE, NARROW], ids=["140x40", "80x24"])
+async def test_rows_keep_their_ellipsis_and_the_width_they_need(size: tuple[int, int]) -> None:
+    events = run_lesson("shared-group", TURNED).events
+    [first, *_] = told_of(events)
+    long = replace(first, explanation=replace(first.explanation, what=" ".join(["a_long_name"] * 10)))
+    app = RecordedConsole("shared-group", events, TURNED)
+    async with app.run_test(size=size) as pilot:
+        window = DiagnosesScreen([long] * 5, Charset.BRAILLE)
+        app.push_screen(window)
+        await settle(pilot)
+        listed = window.query_one(OptionList)
+        wide = listed.scrollable_content_region.width
+        window._findings = [long] * 9
+        window._list([long] * 9)
+        window._show_options()
+        await settle(pilot)
+        assert listed.scrollable_content_region.width == wide
+        rows = [line for line in lines_of(app) if "a_long_name a_long_name" in line and "4.003 s" in line]
+        assert rows
+        assert all("…" in row or row.count("a_long_name") == 10 for row in rows)
+        if size == WIDE:
+            assert window.query_one(".window").size.width > 120

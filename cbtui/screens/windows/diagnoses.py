@@ -33,6 +33,10 @@ _NOT_SIMPLE = (
     "No cure can be offered here: cbtui only makes small changes by itself, and this needs one by you."
 )
 _TIME = 10
+_LEAST_WIDE = 120
+"""The width of the window on a wide screen, unless a row needs more."""
+_FRAME = 7
+"""Columns of a row that its frame, its margins and the scroll bar take."""
 _CHECK_INTERVAL = 0.5
 """Seconds between two looks at the current findings."""
 
@@ -144,6 +148,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         listed, details = self.query_one(OptionList), self.query_one(VerticalScroll)
         listed.display, details.display, self.query_one(".well").display = some, some, not some
         listed.highlighted = 0 if some else None
+        self._widen()
         if self._trial is not None:
             self.run_worker(partial(self._try_all, self._trial, self._given_up), thread=True)
 
@@ -214,12 +219,20 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             self._helpful.append((place, cure))
         self._rows = tuple(self._list_rows())
         self._show_options().highlighted = 0 if chosen is None else self._rows.index(chosen)
+        self.call_after_refresh(self.query_one(KeyBar).changed)
 
     def _show_options(self) -> OptionList:
         listed = self.query_one(OptionList)
         listed.clear_options()
         listed.add_options(self._options())
+        self._widen()
         return listed
+
+    def _widen(self) -> None:
+        """Let the window be as wide as its rows need, if there is room."""
+        rows = (option.prompt for option in self._options())
+        longest = max((row.cell_length for row in rows if isinstance(row, Content)), default=0)
+        self.query_one(".window").styles.max_width = max(_LEAST_WIDE, longest + _FRAME)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the steps of the highlighted row."""
