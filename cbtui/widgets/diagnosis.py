@@ -239,7 +239,7 @@ def _why(wait: Wait, moment: Moment, timeline: Timeline) -> str:
         case Reason.GROUP_HELD:
             return f"{_group_of(wait, timeline)} is held by {name_of(wait.holder, timeline)}"
         case Reason.NO_FREE_WORKER | Reason.EVENT_QUEUE:
-            return _busy_threads(moment, timeline)
+            return _busy_threads(wait, moment, timeline)
         case Reason.NOBODY_SPINS:
             return "nobody spins its node"
 
@@ -249,11 +249,14 @@ def _group_of(wait: Wait, timeline: Timeline) -> str:
     return f"group {group.letter}"
 
 
-def _busy_threads(moment: Moment, timeline: Timeline) -> str:
+def _busy_threads(wait: Wait, moment: Moment, timeline: Timeline) -> str:
     """The text on what occupies all threads, the most frequent callback first."""
     running = [name_of(span.entity, timeline) for span in moment.running.values()]
     if not running:
         return "no thread is free"
+    holders = [thread for thread, span in moment.running.items() if span.entity == wait.holder]
+    if holders and not timeline.threads[holders[0]].executor:  # it is of no pool
+        return f"the only thread runs {name_of(wait.holder, timeline)}"
     names = sorted(dict.fromkeys(running), key=running.count, reverse=True)[:2]
     if len(running) < thread_count(timeline):  # others are of other executors, or about to take up work
         return f"no thread is free for it: {' and '.join(names)} {'runs' if len(names) == 1 else 'run'}"
