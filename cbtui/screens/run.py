@@ -314,7 +314,8 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         )
         self.query_one(CodeView).over = not run.alive
         line = self.query_one(DiagnosisLine)
-        line.diagnosis = with_worst_problem(self.diagnosis(), findings, how_to_continue(run, keymap))
+        at = self.navigation.playhead.at
+        line.diagnosis = with_worst_problem(self.diagnosis(), findings, how_to_continue(run, keymap), at)
         line.note = call_note(run.timeline, self.navigation.now)
         line.problems = problems_note(findings, keymap, self.charset)
         self._draw_panes(lambda pane: not isinstance(pane, _TEXTS))

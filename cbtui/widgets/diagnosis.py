@@ -84,14 +84,18 @@ def how_to_continue(run: ShownRun, keymap: Keymap) -> str:
 
 
 def with_worst_problem(
-    moment: Diagnosis, findings: Sequence[ExplainedFinding], how_to_continue: str = ""
+    moment: Diagnosis,
+    findings: Sequence[ExplainedFinding],
+    how_to_continue: str = "",
+    at: Nanoseconds | None = None,
 ) -> Diagnosis:
     """Replace a diagnosis without a problem by the worst problem that the rules found in the run.
 
     A diagnosis that stays is kept, unless it is a stall; any other gives way to a wait that never ends, or
     only by its timeout. ``how_to_continue`` is added to a wait that never ends where there is room.
+    Of a past moment ``at`` only what was known then is told.
     """
-    problems = [each for each in findings if each.is_problem]
+    problems = [each for each in findings if each.is_problem and (at is None or _is_known(each, at))]
     endless = [each for each in problems if each.explanation.for_ever]
     in_vain = [each for each in problems if each.explanation.until]
     worst = next(iter((*endless, *in_vain, *problems)), None)
@@ -108,6 +112,13 @@ def with_worst_problem(
     further = f"; {how_to_continue}" if how_to_continue and explanation.for_ever else ""
     at_length = f"{worst.name} {text}{further}".lstrip()
     return Diagnosis(text, level, at_length=at_length, time=time, place=explanation.place)
+
+
+def _is_known(found: ExplainedFinding, at: Nanoseconds) -> bool:
+    """Whether all that a finding says had happened by a moment."""
+    finding, explanation = found.finding, found.explanation
+    stuck = explanation.for_ever or explanation.until
+    return (finding.at if stuck else finding.until) <= at
 
 
 def _key(action: str, keymap: Keymap) -> str:
@@ -219,8 +230,15 @@ def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
 
 def _overdue(wait: Wait, at: Nanoseconds, timeline: Timeline) -> str:
     """The text on a callback that only waits for its own previous call."""
-    due = "due" if timeline.entities[wait.entity].kind is EntityKind.TIMER else "ready"
-    return f"{name_of(wait.entity, timeline)} still runs, {due} {duration(at - wait.since)} ago"
+    name, waited = name_of(wait.entity, timeline), duration(at - wait.since)
+    match timeline.entities[wait.entity].kind:
+        case EntityKind.TIMER:
+            return f"{name} still runs, due {waited} ago"
+        case EntityKind.SUBSCRIPTION:
+            return f"{name} still runs, and the next message has waited {waited} for it"
+        case EntityKind.SERVICE:
+            return f"{name} still runs, and the next request has waited {waited} for it"
+    return f"{name} still runs, ready again {waited} ago"
 
 
 def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosis:

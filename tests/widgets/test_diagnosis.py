@@ -291,6 +291,21 @@ def test_a_moment_that_is_well_tells_of_the_runs_worst_problem() -> None:
     assert told.at_length.startswith(f"group starvation at 4.0 s: {what}")
 
 
+def test_of_a_past_moment_no_later_problem_is_told() -> None:
+    moment, findings = said(shared_group_run(), 3.0), told_of(shared_group_run(), 15.0)
+    assert with_worst_problem(moment, findings, at=ns(3.0)) == moment
+    assert "waited up to" in with_worst_problem(moment, findings, at=ns(15.0)).text
+
+
+def test_a_request_that_waits_for_the_call_before_it_is_told_as_that() -> None:
+    run = Run()
+    serve = run.service(run.exclusive(run.node("/n")), "/serve", "serve")
+    run.callback(serve, run.thread("MainThread"), 1.0, 8.0)
+    run.wait(serve, 2.0, 9.0, Reason.GROUP_HELD, serve)
+    told = said(run, 6.7).text
+    assert told.startswith("serve still runs, and the next request has waited 4.7 s for it")
+
+
 def test_in_80_columns_a_problem_keeps_its_reason() -> None:
     told = with_worst_problem(said(shared_group_run(), 3.0), told_of(shared_group_run(), 15.0))
     shown = line(told, 80, problems="1 problem · d")
