@@ -16,7 +16,7 @@ from cbtui.terminal.textual_internals import is_mounted
 
 MOUNT_TIMEOUT = 3.0
 """Seconds to wait for widgets to be mounted."""
-ENTER_AFTER = 2.0
+ENTER_AFTER = 5.0
 """Seconds in which people press the enter that was not needed any more."""
 _POLL_INTERVAL = 0.005
 """Seconds between two checks."""

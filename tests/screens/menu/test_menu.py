@@ -2,6 +2,7 @@ import subprocess
 import sys
 from functools import partial
 from pathlib import Path
+from time import monotonic
 
 import msgspec
 import pytest
@@ -14,6 +15,7 @@ from cbtui.screens.menu import MenuScreen
 from cbtui.screens.windows.help import HelpScreen
 from cbtui.screens.windows.prediction import PredictionScreen
 from cbtui.screens.windows.tour import TourScreen
+from cbtui.terminal import pending_keys
 from cbtui.widgets.guide import Guide
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
@@ -117,6 +119,15 @@ async def test_an_enter_after_a_number_that_opened_at_once_is_not_for_the_lesson
         assert isinstance(app.focused, Guide)
         await pilot.press("enter")
         assert isinstance(app.focused, Lanes)
+
+
+async def test_such_an_enter_may_come_three_seconds_later(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = menu()
+    predict(app, lessons()[12].id)
+    async with app.run_test(size=NARROW) as pilot:
+        monkeypatch.setattr(pending_keys, "monotonic", lambda: monotonic() - 3.0)
+        await pilot.press(*"13", "enter")
+        assert isinstance(app.focused, Guide)
 
 
 async def test_letters_of_a_name_find_its_lesson() -> None:
