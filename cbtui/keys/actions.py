@@ -318,7 +318,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("search", "/", "search", "Show only signs and keys that have certain words"),
         ("close", "escape,q,question_mark", "close", "Go back to where you were"),
     ),
-    Scope.TOUR: (("close", "escape", "any key leaves the tour", "Leave the tour, as any key does"),),
+    Scope.TOUR: (("close", "escape", "or any key: on with the lesson", "Leave the tour, as any key does"),),
     Scope.JUMP: (("close", "escape", "leave, a letter goes there", "Leave without going anywhere"),),
     Scope.EVERYWHERE: (
         ("command_palette", "ctrl+p", "commands", "Find any command, and colour themes"),
