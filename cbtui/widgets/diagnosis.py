@@ -284,9 +284,15 @@ def _busy_threads(wait: Wait, moment: Moment, timeline: Timeline) -> str:
     return f"{every} threads are busy with {' and '.join(names)}"
 
 
+_POOL = "MultiThreadedExecutor"
+"""The executor whose number of threads can be chosen."""
+
+
 def _threads_needed(timeline: Timeline, peak: int) -> tuple[str, str]:
     """How many threads were needed, in full and in short."""
     count = thread_count(timeline)
+    if count == 1 and peak and any(each.kind == _POOL for each in timeline.executors.values()):
+        return ("1 of 1 threads needed",) * 2
     if count <= 1:
         return ("one thread does all the work",) * 2
     if not peak:

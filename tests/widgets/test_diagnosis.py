@@ -23,6 +23,7 @@ from sim.trace.events import Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
+from tests.support.engine_runs import run_lesson
 from tests.support.fake_session import FakeEngines
 from tests.support.runs import (
     dummy_server_one_thread_run,
@@ -77,6 +78,12 @@ def test_where_nothing_waits_the_threads_that_were_needed_are_told() -> None:
     assert said(dummy_server_run(), 5.2).text == "nothing waits; so far 2 of 2 threads were needed at once"
     assert said(split_groups_run(), 3.0).text == "nothing waits; so far 1 of 4 threads was needed at once"
     assert said(shared_group_run(), 3.0).text == "nothing waits; one thread does all the work"
+
+
+def test_a_pool_of_one_thread_has_a_number_too() -> None:
+    timeline = Timeline()
+    timeline.extend(run_lesson("how-many-threads", 3.0, threads=1).events)
+    assert "1 of 1 threads needed" in diagnosis_at(timeline, ns(2.95), Concurrency(timeline)).text
 
 
 def test_the_threads_of_a_run_that_is_over_were_ever_needed() -> None:
