@@ -405,10 +405,10 @@ async def test_brackets_look_back_in_time_on_every_pane_at_once() -> None:
         assert "◂ BACK 10.0 s" in status(app)
         assert "t 3.150 s" in status(app)
         assert "SLEEPING" not in text_of(app)
-        assert "waits" not in diagnosis(app)
-        assert "at 4.0 s: odom_callback" in diagnosis(app)
+        assert "nothing waits" in diagnosis(app), "what comes at 4 s is not told yet"
         await press(pilot, "right_square_bracket")
         assert "t 4.150 s" in status(app)
+        assert "waits 147 ms: group A is held by timer_callback" in diagnosis(app)
         await press(pilot, "0")
         assert "● LIVE" in status(app)
 
