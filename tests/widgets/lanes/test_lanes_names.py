@@ -64,7 +64,7 @@ def test_names_that_differ_at_an_end_stay_apart() -> None:
         ("/fetch/_action/cancel_goal", 12, "fetch cancel"),
         ("/navigate_to_pose/_action/cancel_goal", 14, "nav…ose cancel"),
         ("/fetch/_action/cancel_goal", 8, "cancel"),
-        ("/motor_power_of_all", 9, "/mot…_all"),
+        ("/motor_power_of_all", 11, "/moto…f_all"),
     ],
 )
 def test_an_actions_services_differ_by_a_word(service: str, room: int, shown: str) -> None:
