@@ -310,7 +310,10 @@ class EventsExecutor(Executor):
             self._runner.run(task)
         except Exception as error:
             nodes = self.get_nodes()
-            _log(error, nodes[0].get_logger() if len(nodes) == 1 else get_logger("UNKNOWN"), _TASK)
+            logger = nodes[0].get_logger() if len(nodes) == 1 else get_logger("UNKNOWN")
+            _log(error, logger, _TASK)
+            if len(nodes) == 1:
+                logger.fatal("on real ROS 2 the process ends here: segmentation fault, ros2/rclpy issue 1641")
             raise
 
     def _go_on_with_parked(self) -> None:
