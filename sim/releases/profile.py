@@ -10,9 +10,9 @@ Known, but not modelled: before #1469 a callback that waits for a worker is hand
 executor wakes; while a message waits for one, that is about 1,100 times a second. ``hands_over_again`` has
 the workers that this starts. A program notices the rest only by chance: an exception comes out twice or
 earlier, or other threads are late. An error in a task or coroutine callback of an ``EventsExecutor`` that has
-one node ends the process with a segmentation fault (#1641, run on both wheels; #1718 mends it, in no patch that
-is known here); the model logs that, and raises. No release here has Kilted's content filters of subscriptions,
-introspection of actions and ``rosout_qos_profile``; a program that uses one is told so.
+one node ends the process with a segmentation fault (#1641, run on both wheels; #1718 mends it, in no patch
+that is known here); the model logs that, and raises. No release here has Kilted's content filters of
+subscriptions, introspection of actions and ``rosout_qos_profile``; a program that uses one is told so.
 """
 
 from __future__ import annotations
