@@ -27,6 +27,7 @@ class ServerGoalHandle:
         self._goal_request = goal_request
         self._state = GoalState.ACCEPTED
         self._host = action_server.node.context.host
+        self._accepted_at: int | None = self._host.clock.now()
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, ServerGoalHandle) and self.goal_id == other.goal_id
@@ -80,9 +81,9 @@ class ServerGoalHandle:
         kind = self._action_server.action_type.Feedback
         if not isinstance(feedback, kind):
             raise TypeError(f"Expected {kind}, got {type(feedback)}")
-        # On virtual time a thread runs until it waits. On a real network a client hears that its goal is
-        # accepted before the first feedback.
-        self._host.clock.sleep(0)
+        if self._accepted_at == self._host.clock.now():
+            self._action_server.let_others_go_first(0)  # so that a client hears that the goal is accepted
+        self._accepted_at = None
         with self._host.lock:
             if self._state is not GoalState.UNKNOWN:
                 self._action_server.send_feedback(self.goal_id, feedback)

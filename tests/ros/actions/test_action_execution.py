@@ -321,3 +321,37 @@ def test_a_goal_that_is_aborted_with_a_line_ends_behind_what_others_can_do_meanw
 
     simulate(program, until=0.5)
     assert ends == [(2, 4), (1, 6)]
+
+
+def test_a_callback_goes_on_when_it_has_sent_feedback() -> None:
+    # Measured on Jazzy 7.1.5: 6 of 6 runs.
+    said: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def execute(goal: ServerGoalHandle) -> Any:
+            simulation.sleep(0.3)
+            for order in (1, 2):
+                goal.publish_feedback(Fibonacci.Feedback(sequence=[order]))
+            said.append("ends")
+            goal.succeed()
+            return Fibonacci.Result()
+
+        def send() -> None:
+            timer.cancel()
+            sent = client.send_goal_async(
+                Fibonacci.Goal(), lambda heard: said.append(str(heard.feedback.sequence[0]))
+            )
+            sent.add_done_callback(lambda _: said.append("accepted"))
+
+        group = ReentrantCallbackGroup()
+        ActionServer(node, Fibonacci, "f", execute, callback_group=group)
+        client = ActionClient(node, Fibonacci, "f", callback_group=group)
+        timer = node.create_timer(0.2, send)
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        executor.spin()
+
+    simulate(program, until=1.0)
+    assert said == ["accepted", "ends", "1", "2"]
