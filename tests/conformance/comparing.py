@@ -95,9 +95,9 @@ def on_model(
 
 
 def _decided_until(said: Said, end: float, gap: float) -> float:
-    moments = [0.0, *(each for each in said.moments if each < end), end]
+    moments = sorted([0.0, *said.moments, end])
     for before, moment, after in zip(moments, moments[1:], moments[2:], strict=False):
-        if after - moment < gap and after - moment > 1e-6:
+        if moment <= end and gap > after - moment > 1e-6:
             return (before + moment) / 2
     return end
 

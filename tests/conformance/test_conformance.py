@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from tests.conformance.comparing import Outcome, Result, cases, decided, on_model, outcome
+from tests.conformance.comparing import GAP, Outcome, Result, cases, decided, on_model, outcome
 from tests.conformance.drawing import drawn
 from tests.conformance.programs import program
 from tests.conformance.recorded import against_recorded
@@ -27,6 +27,12 @@ def test_a_system_that_is_decided_says_the_same_on_the_model_each_time() -> None
     given = cases(2, seed=3, distro=JAZZY)
     again = on_model([each.system for each in given], JAZZY)
     assert [case.model.words for case in given] == [said and said.words for said in again]
+
+
+@pytest.mark.slow
+def test_a_system_ends_before_what_would_come_right_behind_its_end() -> None:
+    (case,) = decided([("1723-164", drawn("1723-164"))], JAZZY)
+    assert not any(0 <= moment - case.system.end < GAP for moment in case.model.moments)
 
 
 @pytest.mark.slow

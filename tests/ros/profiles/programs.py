@@ -182,6 +182,30 @@ spin(executor_of(node, kind=lambda: MultiThreadedExecutor(3)))
         },
     ),
     Differing(
+        "hands_over_again",
+        """
+future = Future()
+async def wait():
+    waiting.cancel()
+    await future
+def fail():
+    failing.cancel()
+    time.sleep(0.1)
+    raise ValueError
+waiting = node.create_timer(0.1, wait)
+failing = node.create_timer(0.3, fail, Exclusive())
+after(0.6, lambda: say("no cycle since"))
+after(0.7, finish)
+spin(executor_of(node, kind=lambda: MultiThreadedExecutor(1)))
+""",
+        {
+            "jazzy@7.1.5": "ValueError out of spin, no cycle since",
+            "kilted@9.1.2": "ValueError out of spin, no cycle since",
+            "jazzy": "no cycle since",
+            "lyrical": "no cycle since",
+        },
+    ),
+    Differing(
         "loses_errors_after_await",
         """
 future = Future()
