@@ -318,17 +318,16 @@ class WorkerPool:
                 # The spinning thread waited for the worker that it started, and checks errors, unless that
                 # worker has taken over work that others were called for before.
                 waited_for = worker.began_in == self._clock.turn and not self._claimed()
-                self.error_surfaces |= waited_for or self._awaiting_is_queued()
+                self.error_surfaces |= waited_for or self._only_asks_again()
         except (KeyboardInterrupt, SystemExit):
             return  # lost, as in rclpy: a thread of a pool ends silently
         finally:
             worker.began_in = -1
 
-    def _awaiting_is_queued(self) -> bool:
-        """Whether a queued task awaits: the cycle that the end of a callback begins hands it over again."""
-        return self._hands_over_again and any(
-            isinstance(each, Task) and each._was_suspended for each in self._queue
-        )
+    def _only_asks_again(self) -> bool:
+        """Whether the cycle that a callback's end begins hands over tasks that await, and nothing else."""
+        awaits = any(isinstance(each, Task) and each._was_suspended for each in self._queue)
+        return awaits and self._hands_over_again and not self._executor._cycle.would_find(self._clock.now())
 
     def raise_surfacing(self) -> None:
         """Raise the oldest exception of a callback, if one is due."""
