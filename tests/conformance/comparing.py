@@ -22,6 +22,8 @@ LATE = 0.02
 On a busy machine all three, and all times of the systems, are longer by a factor, the ``pace``.
 """
 FEWEST_LINES = 8
+_ALIKE = 1e-5
+"""Seconds by which one moment may differ from itself, as programs name times to the microsecond."""
 
 
 class Outcome(Enum):
@@ -95,9 +97,12 @@ def on_model(
 
 
 def _decided_until(said: Said, end: float, gap: float) -> float:
-    moments = sorted([0.0, *said.moments, end])
+    moments = [0.0]
+    for each in sorted([*said.moments, end]):
+        if each - moments[-1] > _ALIKE:
+            moments.append(each)
     for before, moment, after in zip(moments, moments[1:], moments[2:], strict=False):
-        if moment <= end and gap > after - moment > 1e-6:
+        if moment <= end and after - moment < gap:
             return (before + moment) / 2
     return end
 

@@ -82,7 +82,7 @@ class ServerGoalHandle:
         if not isinstance(feedback, kind):
             raise TypeError(f"Expected {kind}, got {type(feedback)}")
         if self._accepted_at == self._host.clock.now():
-            self._action_server.let_others_go_first(0)  # so that a client hears that the goal is accepted
+            self._action_server.let_clients_hear()
         self._accepted_at = None
         with self._host.lock:
             if self._state is not GoalState.UNKNOWN:

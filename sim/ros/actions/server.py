@@ -18,7 +18,7 @@ from sim.ros.node.node import Node
 from sim.ros.qos.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
 from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import TakenData
-from sim.ros.scheduling.executors import Executor
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor
 from sim.ros.scheduling.task import Future
 from sim.ros.scheduling.waitable import NumberOfEntities
 
@@ -240,12 +240,21 @@ class ActionServer(ActionWaitable):
             # rclpy has written a line. The first one of a process takes 11 ms, for its caller is looked for
             # among all modules (``inspect.getframeinfo``). Of two goals on pools of 2 and 3 the aborted one
             # so ended last in 68 of 68 runs on Jazzy 7.1.5 and Kilted 9.1.2; behind another line in 10 of 22.
-            self.let_others_go_first(1)
+            self._let_others_go_first(1)
             goal_handle.abort()
         self._logger.debug(f"Goal with ID {uuid} finished with state {goal_handle.status}")
         goal_handle.set_result(result)
 
-    def let_others_go_first(self, duration: int) -> None:
+    def let_clients_hear(self) -> None:
+        """Let clients in other threads hear that a goal is accepted before its first feedback.
+
+        So they do behind a single-threaded executor in 4 of 6 runs on Jazzy 7.1.5, and on a network. The
+        callback goes on in all 24 with a pool, whose other threads serve the clients behind it.
+        """
+        if not isinstance(self._node.executor, MultiThreadedExecutor):
+            self._let_others_go_first(0)
+
+    def _let_others_go_first(self, duration: int) -> None:
         """Let other threads do all that they can in ``duration`` nanoseconds, 0 for this moment.
 
         The schedule may choose that they do not.
