@@ -357,5 +357,5 @@ def test_a_callback_goes_on_when_it_has_sent_feedback(pause: float, order: list[
         executor.add_node(node)
         executor.spin()
 
-    simulate(program, until=1.0)
+    simulate(program, until=1.0, distro="jazzy@7.1.5")
     assert said == order
