@@ -8,6 +8,7 @@ from sim.diagnosis.edits.locks import (
     let_go_during_wait,
     make_reentrant,
     take_before,
+    take_by_one_with,
     take_by_with,
     take_together,
 )
@@ -182,6 +183,69 @@ def test_locks_taken_by_acquire_are_taken_in_the_order_of_the_other_callback() -
 def test_locks_are_not_moved_out_of_a_try_nor_to_another_order(line: str, instead: str) -> None:
     text = BY_ACQUIRE.replace(line, instead)
     assert changed(text, take_before, line_with(text, "# there")) is None
+
+
+BY_TRY = node(
+    """
+    def pay(self):
+        self.a.acquire()
+        try:
+            self.count()
+            self.b.acquire()  # there
+            try:
+                self.add()
+                self.log()
+            finally:
+                self.b.release()
+        finally:
+            self.a.release()
+
+    def earn(self):
+        self.b.acquire()
+        try:
+            self.a.acquire()  # here
+            try:
+                self.add()
+            finally:
+                self.a.release()
+        finally:
+            self.b.release()
+    """
+)
+
+
+SWAPPED = BY_TRY.replace("# here", "# -").replace("# there", "# here").replace("# -", "# there")
+
+
+@pytest.mark.parametrize(
+    ("text", "lines"),
+    [
+        (BY_TRY, ["with self.a, self.b:", "    self.add()"]),
+        (SWAPPED, ["with self.b, self.a:", "    self.add()", "    self.log()"]),
+    ],
+)
+def test_locks_that_a_try_releases_are_taken_by_one_with(text: str, lines: list[str]) -> None:
+    found = changed(text, take_by_one_with, line_with(text, "# there"))
+    assert found is not None
+    assert [each[1:] for each in found if each[0] == "+"] == [f"        {each}" for each in lines]
+
+
+@pytest.mark.parametrize(
+    ("part", "instead"),
+    [
+        ("self.a.release()\n        finally", "self.a.release()\n            self.log()\n        finally"),
+        ("            self.a.acquire()  # here\n", "            self.log()  # here\n"),
+        ("self.a.acquire()  # here", "self.c.acquire()  # here"),
+        (
+            "        self.b.acquire()\n        try",
+            "        self.b.acquire()\n        self.log()\n        try",
+        ),
+    ],
+)
+def test_locks_that_a_try_releases_are_left_where_more_is_done(part: str, instead: str) -> None:
+    text = BY_TRY.replace(part, instead)
+    assert text != BY_TRY
+    assert changed(text, take_by_one_with, line_with(text, "# there")) is None
 
 
 def test_a_lock_is_taken_by_with_up_to_its_last_release() -> None:

@@ -30,7 +30,7 @@ def take_before(source: SourceEditor, line: int, other: int) -> None:
     function = source.function_at(line)
     taken = [each for each in function.body if _method_of(each, "acquire")]
     wanted = [each for each in taken if each.lineno == line]
-    first, second = (_acquired(each) for each in _taken_before(source, other))
+    first, second = _order(source, other)
     if len(wanted) != 1 or _acquired(wanted[0]) != first or wanted[0] is taken[0]:
         raise NotSimpleError
     if _acquired(taken[0]) != second:
@@ -65,13 +65,49 @@ def take_by_with(source: SourceEditor, line: int) -> None:
     source.replace_lines(taken[0], behind[-1], f"{indentation(taken[0])}with {lock}:\n{body}")
 
 
-def _taken_before(source: SourceEditor, line: int) -> tuple[ast.stmt, ast.stmt]:
-    """Return the first statement that takes a lock in the function at a line, and that at the line."""
-    taken = [each for each in source.function_at(line).body if _method_of(each, "acquire")]
+def take_by_one_with(source: SourceEditor, line: int, other: int) -> None:
+    """Take two locks that ``finally`` releases by one ``with``, in the order of the callback at ``other``.
+
+    Only for an ``acquire`` and its ``try`` as all there is in the ``try`` of another one, but for what is
+    before it, which is done with both locks then.
+    """
+    body = source.function_at(line).body
+    places = [place for place, each in enumerate(body[1:], 1) if is_at(each, line)]
+    if not places or not isinstance(body[places[0]], ast.Try):
+        raise NotSimpleError
+    outer, around = body[places[0] - 1], body[places[0]]
+    held = _released_by(around, _acquired(outer))
+    if len(held) < 2:
+        raise NotSimpleError
+    *before, inner, within = held
+    inside = _released_by(within, _acquired(inner))
+    first, second = _order(source, other)
+    if inner.lineno != line or (_acquired(inner), _acquired(outer)) != (first, second):
+        raise NotSimpleError
+    column = outer.col_offset + 4
+    kept = source.lines_moved(around.lineno, before[-1], column) if before else ""
+    kept += source.lines_moved(within.lineno, inside[-1], column)
+    source.replace_lines(outer, around, f"{indentation(outer)}with {first}, {second}:\n{kept}")
+
+
+def _released_by(statement: ast.stmt, lock: str) -> list[ast.stmt]:
+    """Return the body of a ``try`` of which the ``finally`` releases a lock, and nothing else."""
+    match statement:
+        case ast.Try(body=body, handlers=[], orelse=[], finalbody=[last]) if _method_of(
+            last, "release", lock
+        ):
+            return body
+    raise NotSimpleError
+
+
+def _order(source: SourceEditor, line: int) -> tuple[str, str]:
+    """Return the lock that a function takes first by ``acquire``, and the one that it takes at a line."""
+    statements = source.nodes(ast.Expr, source.function_at(line))
+    taken = sorted((each for each in statements if _method_of(each, "acquire")), key=lambda each: each.lineno)
     at = [each for each in taken if each.lineno == line]
     if len(at) != 1 or at[0] is taken[0]:
         raise NotSimpleError
-    return taken[0], at[0]
+    return _acquired(taken[0]), _acquired(at[0])
 
 
 def _method_of(node: ast.AST, method: str, lock: str = "") -> ast.expr | None:

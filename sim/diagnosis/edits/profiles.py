@@ -11,17 +11,24 @@ _KINDS = {
 _PLACES = {"create_subscription": 3, "create_publisher": 2}
 
 
-def match_quality(source: SourceEditor, line: int, policy: str) -> None:
+def match_quality(source: SourceEditor, line: int, policy: str, other: int = 0) -> None:
     """Let the endpoint at a line request no more than is offered, or offer what is requested.
 
-    Only for a profile that is a number, or a ``QoSProfile(…)`` that nothing else uses.
+    Only for a profile that is a number, or a ``QoSProfile(…)`` that nothing else uses. The other end, at the
+    line ``other`` (0: not in this source), may show that a second policy does not match either.
     """
     if policy not in _KINDS:
         raise NotSimpleError
-    keyword, kind, requested, offered = _KINDS[policy]
     call, end = _endpoint(source, line)
-    value = f"{kind}.{requested.get(end, offered)}"
     profile = _profile_of(call, end)
+    policies = [policy, *(each for each in _KINDS if each != policy and _fails(source, each, line, other))]
+    for each in policies:
+        _set_policy(source, line, each, profile, end)
+
+
+def _set_policy(source: SourceEditor, line: int, policy: str, profile: ast.expr, end: str) -> None:
+    keyword, kind, requested, offered = _KINDS[policy]
+    value = f"{kind}.{requested.get(end, offered)}"
     if isinstance(profile, ast.Constant) and isinstance(profile.value, int):
         statement = source.statement_at(line)
         name = "requested" if end in requested else "offered"
@@ -47,6 +54,23 @@ def match_quality(source: SourceEditor, line: int, policy: str) -> None:
             max(arguments, key=lambda each: (each.lineno, each.col_offset)), f", {keyword}={value}"
         )
     source.import_names("rclpy.qos", [kind])
+
+
+def _fails(source: SourceEditor, policy: str, *lines: int) -> bool:
+    """Return whether a policy of the endpoints at two lines does not match, as far as their profiles tell."""
+    keyword, _, requested, offered = _KINDS[policy]
+    values = {}
+    for line in lines:
+        try:
+            call, end = _endpoint(source, line)
+            profile = _profile_of(call, end)
+            made = profile if isinstance(profile, ast.Call) else _assigned(source, profile)
+        except NotSimpleError:
+            return False
+        chosen = [ast.unparse(each.value) for each in made.keywords if each.arg == keyword]
+        values[end] = chosen[0].rpartition(".")[2] if chosen else ""
+    weak = requested["create_subscription"]
+    return values.get("create_subscription") == offered and values.get("create_publisher") == weak
 
 
 def _endpoint(source: SourceEditor, line: int) -> tuple[ast.Call, str]:

@@ -8,6 +8,7 @@ from sim.diagnosis.edits.locks import (
     let_go_during_wait,
     make_reentrant,
     take_before,
+    take_by_one_with,
     take_by_with,
     take_together,
 )
@@ -177,6 +178,7 @@ def _lock_remedies(place: CodeLocation | None, found: Finding, timeline: Timelin
     return (
         *by_edit(place, f"take both locks at once, {order}", take_together, other.first_line),
         *by_edit(place, f"take both locks {order}", take_before, other.first_line),
+        *by_edit(place, f"take both locks by one with, {order}", take_by_one_with, other.first_line),
     )
 
 

@@ -191,12 +191,16 @@ class QosMismatch(Rule):
         place = subscription or publisher
         # Who requests transient-local wants what was published before: with less, that would never come.
         edited = publisher or place if found.detail == "DURABILITY" else place
+        other = next((each for each in (publisher, subscription) if each and edited and each != edited), None)
+        seen = other.first_line if other and edited and other.file == edited.file else 0
         return Explanation(
             f"{subject} hears nothing from a publisher of {found.about}{outside}: {differs}",
             _POLICY_RULES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
             f"{cure}: {' and '.join(ends)}" if ends else cure,
             place or place_of(found.subject, timeline),
-            remedies=by_edit(edited, _PROFILE_WORDS[edited is not subscription], match_quality, found.detail),
+            remedies=by_edit(
+                edited, _PROFILE_WORDS[edited is not subscription], match_quality, found.detail, seen
+            ),
         )
 
 
