@@ -2,6 +2,7 @@
 
 import inspect
 from collections.abc import Callable
+from functools import partial
 from typing import Any, TypeVar
 
 from sim.interfaces import copy_message
@@ -100,8 +101,9 @@ class Service(ClientOrService, Entity):
             self._probe.service_replied(request.call, self.name, copy)
             if self._introspection is not None:
                 self._introspection.publish_step("RESPONSE_SENT", request.client, request.call, response=copy)
-            request.answer(copy)
-            self.node.context.network.spread_reply(self.name, self.srv_type, request.client)
+            self.node.context.network.send_reply(
+                self.name, self.srv_type, request.client, partial(request.answer, copy)
+            )
 
     def removed(self) -> None:
         """Leave the network: the service was removed from its node."""

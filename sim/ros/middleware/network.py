@@ -121,10 +121,12 @@ class Network:
             each.deliver(msgspec.structs.replace(request, data=own))
         return bool(servers)
 
-    def spread_reply(self, name: str, srv_type: type, receiver: bytes) -> None:
-        """Have all clients of a service but the receiver overhear a reply."""
+    def send_reply(self, name: str, srv_type: type, receiver: bytes, deliver: Callable[[], None]) -> None:
+        """Deliver a reply to a client of a service, and have the others overhear it, oldest client first."""
         for client in self._clients.get(name, ()):
-            if client.srv_type is srv_type and client.gid != receiver:
+            if client.gid == receiver:
+                deliver()
+            elif client.srv_type is srv_type:
                 client.overhear()
 
     def _servers(self, name: str, srv_type: type) -> list[ServiceEndpoint]:

@@ -654,6 +654,26 @@ def test_what_awaits_is_asked_behind_what_the_next_callback_sends(distro: str) -
     assert on_bench(program, distro=distro)[0] == ["goes on", "third3"]
 
 
+@pytest.mark.parametrize("distro", ["jazzy@7.1.5", "kilted@9.1.2"])
+def test_a_reply_reaches_the_clients_of_its_service_in_the_order_of_their_making(distro: str) -> None:
+    # Measured on both: what awaits is asked behind the older client, which takes nothing.
+    def program(bench: Bench) -> None:
+        bench.node.create_service(SetBool, "s", lambda _, response: response)
+        older, newer = (bench.node.create_client(SetBool, "s") for _ in range(2))
+        bench.register()
+
+        async def wait() -> None:
+            for _ in range(2):
+                newer.call_async(SetBool.Request()).add_done_callback(lambda _: bench.said.append("got"))
+            await older.call_async(SetBool.Request())
+            bench.said.append("goes on")
+
+        bench.executor.create_task(wait)
+        bench.spin_for(0.5)
+
+    assert on_bench(program, distro=distro)[0] == ["got", "goes on", "got"]
+
+
 def test_a_programs_waitable_may_have_no_guard_condition() -> None:
     def program(bench: Bench) -> None:
         with bench.node.context.handle:
