@@ -12,7 +12,7 @@ from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.diagnosis.words import group_of, thread_count
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
-from sim.trace.events import EntityId, EntityKind, Reason
+from sim.trace.events import Doing, EntityId, EntityKind, Reason
 from sim.trace.model import Blocked, EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -89,11 +89,11 @@ def narration(timeline: Timeline, at: Nanoseconds, stepped: bool = False) -> tup
 
 
 def _without_decision(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
-    """Tell a moment at which the executor decided nothing: what was sent, or that only time passed."""
+    """Tell a moment at which the executor decided nothing: what else happened, or that only time passed."""
     moment = timeline.moment(at)
     left = [wait for wait in moment.waiting.values() if wait.holder != wait.entity]
     left.sort(key=lambda wait: _place(timeline.entities[wait.entity]))
-    then = "; ".join(_sent(timeline, at))
+    then = "; ".join((*_sent(timeline, at), *_woken(timeline, at), *_written(timeline, at)))
     first = f"{timestamp(at)}: {then}" if then else f"nothing happens up to {timestamp(at)}"
     running = dict.fromkeys(name_of(span.entity, timeline) for span in moment.running.values())
     robot = timeline.robot(at)
@@ -115,6 +115,20 @@ def _sent(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
     for name in timeline.names_sent:
         if name not in services and any(each.at == at for each in timeline.sent_on(name)):
             yield f"a message is sent on {name}"
+
+
+def _woken(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    """Who has slept until a moment."""
+    for thread in timeline.threads:
+        for each in timeline.positions_on(thread, Window(max(0, at - 1), at + 1)):
+            if each.doing is Doing.SLEEPS and each.end == at:
+                yield f"{name_of(each.entity, timeline)} has slept, and goes on"
+
+
+def _written(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    lines = timeline.logs_until(at) - timeline.logs_until(at - 1)
+    if lines:
+        yield "a line is written to the log" if lines == 1 else f"{lines} lines are written to the log"
 
 
 def _place(entity: EntityInfo) -> tuple[int, int, EntityId]:

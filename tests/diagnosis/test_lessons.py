@@ -56,3 +56,4 @@ def test_calls_that_overlap_at_a_lock_are_told_which() -> None:
     told = found.rule.explain(found, timeline)
     assert "; the lock of line 51 lets one of them on at a time, and guards nothing outside it" in told.why
     assert told.cure.endswith("who waits there keeps no thread")
+    assert found.rule.weigh(found, timeline) is Weight.REMARK

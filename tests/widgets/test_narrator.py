@@ -8,7 +8,7 @@ from textual.geometry import Size
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.text.cells import visible
 from cbtui.widgets.narrator import ROWS, Narrator, narration
-from sim.trace.events import Reason
+from sim.trace.events import CallbackAt, Doing, Reason
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
 from tests.widgets.pictures import told
@@ -40,10 +40,18 @@ def test_a_step_to_a_moment_without_a_decision_is_told_at_its_time() -> None:
     run.callback(tick, run.thread("MainThread"), 1.0, 3.0)
     run.call("/empty", 2.0, 2.5)
     run.robot(0.0, 0.0, 0.0)
+    for place, (at, doing) in enumerate([(1.2, Doing.SLEEPS), (1.8, Doing.COMPUTES)]):
+        run.add(CallbackAt(ns(at), tick, 1, doing, "", (("node.py", "tick", 12 + place),)))
+    run.log("one", 2.7)
+    run.log("two", 2.8)
+    run.printed("three", 2.8)
     timeline = told(run, until=2.9)
     assert narration(timeline, ns(1.0), stepped=True) == narration(timeline, ns(1.0))
     assert narration(timeline, ns(1.5), stepped=True)[0] == "nothing happens up to 1.500 s: tick still runs"
+    assert narration(timeline, ns(1.8), stepped=True)[0] == "1.800 s: tick has slept, and goes on"
     assert narration(timeline, ns(2.5), stepped=True)[0] == "2.500 s: /empty replies"
+    assert narration(timeline, ns(2.7), stepped=True)[0] == "2.700 s: a line is written to the log"
+    assert narration(timeline, ns(2.8), stepped=True)[0] == "2.800 s: 2 lines are written to the log"
     assert narration(timeline, ns(1.5))[0].startswith("1.000 s: ")
 
 

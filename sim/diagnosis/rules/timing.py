@@ -19,8 +19,8 @@ class OverlappingCallback(Rule):
     """A callback started while an earlier call of it was running, which a reentrant group allows.
 
     Where no lock guards what they share, both calls can overwrite each other's changes. The trace shows a
-    lock only where a call waits for it. Services are what reentrant groups are made for: their overlaps are
-    remarks.
+    lock only where a call waits for it: such an overlap is a remark. So are those of services, for which
+    there are reentrant groups.
     """
 
     id = "overlapping-callback"
@@ -45,8 +45,7 @@ class OverlappingCallback(Rule):
         cure = f"give {subject} a MutuallyExclusiveCallbackGroup, or guard what its calls share with a lock"
         if entity_of(found, timeline).kind is EntityKind.TIMER:
             cure += "; a callback shorter than the timer's period never overlaps"
-        positions = timeline.positions_of(found.subject, Window(found.at, found.until))
-        lock = next((each.line for each in positions if each.waits_for_lock), None)
+        lock = _lock_line(found, timeline)
         unguarded = "where no lock guards what its calls share, one can undo what the other changed"
         if lock is not None:
             cure = f"give {subject} a MutuallyExclusiveCallbackGroup: who waits there keeps no thread"
@@ -61,9 +60,15 @@ class OverlappingCallback(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
-        """A problem for timers and subscriptions, which are hardly meant to overlap."""
+        """A problem where timers or subscriptions, hardly meant to overlap, wait for no lock meanwhile."""
         meant = entity_of(found, timeline).kind not in (EntityKind.TIMER, EntityKind.SUBSCRIPTION)
-        return Weight.REMARK if meant else Weight.PROBLEM
+        return Weight.REMARK if meant or _lock_line(found, timeline) is not None else Weight.PROBLEM
+
+
+def _lock_line(found: Finding, timeline: Timeline) -> int | None:
+    """Return the line at which a call waits for a lock meanwhile; None if none does."""
+    positions = timeline.positions_of(found.subject, Window(found.at, found.until))
+    return next((each.line for each in positions if each.waits_for_lock), None)
 
 
 class OverrunTimer(Rule):
