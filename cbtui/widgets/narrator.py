@@ -73,7 +73,7 @@ def narration(timeline: Timeline, at: Nanoseconds, stepped: bool = False) -> tup
     if last is None:
         return ("nothing has happened yet",)
     if stepped and last < at:
-        return _without_decision(timeline, at)
+        return _without_decision(timeline, at, last)
     moment = timeline.moment(last)
     left = [wait for wait in moment.waiting.values() if wait.holder != wait.entity]
     left.sort(key=lambda wait: _place(timeline.entities[wait.entity]))
@@ -88,13 +88,23 @@ def narration(timeline: Timeline, at: Nanoseconds, stepped: bool = False) -> tup
     return (first, *_by_cause(left, timeline, last)) if left else (first, _at_rest(timeline, last))
 
 
-def _without_decision(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
-    """Tell a moment at which the executor decided nothing: what else happened, or that only time passed."""
+def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) -> tuple[str, ...]:
+    """Tell a moment at which the executor decided nothing: what else happened, or that only time passed.
+
+    A live run stops at a moment before its threads go on, so what they did at the moment before is told, too.
+    """
     moment = timeline.moment(at)
     left = [wait for wait in moment.waiting.values() if wait.holder != wait.entity]
     left.sort(key=lambda wait: _place(timeline.entities[wait.entity]))
-    then = "; ".join((*_sent(timeline, at), *_woken(timeline, at), *_written(timeline, at)))
-    first = f"{timestamp(at)}: {then}" if then else f"nothing happens up to {timestamp(at)}"
+    then = "; ".join((*_sent(timeline, at), *_done(timeline, at)))
+    present = (timeline.position_on(thread, at) for thread in timeline.threads)
+    since = max((each.start for each in present if each and each.start > last), default=at)
+    before = "; ".join(_done(timeline, since))
+    first = f"nothing happens up to {timestamp(at)}"
+    if then:
+        first = f"{timestamp(at)}: {then}"
+    elif before:
+        first = f"{timestamp(since)}: {before}; then {first}"
     running = dict.fromkeys(name_of(span.entity, timeline) for span in moment.running.values())
     robot = timeline.robot(at)
     goes_on = [f"{name} still runs" for name in running]
@@ -117,15 +127,12 @@ def _sent(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
             yield f"a message is sent on {name}"
 
 
-def _woken(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
-    """Who has slept until a moment."""
+def _done(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    """Who has slept until a moment, and whether something is written to the log then."""
     for thread in timeline.threads:
         for each in timeline.positions_on(thread, Window(max(0, at - 1), at + 1)):
             if each.doing is Doing.SLEEPS and each.end == at:
                 yield f"{name_of(each.entity, timeline)} has slept, and goes on"
-
-
-def _written(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
     lines = timeline.logs_until(at) - timeline.logs_until(at - 1)
     if lines:
         yield "a line is written to the log" if lines == 1 else f"{lines} lines are written to the log"

@@ -49,6 +49,9 @@ def test_a_step_to_a_moment_without_a_decision_is_told_at_its_time() -> None:
     assert narration(timeline, ns(1.0), stepped=True) == narration(timeline, ns(1.0))
     assert narration(timeline, ns(1.5), stepped=True)[0] == "nothing happens up to 1.500 s: tick still runs"
     assert narration(timeline, ns(1.8), stepped=True)[0] == "1.800 s: tick has slept, and goes on"
+    assert narration(timeline, ns(1.9), stepped=True)[0] == (
+        "1.800 s: tick has slept, and goes on; then nothing happens up to 1.900 s: tick still runs"
+    )
     assert narration(timeline, ns(2.5), stepped=True)[0] == "2.500 s: /empty replies"
     assert narration(timeline, ns(2.7), stepped=True)[0] == "2.700 s: a line is written to the log"
     assert narration(timeline, ns(2.8), stepped=True)[0] == "2.800 s: 2 lines are written to the log"
