@@ -313,7 +313,7 @@ class EventsExecutor(Executor):
             logger = nodes[0].get_logger() if len(nodes) == 1 else get_logger("UNKNOWN")
             _log(error, logger, _TASK)
             if len(nodes) == 1:
-                logger.fatal("on real ROS 2 the process ends here: segmentation fault, ros2/rclpy issue 1641")
+                logger.fatal("rclpy 7.1.5 and 9.1.2 end the process here: segmentation fault (rclpy#1641)")
             raise
 
     def _go_on_with_parked(self) -> None:
