@@ -228,14 +228,13 @@ class WorkerPool:
                     begun = self._begin_found(now)
                 if begun is not None:
                     return self._runner.start(begun)
+                if self._dismissed and not others_go_first:
+                    return None
+                others_go_first |= len(self._queue) > self._called_workers
                 if others_go_first:
                     self._expect(worker)
-                elif self._dismissed:
-                    return None
                 else:
-                    others_go_first = len(self._queue) > self._called_workers
-                    if not others_go_first:
-                        self._idle.append(worker)
+                    self._idle.append(worker)
             if others_go_first:
                 self._clock.sleep(0)
             else:
