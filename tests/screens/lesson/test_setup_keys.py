@@ -16,6 +16,7 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.windows.group import GroupScreen
 from cbtui.screens.windows.setup import SetupScreen
 from cbtui.screens.windows.value import ValueScreen
+from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.key_bar import KeyBar
 from sim.engine.setup import GroupChange, PeriodChange, RealRos
 from sim.trace.events import AnyEvent
@@ -254,12 +255,14 @@ async def test_on_real_ros_a_moment_to_come_is_not_paused_at(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("size", first_daily(NARROW, WIDE))
-async def test_a_notification_hides_the_keys_and_nothing_else(size: tuple[int, int]) -> None:
+async def test_a_notification_hides_neither_the_diagnosis_nor_the_keys(size: tuple[int, int]) -> None:
     async with console(size) as (app, pilot):
         await press(pilot, "t", "o")
         assert notes(app) == ["everything is back to what the program says"]
+        assert app.screen.query_one(Toast).region.bottom == app.screen.query_one(DiagnosisLine).region.y
+        await press(pilot, "d")
         keys = next(bar for bar in app.screen.query(KeyBar) if bar.display)
-        assert app.screen.query_one(Toast).region == keys.region
+        assert app.screen.query_one(Toast).region.bottom <= keys.region.y
 
 
 # several at once
