@@ -11,10 +11,12 @@ from cbtui.learning.lesson_lint import faults_of
 from cbtui.learning.lesson_scaffold import TEMPLATE
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.catalogue import find, lessons
+from lessons.checks import rotations
 from lessons.judge import Judge
 from lessons.lesson import Lesson, read_lesson
+from sim.trace.timeline import Timeline
 from tests.support.daily import first_daily
-from tests.support.engine_runs import run_to_end
+from tests.support.engine_runs import run_lesson, run_to_end
 
 every_lesson = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
 EXERCISES = [lesson for lesson in (read_lesson(TEMPLATE), *lessons()) if lesson.exercise is not None]
@@ -69,6 +71,16 @@ def test_the_files_of_an_exercise_fit_an_80_column_pane(lesson: Lesson) -> None:
     for path in (lesson.starter_path, lesson.solution_path):
         assert path is not None
         assert all(len(line) <= 79 for line in path.read_text(encoding="utf-8").splitlines())
+
+
+@pytest.mark.parametrize(("threads", "drives_on"), [(1, True), (4, False)])
+def test_with_one_shared_group_the_robot_drives_on_with_one_thread_alone(
+    threads: int, drives_on: bool
+) -> None:
+    run = Timeline()
+    run.extend(run_lesson("shared-group", 40.0, threads=threads).events)
+    assert (rotations(run)[-1].end < run.end) == drives_on
+    assert "With four threads the robot even **never drives on**." in find("shared-group").explanation
 
 
 def test_a_lamp_that_stands_still_for_three_seconds_does_not_blink_all_the_time(tmp_path: Path) -> None:
