@@ -170,7 +170,10 @@ def _lane_signs(charset: Charset) -> _Section:
             _HelpRow("excl reen", "a group's kind where names are short: exclusive, reentrant"),
             _HelpRow("25% busy", "how much of the time on screen a thread worked"),
             _HelpRow("late", "a timer was called later than its period says"),
-            _HelpRow(glyphs.up, "what you did: a call of a service, a reset, a ros2 command"),
+            _HelpRow(
+                f"{glyphs.up} {glyphs.back}", "a service is called and replies; your own call has its key"
+            ),
+            _HelpRow(glyphs.up, "what else you did: a reset, a ros2 command"),
             _HelpRow(glyphs.cursor, "the moment on screen, which every pane shows"),
         ],
     )
