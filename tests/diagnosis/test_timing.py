@@ -46,7 +46,7 @@ def test_a_timer_slower_than_its_period_overruns_it_in_an_exclusive_group() -> N
     run = ticking(1.5, MutuallyExclusiveCallbackGroup())
     assert run.problems() == {("overrun-timer", "tick")}
     told = run.explained("overrun-timer").what
-    assert told == "tick took 1.5 s with a period of 1.0 s: 1 tick missed or late (12 overruns in all)"
+    assert told == "tick took 1.5 s with a period of 1.0 s; 1 tick missed or late (12 overruns in all)"
 
 
 @pytest.mark.parametrize("kind", [ReentrantCallbackGroup, MutuallyExclusiveCallbackGroup])

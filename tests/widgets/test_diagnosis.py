@@ -319,6 +319,29 @@ def test_in_80_columns_a_problem_keeps_its_reason() -> None:
     assert shown.startswith(" ! odom and scan waited up to 11.0 s: group A was held by timer ")
 
 
+_FOUR_CALLS = (2.55, 10.55, 10.6, 10.65)
+
+
+@pytest.mark.parametrize(
+    ("lesson", "calls", "shown"),
+    [
+        ("reentrant-2-threads", _FOUR_CALLS, "timer waited 4.6 s: 2 calls of SetBool kept a thread each"),
+        ("no-groups-at-all", _FOUR_CALLS, "timer waited 4.5 s: group A was held by SetBool (node.py:97)"),
+        ("three-cures", (), "ask_and_wait took 1.5 s with a period of 1.0 s (node.py:77)"),
+    ],
+)
+def test_in_80_columns_no_lesson_s_problem_is_cut_within_a_clause(
+    lesson: str, calls: tuple[float, ...], shown: str
+) -> None:
+    timeline = Timeline()
+    timeline.extend(event for event in run_lesson(lesson, 28.0, *calls).events if event.t < ns(27.0))
+    monitor = FindingsMonitor(timeline)
+    monitor.update()
+    told = with_worst_problem(Diagnosis("", DiagnosisLevel.FINE), monitor.findings)
+    row = line(told, 80, problems="1 problem · d")
+    assert row.startswith(f" ! {shown}  ")
+
+
 def test_a_sentence_that_does_not_fit_ends_with_a_clause() -> None:
     what = "deadlock: pick waits for /gripper for ever; the reply of /gripper can never be taken in"
     deadlock = Diagnosis(f"at 1.0 s: {what}", DiagnosisLevel.TROUBLE, time="at 1.0 s: ")

@@ -103,7 +103,7 @@ class OverrunTimer(Rule):
         subject = who(found.subject, timeline)
         place = line_of(found.subject, Window(found.at, found.until), timeline)
         return Explanation(
-            f"{subject} took {duration(found.lasted)} with a period of {duration(entity.period)}: "
+            f"{subject} took {duration(found.lasted)} with a period of {duration(entity.period)}; "
             f"{ticks} missed or late{often(found.count, 'overruns in all')}",
             "the timer is not called again before its callback is over; missed ticks are not made up for",
             f"let {subject} return sooner: do long work step by step, or in a callback of another group"

@@ -121,7 +121,7 @@ class NoFreeWorker(_KeptWaiting):
         if threads_for([found.culprit, found.subject], found.until, timeline) == 1:
             busy = f"the only thread ran {culprit}"
         elif beside_itself > 1:
-            busy = f"{beside_itself} calls of {culprit} kept a thread each, and no thread was free"
+            busy = f"{beside_itself} calls of {culprit} kept a thread each; no thread was free"
             room = Remedy((found.culprit,))
             cure = (
                 f"give {culprit} a MutuallyExclusiveCallbackGroup: then its calls wait outside, without a "
