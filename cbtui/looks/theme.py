@@ -81,6 +81,7 @@ class Glyphs:
     right: str
     line: str
     double_line: str
+    line_start: str
     point: str
     hatch: dict[Reason, str]
     frame: str
@@ -108,6 +109,7 @@ _BLOCKS = Glyphs(
     right=" ▕▕▐▐▐▐██",
     line="─",
     double_line="═",
+    line_start="╶",
     point="·",
     hatch={
         Reason.GROUP_HELD: "\N{BOX DRAWINGS LIGHT DIAGONAL UPPER RIGHT TO LOWER LEFT}",
@@ -138,6 +140,7 @@ _PLAIN = Glyphs(
     right=" ||||####",
     line="-",
     double_line="=",
+    line_start=" ",
     point=".",
     hatch={
         Reason.GROUP_HELD: "/",

@@ -199,6 +199,7 @@ class BarPainter:
     ) -> None:
         """Draw the calls of a callback: a mark for a short call, a line with its thread for a long one.
 
+        A line that begins where another one ends is set apart from it.
         The columns of ``marks`` stay free of words, as the marks are drawn later.
         """
         number = self._number(entity.id)
@@ -207,6 +208,8 @@ class BarPainter:
                 self._columns(row, stretch, _ink(Role.BAR, number))
             else:
                 self._line(row, stretch, Ink(Role.LINE, number))
+                if row.cells[: stretch.first + 1][-2:] == [self.glyphs.line] * 2:
+                    row.cells[stretch.first] = self.glyphs.line_start
                 span = stretch.top
                 took = self._took(span)
                 thread = short_thread(self.timeline.threads[span.thread].name)

@@ -56,6 +56,17 @@ def test_words_and_figures_are_of_the_moment_that_is_told_and_bars_go_on() -> No
     assert "MainThread  │▎▎▎▎▎A timer_callback ███████████████████████████▌│" in behind
 
 
+@pytest.mark.parametrize(
+    ("charset", "lines"), [(Charset.BRAILLE, "───────╶──────"), (Charset.ASCII, "------- ------")]
+)
+def test_a_long_call_right_after_another_begins_a_line_of_its_own(charset: Charset, lines: str) -> None:
+    run, thread, _, tick = small_run()
+    run.callback(tick, thread, 1.0, 1.4)
+    run.callback(tick, thread, 2.4, 1.4)
+    rows = plain(LanePainter(charset).paint(told(run), *last(10, 4.0), 80, 8).rows).splitlines()
+    assert lines in next(row for row in rows if row.startswith("  tick"))
+
+
 def test_what_has_no_callback_of_its_own_goes_by_its_name() -> None:
     run = Run()
     thread, group = run.thread("MainThread"), run.exclusive(run.node("/n"))
