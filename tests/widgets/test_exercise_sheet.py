@@ -1,5 +1,6 @@
 """The words of an exercise's checks, as text."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from cbtui.runs.judged.checking import CheckedFile, ObservedRun
@@ -40,6 +41,16 @@ def test_each_check_tells_with_a_sign_what_was_expected_seen_and_when() -> None:
         "✗ scan runs",
         "  expected 1 call; saw 2 calls, at 4.000 s",
     ]
+
+
+def test_a_fault_that_a_check_has_told_is_not_told_as_another() -> None:
+    row = CheckRow(
+        "nothing gets stuck", CheckStatus.FAILED, "expected no deadlock; saw a waits for b, at 1.0 s"
+    )
+    sheet = ChecksSheet("", CheckStatus.FAILED, (row,), ("a waits for b",))
+    assert "What else is wrong with the run" not in shown(sheet)
+    more = shown(replace(sheet, faults=("a waits for b", "c raised KeyError")))
+    assert more[-2:] == ["What else is wrong with the run", "! c raised KeyError"]
 
 
 def test_the_lines_of_a_check_know_which_one_it_is() -> None:

@@ -106,9 +106,10 @@ def _lines(sheet: ChecksSheet, width: int) -> Iterator[ChecksLine]:
             yield ChecksLine(((f"{' ' * _INDENT}{text}", ChecksStyle.DETAIL),), place)
     yield from _titled("What the exercise asks")
     yield from (ChecksLine(((text, ChecksStyle.TEXT),)) for text in lines_of_text(sheet.asks, width))
-    if sheet.faults:
+    others = [fault for fault in sheet.faults if not any(fault in row.detail for row in sheet.rows)]
+    if others:
         yield from _titled("What else is wrong with the run")
-    for fault in sheet.faults:
+    for fault in others:
         yield from _signed(CheckStatus.WRONG, fault, ChecksStyle.TEXT, width)
 
 

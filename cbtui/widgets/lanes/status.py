@@ -126,7 +126,8 @@ class LaneStatus:
         level = f"{queue.depth}/{entity.depth}{'!' if full else ''}"
         lost = f" lost {_count(queue.dropped)}" if queue.dropped else ""
         age = "" if latest is None else f" {GLYPHS[self.charset].between} age {duration(latest.age)}"
-        texts = (f"queue {level}{lost}{age}", f"queue {level}{lost}", f"{level}{lost}", level)
+        brief = f"{level} lost {_count(queue.dropped, 1000)}"
+        texts = (f"queue {level}{lost}{age}", f"queue {level}{lost}", f"{level}{lost}", brief, level)
         fitting = (text for text in texts if len(text) < self.width)
         return TextRun(next(fitting, level), WARN if full else PLAIN)
 
@@ -136,5 +137,5 @@ def is_late(span: Span, timer: EntityInfo) -> bool:
     return span.age >= max(timer.period // 10, _LATE_AT_LEAST)
 
 
-def _count(number: int) -> str:
-    return str(number) if number < 10_000 else f"{number // 1000}k"
+def _count(number: int, thousands_from: int = 10_000) -> str:
+    return str(number) if number < thousands_from else f"{number // 1000}k"

@@ -97,6 +97,18 @@ def test_lost_messages_are_crosses_on_the_lane_of_their_queue() -> None:
     )
 
 
+def test_a_narrow_lane_tells_thousands_of_lost_messages() -> None:
+    run, _, a, _ = small_run()
+    for each in range(1074):
+        run.add(MessageDropped(ns(5.0) + each, a, 10, 1))
+    run.stop(10.0)
+    narrow, wide = (
+        plain(LanePainter().paint(told(run), *last(10, 10.0), width, 8).rows) for width in (80, 140)
+    )
+    assert " 10/10! lost 1k" in narrow
+    assert " queue 10/10! lost 1074" in wide
+
+
 def neighbours() -> Timeline:
     """Two groups whose callbacks follow each other at once on one thread."""
     run = Run()
