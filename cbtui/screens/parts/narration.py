@@ -1,8 +1,8 @@
-"""The narrator of a screen: shown on request, and from the first step on."""
+"""The narrator of a screen: shown on request, and from the first step until the run goes on live."""
 
 from dataclasses import dataclass
 
-from cbtui.runs.live.live_run import LiveRun, ShownRun
+from cbtui.runs.live.live_run import LiveRun, RunState, ShownRun
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
@@ -25,18 +25,29 @@ class Narration(ScreenPart):
     def __post_init__(self) -> None:
         self.widget = Narrator()
         self.widget.charset, self.widget.display = self.host.charset, False
+        self._asked_for = False
 
-    def show(self, shown: bool = True) -> None:
-        """Show or hide it."""
+    def show_step(self) -> None:
+        """Show it, as a step leads to another moment."""
+        self._show(True)
+
+    def _show(self, shown: bool) -> None:
         self.widget.display = shown
         self.host.redraw()
 
     def draw(self) -> None:
-        """Show the moment on screen, if it is shown."""
+        """Show the moment on screen, if it is shown; hide it where no step led and nobody asked for it."""
+        if (
+            not self._asked_for
+            and self.navigation.playhead.at is None
+            and self.runs.run.state is RunState.LIVE
+        ):
+            self.widget.display = False
         if self.widget.display:
             self.widget.stepped = was_stepped(self.runs.run, self.navigation)
             self.widget.now, self.widget.timeline = self.navigation.now, self.runs.timeline
 
     def action_narrate(self) -> None:
         """Show or hide it."""
-        self.show(not self.widget.display)
+        self._asked_for = not self.widget.display
+        self._show(self._asked_for)

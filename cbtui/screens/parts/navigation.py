@@ -76,19 +76,19 @@ class TimeNavigation(ScreenPart):
     def action_step(self) -> None:
         """Run to the next scheduling decision, or, looking back, go to the next event."""
         run = self.live()
-        self.stepped()
         if self.playhead.at is None and run is not None:
             run.step()
+            self.stepped()
         else:
             self._go_to_event(1)
 
     def action_step_back(self) -> None:
         """Go to the previous event."""
-        self.stepped()
         self._go_to_event(-1)
 
     def _go_to_event(self, step: int) -> None:
         self.move(self.playhead.beside(self.timelines(), self.end(), step))
+        self.stepped()
 
     @property
     def run_that_goes_on(self) -> LiveRun | None:

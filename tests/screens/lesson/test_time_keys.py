@@ -10,6 +10,7 @@ from textual.widgets import Static
 
 from cbtui.app import CbtuiApp
 from cbtui.screens.windows.moment import MomentScreen, seconds_in
+from cbtui.widgets.narrator import Narrator
 from sim.engine.commands import Pause, RunUntil, SetSpeed, Step
 from sim.trace.events import TimeHalted
 from tests.support.builder import ns
@@ -62,6 +63,20 @@ async def test_a_comma_looks_back_by_one_event_and_a_full_stop_forward_until_liv
         await press(pilot, "full_stop")
         assert "LIVE" in status(app)
         assert app.engines.latest.commands == []
+
+
+@pytest.mark.parametrize(("key", "stays"), [("comma", False), ("N", True)])
+async def test_a_narrator_that_came_with_a_step_goes_when_the_run_goes_on_live(key: str, stays: bool) -> None:
+    async with console() as (app, pilot):
+        narrator = app.screen.query_one(Narrator)
+        await press(pilot, key, "comma")
+        assert narrator.display
+        await press(pilot, "0")
+        assert narrator.display == stays
+        await press(pilot, "space", "full_stop")
+        assert narrator.display
+        await press(pilot, "space")
+        assert narrator.display == stays
 
 
 async def test_going_to_a_moment_that_has_passed_looks_back() -> None:
