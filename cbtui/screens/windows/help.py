@@ -163,7 +163,9 @@ def _lane_signs(charset: Charset) -> _Section:
             _HelpRow(glyphs.hatch[Reason.NOBODY_SPINS] * 4, "a callback waits: nobody spins its node"),
             _HelpRow(glyphs.blocked * 4, "a thread is blocked in a call, or by a lock"),
             _HelpRow(glyphs.inner, "a callback runs inside that of the bar, which spins"),
-            _HelpRow(line * 4, "a callback holds its group, or runs"),
+            _HelpRow(
+                f"{glyphs.point} {line * 4}", "a callback holds its group, for a moment or for long; or runs"
+            ),
             _HelpRow(glyphs.double_line * 4, "several callbacks of a group run at once"),
             _HelpRow(glyphs.lost, "a message is lost: its queue was full"),
             _HelpRow(glyphs.cross, "a callback raised an exception"),

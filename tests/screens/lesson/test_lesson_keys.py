@@ -312,6 +312,7 @@ async def test_the_help_begins_with_the_signs_and_finds_words() -> None:
         await press(pilot, "question_mark")
         assert "another one holds its group" in text_of(app)
         assert f" {GLYPHS[Charset.BRAILLE].textures}  the fills of long bars" in text_of(app)
+        assert " · ────  a callback holds its group, for a moment or for long; or runs" in text_of(app)
         assert " ▲ ◂  a service is called and replies; your own call has its key" in text_of(app)
         await press(pilot, "slash", *"record")
         assert "Start or stop recording the run" in text_of(app)
