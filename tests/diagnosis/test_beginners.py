@@ -51,6 +51,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "future.add_done_callback(lambda:",
             "write lambda future: …",
         ),
+        ("result_at_once", "program-raised", "reply.message", "use the result in a done-callback"),
         ("hides_a_name", "program-raised", "def handle(self, message):", "hides Node.handle"),
         ("input_in_timer", "program-raised", "input(", "read in another thread"),
         ("wait_for_service", "service-never-comes", "self.client.wait_for_service()", "start the node"),

@@ -14,7 +14,7 @@ from sim.diagnosis.edits.locks import make_reentrant
 from sim.diagnosis.edits.names import rename, rename_definition
 from sim.diagnosis.edits.polling import leave_out, step_by_step
 from sim.diagnosis.edits.profiles import match_quality
-from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
+from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback, use_in_done_callback
 from tests.diagnosis.edited_source import MARK, changed, edited, node
 
 
@@ -79,6 +79,36 @@ def test_the_names_of_a_done_callback_and_its_future_are_new() -> None:
 )
 def test_what_is_not_simple_is_not_moved(methods: str) -> None:
     assert changed(node(methods), go_on_in_done_callback) is None
+
+
+def test_the_use_of_a_result_moves_into_a_done_callback_with_what_follows() -> None:
+    text = node(
+        """
+        def tick(self):
+            future = self.client.call_async(Trigger.Request())
+            # ask
+            reply = future.result()
+            if reply.success:  # here
+                self.log(reply)  # well
+        """
+    )
+    assert changed(text, use_in_done_callback, "success") == [
+        "+        future.add_done_callback(self.on_reply)",
+        "+",
+        "+    def on_reply(self, future):",
+    ]
+
+
+@pytest.mark.parametrize(
+    "methods",
+    [
+        "def tick(self):\n    self.log(self.future.result().success)  # here",
+        "def tick(self):\n    n = 1\n    f = self.ask()\n    self.log(f.result().success, n)  # here",
+        "def tick(self):\n    self.log(self.last.success)  # here",
+    ],
+)
+def test_a_use_of_a_result_that_is_not_simple_is_not_moved(methods: str) -> None:
+    assert changed(node(methods), use_in_done_callback, "success") is None
 
 
 def test_a_function_of_no_class_and_what_is_no_python_is_not_edited() -> None:

@@ -1,6 +1,7 @@
 """Edits of callbacks that wait for a reply: they continue in a done-callback, or await it."""
 
 import ast
+from contextlib import suppress
 
 from sim.diagnosis.edits.groups import give_own_group
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
@@ -24,23 +25,74 @@ def go_on_in_done_callback(source: SourceEditor, line: int) -> None:
         raise NotSimpleError
     future, begin, first = _handed_over(source, wait, callback)
     check_rest(callback, callback.body[:place], rest, future)
-    inner, outer = indentation(wait), indentation(callback)
+    inner = indentation(wait)
     comment = source.comment_behind(wait)
     if not rest and not first:
         source.replace_lines(wait, wait, f"{inner}{begin.partition(' = ')[2] or 'pass'}{comment}\n")
         return
-    name = next(each for each in ("on_reply", f"{callback.name}_reply") if each not in source.text)
-    me = callback.args.args[0].arg
     lines = [
         *([f"{inner}{begin}{comment}"] if begin else []),
-        f"{inner}{future}.add_done_callback({me}.{name})",
-        "",
-        f"{outer}def {name}({me}, {future}):",
+        *_done_callback(source, callback, future, inner),
         *([f"{inner}{first}"] if first else []),
     ]
     last = rest[-1] if rest else wait
     kept = source.lines_behind(wait.end_lineno or 0, last)
     source.replace_lines(wait, last, "\n".join(lines) + "\n" + kept)
+
+
+def use_in_done_callback(source: SourceEditor, line: int, attribute: str) -> None:
+    """Move the use of a result at a line, and what follows it, into a done-callback of the future.
+
+    Only if the callback itself has the future in a variable, as in ``go_on_in_done_callback``.
+    """
+    callback = source.callback_at(line)
+    found = {ast.unparse(each) for each in futures_used(source, line, attribute)}
+    future = found.pop() if len(found) == 1 else ""
+    uses = (
+        place
+        for place, each in enumerate(callback.body)
+        if any(ast.unparse(call) == f"{future}.result()" for call in source.nodes(ast.Call, each))
+    )
+    place = next(uses, None)
+    if place is None or not future.isidentifier():
+        raise NotSimpleError
+    rest = callback.body[place:]
+    check_rest(callback, callback.body[:place], rest, future)
+    lines = _done_callback(source, callback, future, indentation(rest[0]))
+    kept = source.lines_behind(rest[0].lineno - 1, rest[-1])
+    source.replace_lines(rest[0], rest[-1], "\n".join(lines) + "\n" + kept)
+
+
+def futures_used(source: SourceEditor, line: int, attribute: str) -> list[ast.expr]:
+    """Return the futures whose ``result()`` is what an attribute is asked of at a line, itself or by name."""
+    within: ast.AST = source.tree
+    with suppress(NotSimpleError):
+        within = source.function_at(line)
+    asked = [
+        each.value
+        for each in source.nodes(ast.Attribute)
+        if each.attr == attribute and each.lineno <= line <= (each.end_lineno or 0)
+    ]
+    names = {ast.unparse(each) for each in asked}
+    named = [
+        each.value for each in source.nodes(ast.Assign, within) if names & set(map(ast.unparse, each.targets))
+    ]
+    return [
+        each.func.value
+        for each in (*asked, *named)
+        if isinstance(each, ast.Call) and isinstance(each.func, ast.Attribute) and each.func.attr == "result"
+    ]
+
+
+def _done_callback(source: SourceEditor, callback: ast.FunctionDef, future: str, inner: str) -> list[str]:
+    """Return the lines that end a callback with a done-callback of a future, and that begin that."""
+    me = callback.args.args[0].arg
+    name = next(each for each in ("on_reply", f"{callback.name}_reply") if each not in source.text)
+    return [
+        f"{inner}{future}.add_done_callback({me}.{name})",
+        "",
+        f"{indentation(callback)}def {name}({me}, {future}):",
+    ]
 
 
 def await_reply(source: SourceEditor, line: int, made: int) -> None:

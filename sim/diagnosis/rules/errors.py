@@ -1,10 +1,14 @@
 """Rules on exceptions that go unnoticed."""
 
+import linecache
 import re
 from collections.abc import Iterator
+from contextlib import suppress
 
 from sim.diagnosis.edits.functions import fit_parameters, hand_over_function
 from sim.diagnosis.edits.names import rename_definition
+from sim.diagnosis.edits.replies import futures_used, use_in_done_callback
+from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, line_location, made_at, place_of
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of
 from sim.diagnosis.words import often, who
@@ -51,12 +55,31 @@ class ProgramRaised(Rule):
             *by_edit(place, "define it with the parameters it is called with", fit_parameters),
             *by_edit(place, "give it another name", rename_definition),
         )
+        if attribute := _used_too_soon(ended):
+            why = "result() does not wait: of a future that is not done yet it is None"
+            cure = "after call_async(), spin_until_future_complete(node, future) comes before result()"
+            if found.subject:
+                subject = who(found.subject, timeline)
+                cure = "use the result in a done-callback, by future.add_done_callback(), or await the future"
+                cure += f" in an async def {subject} with a callback group of its own"
+            words = "use the result in a done-callback of the future"
+            remedies = by_edit(place, words, use_in_done_callback, attribute)
         if (entity := _called_too_soon(ended, timeline)) is not None:
             why = f"this {entity.kind.value} was made with what a call returned, in place of a function"
             cure = "hand over the function itself, without calling it: self.tick, not self.tick()"
             place = made_at(entity)
             remedies = by_edit(place, "hand over the function itself", hand_over_function)
         return Explanation(ended.problem, why, ended.advice or cure, place, remedies=remedies)
+
+
+def _used_too_soon(ended: RunEnded) -> str:
+    """Return the attribute that was asked of the result of a future that was not done; "" for none."""
+    known = _NO_ATTRIBUTE.fullmatch(ended.error or "")
+    file, line = ended.place
+    with suppress(NotSimpleError):
+        if known and futures_used(SourceEditor("".join(linecache.getlines(file))), line, known[1]):
+            return known[1]
+    return ""
 
 
 def _called_too_soon(ended: RunEnded, timeline: Timeline) -> EntityInfo | None:
@@ -67,6 +90,8 @@ def _called_too_soon(ended: RunEnded, timeline: Timeline) -> EntityInfo | None:
     entities = (each for each in timeline.entities.values() if each.kind in kinds and not each.callback)
     return next((each for each in entities if made_at(each)), None)
 
+
+_NO_ATTRIBUTE = re.compile(r"AttributeError: 'NoneType' object has no attribute '(\w+)'")
 
 _UNREADABLE = ("SyntaxError", "IndentationError", "TabError")
 """The exceptions that come before a file runs."""
