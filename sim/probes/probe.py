@@ -230,10 +230,10 @@ class Probe:
             events.Notice(self._now(), Severity.WARN, text, entity, kind=kind, problem=problem, advice=advice)
         )
 
-    def spin_clashed(self, node: int = 0) -> None:
+    def spin_clashed(self, node: int = 0, *, refused: bool = False) -> None:
         """Record that the calling thread spins what is being spun; ``node`` was taken from that executor."""
         here, endless = self._here.entity, not has_timeout()
-        self._sink(events.SpinClashed(self._now(), here, node, *call_into_ros(), endless))
+        self._sink(events.SpinClashed(self._now(), here, node, *call_into_ros(), endless, refused))
 
     def callback_suspended(self, entity: TracedEntity, outer: int, coroutine: object = None) -> None:
         """Record that a callback is suspended where its coroutine awaits, and leaves the calling thread."""

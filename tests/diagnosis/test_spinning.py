@@ -114,6 +114,39 @@ def test_a_callback_that_spins_what_runs_it_is_told_with_its_line(
     assert str(told.place) == "node.py:22"
 
 
+@pytest.mark.parametrize(
+    ("ask", "what"),
+    [
+        ("rclpy.spin_until_future_complete(self, future)", FOR_EVER),
+        (
+            "rclpy.spin_until_future_complete(self, future, timeout_sec=0.3)",
+            "tick spins the executor that runs tick, by spin_until_future_complete() (2 times in all)",
+        ),
+    ],
+)
+def test_a_release_that_refuses_no_second_spin_is_not_said_to(ask: str, what: str, tmp_path: Path) -> None:
+    run = run_program(tmp_path, program(ask), 1.2, distro="jazzy@7.1.6")
+    (found,) = found_in(run)
+    assert found.rule.explain(found, run.timeline).what == what
+
+
+def test_a_request_that_a_spinning_callback_keeps_out_is_a_ring_although_others_run(tmp_path: Path) -> None:
+    apart = "self.create_timer(0.7, lambda: None, callback_group=MutuallyExclusiveCallbackGroup())"
+    alone = "self.create_timer(0.5, self.tick)"
+    text = program("rclpy.spin_until_future_complete(self, future)").replace(alone, f"{alone}; {apart}")
+    run = run_program(
+        tmp_path,
+        f"from rclpy.callback_groups import MutuallyExclusiveCallbackGroup\n{text}",
+        4.0,
+        distro="jazzy@7.1.6",
+    )
+    (found,) = found_in(run)
+    assert found.rule.explain(found, run.timeline).what == (
+        "deadlock: tick waits in spin_until_future_complete() for ever; /power waits for group A, "
+        "which tick holds"
+    )
+
+
 def test_a_spin_without_end_inside_a_callback_is_a_ring_and_nothing_moves(tmp_path: Path) -> None:
     run = run_program(tmp_path, program("rclpy.spin_until_future_complete(self, future)", SINGLE), 4.0)
     (found,) = found_in(run)

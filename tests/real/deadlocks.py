@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import msgspec
 
+from cbtui.commands.options.changes import release_of
 from sim.diagnosis import Weight, diagnose
 from sim.engine.setup import RealRos, RobotUse
 from sim.trace.timeline import Timeline
@@ -24,6 +25,7 @@ _EXECUTORS = {
     "multi 1": "MultiThreadedExecutor(1)",
     "multi 2": "MultiThreadedExecutor(2)",
     "multi 4": "MultiThreadedExecutor(4)",
+    "global": "rclpy.get_global_executor()",
 }
 _EXCLUSIVE, _REENTRANT = "MutuallyExclusiveCallbackGroup()", "ReentrantCallbackGroup()"
 _GROUPS = {
@@ -127,13 +129,14 @@ def cases() -> Iterator[Case]:
     return (Case(*each) for each in product(_EXECUTORS, _GROUPS, _WAYS, _CALLBACKS))
 
 
-def seen(case: Case, real: RealRos | None) -> Seen:
-    """What comes of a program on a real ROS 2, or on the model in virtual time."""
+def seen(case: Case, real: RealRos | None, python: str = "") -> Seen:
+    """What comes of a program on a real ROS 2, or on the model of that of a Python, in virtual time."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "asking.py"
         path.write_text(case.text)
         setup = program_setup(path, _SECONDS, clock="virtual" if real is None else "real")
-        run = run_to_end(msgspec.structs.replace(setup, real=real, robot=RobotUse.NEVER))
+        distro = "" if real is not None else release_of(python) or ""
+        run = run_to_end(msgspec.structs.replace(setup, real=real, distro=distro, robot=RobotUse.NEVER))
     texts = _logged(run)
     return Seen("answered" not in texts, tuple(_problems(run.timeline)) if "asks" in texts else ("silent",))
 
@@ -156,7 +159,7 @@ def main() -> None:
     count, differing = 0, 0
     with ThreadPoolExecutor(2) as pool:
         for case, on_ros, on_model in pool.map(
-            lambda each: (each, seen(each, real), seen(each, None)), cases()
+            lambda each: (each, seen(each, real), seen(each, None, real.python)), cases()
         ):
             count += 1
             print(f"{', '.join(case):60} {'hangs' if on_ros.hangs else 'runs'}", flush=True)

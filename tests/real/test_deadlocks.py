@@ -19,6 +19,8 @@ from tests.support.daily import first_slow
         Case("multi 2", "split groups", "call()", "service"),
         Case("multi 2", "same group", "nested spin", "timer"),
         Case("multi 4", "reentrant group", "nested spin", "timer"),
+        Case("global", "same group", "nested spin", "service"),
+        Case("global", "reentrant group", "nested spin", "timer"),
     ),
     ids=", ".join,
 )

@@ -70,10 +70,10 @@ class NestedSpin(Rule):
                 "and then none has it"
             )
         else:
-            what = (
-                f"{subject} spins {runner}, by {clash.function}(): RuntimeError: Executor is already spinning"
-            )
+            what = f"{subject} spins {runner}, by {clash.function}()"
             why = "an executor is spun once at a time; rclpy before Jazzy 7.1.9 tells nobody, and may hang"
+            if clash.refused:
+                what += ": RuntimeError: Executor is already spinning"
         for_ever = bool(found.ring) and found.until >= timeline.end
         if for_ever:
             what = (
@@ -133,24 +133,28 @@ def _held_up(clash: SpinClashed, view: TimelineView) -> str:
     timeline = view.timeline
     known = timeline.entities.get(clash.entity)
     group = None if known is None else timeline.groups.get(known.group)
-    if known is None or group is None or not clash.endless or clash.node != known.node:
+    if known is None or group is None or not clash.endless or clash.node not in (0, known.node):
         return ""
     if group.kind is not GroupKind.EXCLUSIVE:
         return ""
-    if all(each.group == group.id for each in timeline.entities.values() if each.node == clash.node):
+    served = (each for each in timeline.entities.values() if clash.node in (0, each.node))
+    if all(each.group == group.id for each in served):
         return "all callbacks of its node are in"
     if not clash.function.endswith("future_complete"):
         return ""
     kept = {
-        timeline.entities[wait.entity].name
+        each.name: f"the reply of {each.name}" if each.kind is EntityKind.CLIENT else each.name
         for wait in timeline.moment(view.end).waiting.values()
         if wait.holder == clash.entity and view.end - wait.since >= SETTLES
-        if timeline.entities[wait.entity].kind is EntityKind.CLIENT
+        for each in [timeline.entities[wait.entity]]
+        if each.group == group.id and each.kind in (EntityKind.CLIENT, EntityKind.SERVICE)
     }
     begun = timeline.spans_of(clash.entity, Window(clash.t, clash.t + 1))
     since = Window(begun[-1].start, view.end + 1) if begun else Window(clash.t, view.end + 1)
     called = {call.service for call in timeline.calls_within(since) if call.caller == clash.entity}
-    return f"the reply of {listed(sorted(called))} waits for" if called and called <= kept else ""
+    if not called or not called <= kept.keys():
+        return ""
+    return f"{listed(kept[each] for each in sorted(called))} {'waits' if len(called) == 1 else 'wait'} for"
 
 
 def _ring(clash: SpinClashed, timeline: Timeline) -> tuple[str, ...]:

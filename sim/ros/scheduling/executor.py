@@ -190,8 +190,9 @@ class Executor:
         with self._lock:
             outer = self._spinning
             if outer:
-                self._probe.spin_clashed()
-                if self._refuses_second_spin():
+                refused = self._refuses_second_spin()
+                self._probe.spin_clashed(refused=refused)
+                if refused:
                     raise RuntimeError(self.already_spinning)
             self._spinning = True
         try:

@@ -132,7 +132,7 @@ class EntityGone(TraceEvent, frozen=True, tag="entity_gone"):
 class SpinClashed(TraceEvent, frozen=True, tag="spin_clash"):
     """A thread asked to spin an executor or a node that already spins.
 
-    Without ``node`` the executor raised ``RuntimeError``, and no node was taken from an executor.
+    Without ``node`` no node was taken from an executor.
     """
 
     entity: CallbackId
@@ -146,3 +146,5 @@ class SpinClashed(TraceEvent, frozen=True, tag="spin_clash"):
     """Line at which it was called."""
     endless: WireOnly[bool] = False
     """Whether it was called without a timeout."""
+    refused: WireOnly[bool] = True
+    """Without ``node``: whether the executor raised ``RuntimeError``; rclpy before Jazzy 7.1.9 does not."""
