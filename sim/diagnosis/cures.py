@@ -62,19 +62,22 @@ def _length(waits: Sequence[Wait], window: Window) -> Nanoseconds:
 
 
 def _threads_needed(crowded: Sequence[Wait], window: Window, timeline: Timeline) -> int:
-    """Return one more than the executor's threads, or than its groups with long calls, if these are more."""
+    """Return one more than the executor's threads, or than its groups with long calls, if these are more.
+
+    Of those that waited, none counts against itself.
+    """
     waited = {wait.entity for wait in crowded}
     involved = [*(wait.holder for wait in crowded), *waited]
     executors = {_executor_of(each, window.end, timeline) for each in involved}
-    occupied = {
-        each.group
+    occupying = [
+        each
         for each in timeline.entities.values()
-        if each.id not in waited
-        and (timeline.spans_of(each.id, window) or timeline.waits_of(each.id, window))
+        if (timeline.spans_of(each.id, window) or timeline.waits_of(each.id, window))
         and _is_long(each.id, timeline)
         and _executor_of(each.id, window.end, timeline) in executors
-    }
-    return max(threads_for(involved, window.end, timeline), len(occupied)) + 1
+    ]
+    occupied = max(len({each.group for each in occupying if each.id != one}) for one in waited)
+    return max(threads_for(involved, window.end, timeline), occupied) + 1
 
 
 def _executor_of(entity: EntityId, at: Nanoseconds, timeline: Timeline) -> tuple[ExecutorId, ThreadId]:

@@ -141,7 +141,7 @@ def test_each_cure_that_a_lesson_is_offered_ends_what_it_is_offered_for(
 def test_a_thread_is_counted_for_every_long_callback_that_would_take_it(tmp_path: Path) -> None:
     path = tmp_path / "node.py"
     path.write_text(RIVALS)
-    check_cures(program_setup(path, 13.0), {("quick", 3), ("", 2)})
+    check_cures(program_setup(path, 13.0), {("quick", 3), ("long", 3)})
 
 
 def test_no_thread_is_counted_for_the_callbacks_of_another_executor(tmp_path: Path) -> None:

@@ -54,6 +54,29 @@ def test_a_callback_whose_group_is_free_waits_long_for_a_thread() -> None:
     assert run.explained("no-free-worker").what == "quick waited 2.9 s: the only thread ran slow"
 
 
+def test_who_waits_for_the_thread_of_a_callback_that_holds_a_group_is_told_with_the_group() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def slow() -> None:
+            simulation.sleep(3.0)
+
+        def quick() -> None: ...
+
+        def other() -> None: ...
+
+        once(node, 1.0, slow)
+        once(node, 1.1, quick)
+        once(node, 1.2, other, MutuallyExclusiveCallbackGroup())
+        spin(node, None)
+
+    run = diagnosed(program)
+    assert run.problems() == {("group-starvation", "quick")}
+    told = run.explained("group-starvation")
+    assert told.what == "quick and other waited up to 2.9 s: group A was held by slow, on the only thread"
+    assert told.cure.startswith("give slow a callback group of its own, and spin with MultiThreaded")
+
+
 def test_calls_of_one_callback_on_all_threads_are_no_reason_for_one_thread_more() -> None:
     def program(simulation: Simulation) -> None:
         node = Node("n")

@@ -10,6 +10,7 @@ from sim.diagnosis.rule import (
     Explanation,
     Finding,
     Rule,
+    Weight,
     line_of,
     loop_beside_spin,
     place_of,
@@ -49,21 +50,7 @@ class _KeptWaiting(Rule):
 
     def _waiting(self, found: Finding, timeline: Timeline) -> list[EntityId]:
         """Return the callbacks that waited for the culprit at the worst time, the longest wait first."""
-        at = Window(found.at, found.until)
-        others = (each for each in timeline.entities if each not in (found.subject, found.culprit))
-        return [
-            found.subject,
-            *(
-                each
-                for each in others
-                if any(
-                    wait.holder == found.culprit
-                    and wait.reason is self.reason
-                    and min(wait.end_at(timeline.end), at.end) - wait.start >= HALF_A_SECOND
-                    for wait in timeline.waits_of(each, at)
-                )
-            ),
-        ]
+        return [found.subject, *_others_waiting(found, self.reason, timeline)]
 
     def _explained(
         self, found: Finding, timeline: Timeline, cause: str, why: str, cure: str, *remedies: Remedy
@@ -84,6 +71,8 @@ class _KeptWaiting(Rule):
 class GroupStarvation(_KeptWaiting):
     """A callback was ready, but another one held its mutually exclusive group.
 
+    Others that waited for the culprit's thread meanwhile are part of the finding.
+
     Source: the ROS 2 how-to guide "Using callback groups".
     """
 
@@ -91,15 +80,25 @@ class GroupStarvation(_KeptWaiting):
     summary = "a callback waits long because its group is held"
     reason = Reason.GROUP_HELD
 
+    def _waiting(self, found: Finding, timeline: Timeline) -> list[EntityId]:
+        return [
+            *super()._waiting(found, timeline),
+            *_others_waiting(found, Reason.NO_FREE_WORKER, timeline),
+        ]
+
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         culprit = who(found.culprit, timeline)
         waited = self._waiting(found, timeline)
         mover = found.subject if len(waited) == 1 else found.culprit
         room = remedy_for_waits(waited, mover, Window(found.at, found.until), timeline)
+        busy = ""
+        if _others_waiting(found, Reason.NO_FREE_WORKER, timeline):
+            is_only = threads_for([found.culprit], found.until, timeline) == 1
+            busy = ", on the only thread" if is_only else ", and all threads were busy"
         return self._explained(
             found,
             timeline,
-            f"{group_of(found.subject, timeline)} was held by {culprit}",
+            f"{group_of(found.subject, timeline)} was held by {culprit}{busy}",
             f"{_admission(found.subject, timeline)}, however many threads are free",
             f"{room.words(timeline)}; or let {culprit} return sooner",
             room,
@@ -131,6 +130,12 @@ class NoFreeWorker(_KeptWaiting):
             busy = f"all threads were busy, one with {culprit}"
         why = "its group would have let it in, but a callback also needs a thread to run on"
         return self._explained(found, timeline, busy, why, cure, room)
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant if the culprit also kept others out of its group, which is told with this."""
+        kept = _others_waiting(found, Reason.GROUP_HELD, timeline)
+        asked = (EntityKind.CLIENT, EntityKind.SERVICE)
+        return None if any(timeline.entities[each].kind not in asked for each in kept) else self.weight
 
 
 class BehindOthers(_KeptWaiting):
@@ -211,6 +216,22 @@ class NodeNeverSpins(Rule):
             cure,
             place,
         )
+
+
+def _others_waiting(found: Finding, reason: Reason, timeline: Timeline) -> list[EntityId]:
+    """Return the callbacks but a finding's own that waited long for its culprit then, for a reason."""
+    at = Window(found.at, found.until)
+    return [
+        each
+        for each in timeline.entities
+        if each not in (found.subject, found.culprit)
+        and any(
+            wait.holder == found.culprit
+            and wait.reason is reason
+            and min(wait.end_at(timeline.end), at.end) - wait.start >= HALF_A_SECOND
+            for wait in timeline.waits_of(each, at)
+        )
+    ]
 
 
 def _may_wait_for_its_caller(entity: EntityInfo, wait: LongWait, view: TimelineView) -> bool:
