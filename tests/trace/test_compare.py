@@ -316,6 +316,12 @@ def test_a_run_that_an_exception_ended_while_the_other_goes_on_is_told_instead_o
     assert ended_early(compare(works, works, Window(0, ns(3.0)))) == ""
 
 
+def test_a_run_that_goes_on_to_an_exception_of_its_own_is_not_said_to_go_on() -> None:
+    first, second = (run([ODOM], [RunEnded(ns(at), "the program raised", failed=True)]) for at in (3.0, 3.5))
+    compared = compare(first, second, Window(0, ns(3.0)))
+    assert ended_early(compared) == "Run A ended at 3 s with an exception, and run B at 3.5 s with one"
+
+
 def test_runs_first_differ_where_a_call_does_otherwise() -> None:
     def differ(first: list[AnyEvent], second: list[AnyEvent]) -> Nanoseconds | None:
         return run_to_end(first_difference(run([ODOM], first), run([ODOM], second), Window(0, ns(4.0))))

@@ -62,7 +62,7 @@ class RunFigures:
 
     ``end`` is the end of the whole run; ``collisions`` counts contacts of the robot, including one that began
     before the window. ``mismatches`` counts publishers and subscriptions that do not match by its end,
-    ``crashes`` is 1 if an error has ended the run by then.
+    ``crashes`` is 1 if an error has ended the run by then, and ``fails`` tells whether one ended it at all.
     """
 
     end: Nanoseconds
@@ -72,6 +72,7 @@ class RunFigures:
     collisions: int
     mismatches: int = 0
     crashes: int = 0
+    fails: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,5 +239,6 @@ def _run_figures(timeline: Timeline, window: Window) -> Incremental[RunFigures]:
     most = yield from threads_incrementally(timeline, window)
     mismatches = sum(each.t <= window.end for each in timeline.mismatches)
     ended = timeline.ended
+    fails = ended is not None and ended.failed
     crashes = int(ended is not None and ended.failed and ended.t <= window.end)
-    return RunFigures(timeline.end, used, most, robot, collisions, mismatches, crashes)
+    return RunFigures(timeline.end, used, most, robot, collisions, mismatches, crashes, fails)

@@ -97,7 +97,7 @@ def is_tie(comparison: Comparison) -> bool:
 
 
 def ended_early(comparison: Comparison) -> str:
-    """Return which run an exception ended while the other one goes on; "" for neither.
+    """Return which run an exception ended while the other one goes on, if only to one of its own; or "".
 
     Of such runs only the part before the exception can be compared, which speaks for no run.
     """
@@ -106,7 +106,10 @@ def ended_early(comparison: Comparison) -> str:
         other = runs[1 - place]
         if run.crashes and not other.crashes and run.end <= comparison.window.end < other.end:
             told = f"{RUNS[place]} ended at {_seconds(run.end)} s with an exception"
-            return f"{told[0].upper()}{told[1:]}; {RUNS[1 - place]} goes on"
+            goes_on = f"; {RUNS[1 - place]} goes on"
+            if other.fails:
+                goes_on = f", and {RUNS[1 - place]} at {_seconds(other.end)} s with one"
+            return f"{told[0].upper()}{told[1:]}{goes_on}"
     return ""
 
 
