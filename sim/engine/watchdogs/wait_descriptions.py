@@ -92,6 +92,9 @@ def _cure(thread: VirtualThread) -> str:
         return "wait with a timeout, and let a callback of another group, on another thread, end it"
     if _waits_for_end(thread):
         return "make sure that the thread ends, or join it with a timeout"
+    holder = None if thread.wants is None else thread.wants.holder
+    if holder is not None and holder is not thread and holder.wants is not None:
+        return "let go of a lock before you wait for anything else"
     return "take locks by with, which lets go of them whatever happens"
 
 

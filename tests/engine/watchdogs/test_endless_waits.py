@@ -174,6 +174,10 @@ class Mine(Node):
         with self.lock:
             pass
 
+    def hold(self):
+        with self.lock:
+            self.wait()
+
     def leave(self):
         self.lock.acquire()
 
@@ -216,8 +220,14 @@ def test_a_lock_taken_twice_and_an_event_that_nobody_sets_are_told_with_their_pl
     assert (twice, waits) == (Severity.ERROR, Severity.WARN)
     assert once.startswith("deadlock: ThreadPoolExecutor-0_")
     assert "(node.py:20, in again) waits for the lock that it took itself at node.py:16, in twice; " in once
-    assert "(node.py:27, in wait) waits in Event.wait(), since 0.100 s; " in long
+    assert "(node.py:31, in wait) waits in Event.wait(), since 0.100 s; " in long
     assert [what.partition(": ")[0] for what in found(run)] == ["wait stands still"]
+
+
+def test_the_advice_on_a_lock_whose_holder_waits_itself_is_not_to_take_it_by_with(tmp_path: Path) -> None:
+    (_, event), (_, lock) = told(run_node(tmp_path, "hold", "again"))
+    assert "waits in Event.wait(), since 0.100 s; wait with a timeout" in event
+    assert lock.endswith("let go of a lock before you wait for anything else")
 
 
 def test_a_thread_that_waits_when_no_other_is_left_is_in_a_deadlock(tmp_path: Path) -> None:
@@ -225,7 +235,7 @@ def test_a_thread_that_waits_when_no_other_is_left_is_in_a_deadlock(tmp_path: Pa
     ((severity, text),) = told(run)
     assert severity is Severity.ERROR
     assert (
-        "(node.py:24, in leave) waits for the lock that it took itself at node.py:24, in leave, and " in text
+        "(node.py:28, in leave) waits for the lock that it took itself at node.py:28, in leave, and " in text
     )
     assert "no thread of the program is left that could end that" in text
     (notice,) = (each for each in run.events if isinstance(each, Notice))
