@@ -103,7 +103,7 @@ class CompareScreen(SizedScreen[None]):
             Jumps(self, self),
         )
         self._drawn: tuple[object, ...] = ()
-        self._compared: Window | None = None
+        self._compared: tuple[object, ...] | None = None
         self._comparing = False
         self._rest_until = 0.0
         self._problems = ComparedProblems(first.timeline, second.timeline)
@@ -174,12 +174,13 @@ class CompareScreen(SizedScreen[None]):
     def _draw_table(self) -> None:
         """Start a new comparison if the window changed, but rarely enough to keep the keys responsive."""
         asked = self._common(self._asked)
-        if asked == self._compared and self._whole and not self._comparing and asked.length > 0:
+        compared = asked, *(side.timeline.ended for side in self._sides)
+        if compared == self._compared and self._whole and not self._comparing and asked.length > 0:
             self._title(self._extent(asked))  # a run goes on
             self._compare_problems()
-        if asked == self._compared or self._comparing or monotonic() < self._rest_until:
+        if compared == self._compared or self._comparing or monotonic() < self._rest_until:
             return
-        self._compared = asked
+        self._compared = compared
         self._comparing = True
         self.run_worker(self._compare(asked), group="comparison", exclusive=True)
 

@@ -322,8 +322,10 @@ async def test_a_run_that_an_exception_ended_early_is_not_judged_by_what_came_be
     )
     growing.extend([event for event in events if event.t <= ns(6.0)])
     now = ComparedSide("now", growing, alive=lambda: True)
-    async with compared(ComparedSide("failed", failed), now) as (app, _):
+    async with compared(ComparedSide("failed", failed), now) as (app, pilot):
         assert "Run A ended at 0.3 s with an exception; run B goes on" in text_of(app)
+        growing.extend([RunEnded(ns(7.0), "it raised too", failed=True)])
+        await until(pilot, lambda: "with an exception, and run B at 7 s with one" in text_of(app))
         assert "is better" not in text_of(app)
         assert "What both runs have, 0 to 0.3 s; run B goes on to" in title(app)
 
