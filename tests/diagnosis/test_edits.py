@@ -333,13 +333,36 @@ QOS = "from rclpy.node import Node\nfrom rclpy.timer import Timer"
             "both = QoSProfile(depth=1)\n    self.create_publisher(String, 'b', both)\n"
             "    self.create_subscription(String, 'a', self.on, both)  # here",
             "RELIABILITY",
-            None,
+            [
+                "+from copy import copy",
+                "+",
+                "+from rclpy.qos import ReliabilityPolicy",
+                "+        requested = copy(both)",
+                "+        requested.reliability = ReliabilityPolicy.BEST_EFFORT",
+                "+        self.create_subscription(String, 'a', self.on, requested)  # here",
+            ],
         ),
         ("self.create_subscription(String, 'a', self.on, 5)  # here", "DEADLINE", None),
         (
-            "self.create_subscription(String, 'a', self.on, qos_profile_sensor_data)  # here",
+            "self.create_publisher(String, 'a', qos_profile_sensor_data)  # here",
+            "DURABILITY",
+            [
+                "+from copy import copy",
+                "+",
+                "+from rclpy.qos import DurabilityPolicy",
+                "+        offered = copy(qos_profile_sensor_data)",
+                "+        offered.durability = DurabilityPolicy.TRANSIENT_LOCAL",
+                "+        self.create_publisher(String, 'a', offered)  # here",
+            ],
+        ),
+        (
+            "queue = 10\n    self.create_subscription(String, 'a', self.on, queue)  # here",
             "RELIABILITY",
-            None,
+            [
+                "+from rclpy.qos import QoSProfile, ReliabilityPolicy",
+                "+        requested = QoSProfile(depth=queue, reliability=ReliabilityPolicy.BEST_EFFORT)",
+                "+        self.create_subscription(String, 'a', self.on, requested)  # here",
+            ],
         ),
     ],
 )

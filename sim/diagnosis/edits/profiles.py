@@ -14,8 +14,9 @@ _PLACES = {"create_subscription": 3, "create_publisher": 2}
 def match_quality(source: SourceEditor, line: int, policy: str, other: int = 0) -> None:
     """Let the endpoint at a line request no more than is offered, or offer what is requested.
 
-    Only for a profile that is a number, or a ``QoSProfile(…)`` that nothing else uses. The other end, at the
-    line ``other`` (0: not in this source), may show that a second policy does not match either.
+    The profile is a number, or a ``QoSProfile(…)`` that nothing else uses; another one by name, as an
+    imported one, is copied. The other end, at the line ``other`` (0: not in this source), may show that a
+    second policy does not match either.
     """
     if policy not in _KINDS:
         raise NotSimpleError
@@ -29,20 +30,22 @@ def match_quality(source: SourceEditor, line: int, policy: str, other: int = 0) 
 def _set_policy(source: SourceEditor, line: int, policy: str, profile: ast.expr, end: str) -> None:
     keyword, kind, requested, offered = _KINDS[policy]
     value = f"{kind}.{requested.get(end, offered)}"
-    if isinstance(profile, ast.Constant) and isinstance(profile.value, int):
+    made = _made(source, profile)
+    if made is None:
         statement = source.statement_at(line)
         name = "requested" if end in requested else "offered"
         name = next(each for each in (name, f"{name}_profile") if each not in source.text)
-        assignment = f"{name} = QoSProfile(depth={profile.value}, {keyword}={value})"
-        source.insert_before(statement, f"{assignment}\n{indentation(statement)}")
+        code, blanks = source.code_of(profile), indentation(statement)
+        if _is_depth(source, profile):
+            begin = f"{name} = QoSProfile(depth={code}, {keyword}={value})\n{blanks}"
+            source.import_names("rclpy.qos", ["QoSProfile", kind])
+        else:
+            begin = f"{name} = copy({code})\n{blanks}{name}.{keyword} = {value}\n{blanks}"
+            source.import_names("copy", ["copy"])
+            source.import_names("rclpy.qos", [kind])
+        source.insert_before(statement, begin)
         source.replace(profile, name)
-        source.import_names("rclpy.qos", ["QoSProfile", kind])
         return
-    made = profile if isinstance(profile, ast.Call) else _assigned(source, profile)
-    if not isinstance(made.func, ast.Name | ast.Attribute) or not ast.unparse(made.func).endswith(
-        "QoSProfile"
-    ):
-        raise NotSimpleError
     chosen = next((each for each in made.keywords if each.arg == keyword), None)
     if chosen is not None:
         source.replace(chosen.value, value)
@@ -63,9 +66,10 @@ def _fails(source: SourceEditor, policy: str, *lines: int) -> bool:
     for line in lines:
         try:
             call, end = _endpoint(source, line)
-            profile = _profile_of(call, end)
-            made = profile if isinstance(profile, ast.Call) else _assigned(source, profile)
+            made = _made(source, _profile_of(call, end))
         except NotSimpleError:
+            return False
+        if made is None:
             return False
         chosen = [ast.unparse(each.value) for each in made.keywords if each.arg == keyword]
         values[end] = chosen[0].rpartition(".")[2] if chosen else ""
@@ -95,15 +99,28 @@ def _profile_of(call: ast.Call, end: str) -> ast.expr:
     return (named + placed)[0]
 
 
-def _assigned(source: SourceEditor, name: ast.expr) -> ast.Call:
-    """Return the call that is assigned to a name, if the name is assigned once and used once."""
+def _made(source: SourceEditor, profile: ast.expr) -> ast.Call | None:
+    """Return the ``QoSProfile(…)`` that a profile is, or that is assigned to it if nothing else uses it."""
+    code = source.code_of(profile)
+    uses = sum(ast.unparse(each) == code for each in source.nodes(ast.expr))
+    values = [profile] if isinstance(profile, ast.Call) else _assigned(source, profile)
+    match values:
+        case [ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)) as made] if name == "QoSProfile":
+            return made if made is profile or uses == 2 else None
+    return None
+
+
+def _assigned(source: SourceEditor, name: ast.expr) -> list[ast.expr]:
+    """Return what is assigned to a name."""
     code = source.code_of(name)
-    same = [each for each in source.nodes(ast.expr) if ast.unparse(each) == code]
-    values = [
+    return [
         each.value
         for each in source.nodes(ast.Assign)
         if len(each.targets) == 1 and ast.unparse(each.targets[0]) == code
     ]
-    if len(same) != 2 or len(values) != 1 or not isinstance(values[0], ast.Call):
-        raise NotSimpleError
-    return values[0]
+
+
+def _is_depth(source: SourceEditor, profile: ast.expr) -> bool:
+    """Return whether a profile is a number, itself or by a name."""
+    values = [profile] if isinstance(profile, ast.Constant) else _assigned(source, profile)
+    return bool(values) and all(isinstance(each, ast.Constant) for each in values)
