@@ -19,7 +19,7 @@ from sim.trace.descriptions import name_of
 from sim.trace.events import EntityKind, KeyboardAsked, Notice, NoticeKind, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.figures.waiting import WORTH_TELLING, waits_for_others
-from sim.trace.model import Call, Moment, Nanoseconds, Wait, Window
+from sim.trace.model import AxisMarkKind, Call, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 
 _SERIOUS: Nanoseconds = SECOND
@@ -91,16 +91,19 @@ def with_worst_problem(
 ) -> Diagnosis:
     """Replace a diagnosis without a problem by the worst problem that the rules found in the run.
 
-    A diagnosis that stays is kept, unless it is a stall; any other gives way to a wait that never ends, or
-    only by its timeout. ``how_to_continue`` is added to a wait that never ends where there is room.
-    Of a past moment ``at`` only what was known then is told.
+    A diagnosis that stays is kept, but for its tick, unless it is a stall; any other gives way to a wait that
+    never ends, or only by its timeout. ``how_to_continue`` is added to a wait that never ends where there is
+    room. Of a past moment ``at`` only what was known then is told.
     """
     problems = [each for each in findings if each.is_problem and (at is None or _is_known(each, at))]
     endless = [each for each in problems if each.explanation.for_ever]
     in_vain = [each for each in problems if each.explanation.until]
     worst = next(iter((*endless, *in_vain, *problems)), None)
-    if worst is None or (moment.stays and not (moment.is_stall and worst.explanation.for_ever)):
+    if worst is None:
         return moment
+    if moment.stays and not (moment.is_stall and worst.explanation.for_ever):
+        no_tick = moment.level is DiagnosisLevel.FINE
+        return replace(moment, level=DiagnosisLevel.WAITS) if no_tick else moment
     if moment.level is not DiagnosisLevel.FINE and worst not in (*endless, *in_vain):
         return moment
     explanation = worst.explanation
@@ -173,6 +176,11 @@ def diagnosis_at(
 
 def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
     """The diagnosis of a moment at which no callback waits for another one."""
+    lately = timeline.marks(Window(moment.at - _NOTICE_STAYS, moment.at + 1))
+    raised = [mark for mark in lately if mark.kind is AxisMarkKind.ERROR]
+    if raised:
+        time = f"at {raised[-1].at / 1e9:.1f} s: "
+        return Diagnosis(f"{time}{raised[-1].text}", DiagnosisLevel.WAITS, time=time)
     own = (wait for wait in moment.waiting.values() if moment.at - wait.since >= WORTH_TELLING)
     for_itself = min(own, key=attrgetter("since"), default=None)
     in_a_call = _in_a_call(moment, timeline)

@@ -414,7 +414,20 @@ def test_how_a_run_ended_and_how_to_go_on_is_told_whatever_went_wrong() -> None:
     ended = shared_group_run()
     ended.over(15.0, "its program returned", failed=False)
     moment = verdict_of(live_run(ended, 15.0))
-    assert with_worst_problem(moment, told_of(ended, 15.0)) is moment
+    told = with_worst_problem(moment, told_of(ended, 15.0))
+    assert told == replace(moment, level=DiagnosisLevel.WAITS), "a tick beside a number of problems"
+    assert with_worst_problem(moment, []) is moment
+
+
+def test_an_exception_that_spin_has_not_raised_yet_gets_no_tick() -> None:
+    run = Run()
+    thread = run.thread("ThreadPoolExecutor-0_0")
+    timer = run.timer(run.exclusive(run.node("/n")), "weigh", 3.0)
+    run.start(timer, thread, 9.0)
+    run.fail(timer, thread, 9.0, "ValueError: '???'")
+    told = said(run, 9.5)
+    assert (told.text, told.level) == ("at 9.0 s: weigh raised ValueError: '???'", DiagnosisLevel.WAITS)
+    assert said(run, 15.0).level is DiagnosisLevel.FINE
 
 
 def test_a_good_run_is_told_as_it_was() -> None:
