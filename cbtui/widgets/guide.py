@@ -53,6 +53,11 @@ class Guide(VerticalScroll):
             self._reading = (self.query_one(f"#part-{name}", Prose), 0)
             self.call_after_refresh(self._keep_in_sight)
 
+    def is_past(self, name: str) -> bool:
+        """Whether the reader has scrolled on from the top of a section."""
+        places = (part.virtual_region for part in self.query(f"#part-{name}"))
+        return any(place and place.y < self.scroll_offset.y for place in places)
+
     def _read_now(self, parts: Mapping[str, str]) -> tuple[Prose, int] | None:
         """Return the topmost section that stays, and how many of its rows are scrolled out."""
         top = self.scroll_offset.y

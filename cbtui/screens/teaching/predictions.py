@@ -141,6 +141,7 @@ class Predictions(ScreenPart):
         """Show the outcome."""
         self._run = None
         self.learning.outcome_pending = False
+        reads_on = self.learning.guide.is_past(PageSection.SHOWN)
         await self.learning.update_page(message.outcome)
-        if self._wanted:
+        if self._wanted and not reads_on:
             self.learning.guide.go_to(PageSection.SHOWN)

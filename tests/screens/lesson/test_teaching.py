@@ -210,6 +210,26 @@ async def test_what_was_explained_is_gone_to_from_every_pane() -> None:
 
 
 @pytest.mark.slow
+async def test_who_reads_on_while_the_prediction_is_checked_is_not_taken_back() -> None:
+    checked = Event()
+
+    def observe_later(setup: RunSetup, name: str, given_up: Event) -> ObservedRun:
+        checked.wait(_PATIENCE)
+        return observed(EVENTS)(setup, name, given_up)
+
+    async with console(30.1, LESSON.id, observe_later, "1", "enter", "2", "enter", "a") as (app, pilot):
+        guide = app.screen.query_one(Guide)
+        await until(pilot, lambda: guide.scroll_offset.y > 0)
+        await press(pilot, "pagedown", "pagedown")
+        reading = guide._read_now(guide._parts)
+        checked.set()
+        await until_shown(pilot, app, "You got")
+        await pilot.pause(0.1)
+        assert guide._read_now(guide._parts) == reading
+        assert guide.is_past("shown")
+
+
+@pytest.mark.slow
 async def test_what_one_lesson_said_does_not_cover_the_keys_of_the_next() -> None:
     app = Console(30.1)
     async with app.run_test(size=NARROW, notifications=True) as pilot:
