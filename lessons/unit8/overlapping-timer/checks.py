@@ -52,7 +52,7 @@ CHECKS = (
     Check("every call of inspect is counted", _judge_count),
     Check("inspect has a group that keeps it from overlapping", _judge_group),
     never_overlap("inspect"),
-    no_problem("overrun-timer", "inspect is over when its next tick is due"),
+    no_problem("overrun-timer", "inspect misses no tick"),
     is_called_often("inspect", 8),
     never_raises(),
 )
