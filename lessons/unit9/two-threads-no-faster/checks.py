@@ -21,7 +21,7 @@ from sim.trace.model import Span
 from sim.trace.timeline import Timeline
 
 DESKS = ("left_desk", "right_desk")
-COMPUTED = re.compile(r"(left|right) took .*, (\d+\.\d+) s of them computing")
+COMPUTED = re.compile(r"(left|right) took .*, computed (\d+\.\d+) s")
 AT_ONCE = 0.15
 """Seconds in which a desk hands a job on, even if the computer is busy."""
 

@@ -71,7 +71,7 @@ class Desks(Node):
         took = time.monotonic() - begun
         computed = time.thread_time() - computed
         self.get_logger().info(
-            f"{desk} took {took:.2f} s, {computed:.2f} s of them computing"
+            f"{desk} took {took:.2f} s, computed {computed:.2f} s"
         )
 
 

@@ -7,9 +7,11 @@ from pathlib import Path
 from threading import Event
 
 import pytest
+from textual.containers import VerticalScroll
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
+from cbtui.learning.lesson_page import introduction
 from cbtui.learning.outcome import Observe
 from cbtui.runs.judged.checking import ObservedRun, observe
 from cbtui.runs.setup.lesson_setup import setup_to_judge
@@ -18,7 +20,7 @@ from cbtui.screens.menu import MenuScreen
 from cbtui.screens.windows.prediction import PredictionScreen
 from cbtui.screens.windows.solution import ConfirmSolutionScreen, SolutionScreen
 from cbtui.widgets.guide import Guide
-from lessons.catalogue import find
+from lessons.catalogue import find, is_built_in, lessons
 from lessons.progress import LessonProgress, Progress
 from sim.engine.setup import RunSetup
 from sim.trace.events import RunEnded
@@ -95,6 +97,19 @@ def top(app: CbtuiApp) -> type[object]:
 
 
 # predict
+
+
+@pytest.mark.slow
+async def test_what_every_lesson_is_about_is_read_without_scrolling() -> None:
+    app = Console()
+    async with app.run_test(size=NARROW) as pilot:
+        for lesson in filter(is_built_in, lessons()):
+            text = introduction(lesson.guide)
+            screen = PredictionScreen(text, lesson.predictions, 0, lambda _place, _answer: None, app.charset)
+            await app.push_screen(screen)
+            await settle(pilot)
+            assert screen.query_one(VerticalScroll).max_scroll_y == 0, lesson.id
+            await screen.dismiss()
 
 
 async def test_time_does_not_begin_before_every_question_is_answered() -> None:
