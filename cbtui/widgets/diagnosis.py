@@ -12,7 +12,7 @@ from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
 from sim.diagnosis import CodeLocation
-from sim.diagnosis.words import thread_count, threads_needed
+from sim.diagnosis.words import only_thread, thread_count, threads_needed
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of
@@ -282,7 +282,7 @@ def _busy_threads(wait: Wait, moment: Moment, timeline: Timeline) -> str:
         return "no thread is free"
     holders = [thread for thread, span in moment.running.items() if span.entity == wait.holder]
     if holders and not timeline.threads[holders[0]].executor:  # it is of no pool
-        return f"the only thread runs {name_of(wait.holder, timeline)}"
+        return f"{only_thread(timeline)} runs {name_of(wait.holder, timeline)}"
     names = sorted(dict.fromkeys(running), key=running.count, reverse=True)[:2]
     if len(running) < thread_count(timeline):  # others are of other executors, or about to take up work
         return f"no thread is free for it: {' and '.join(names)} {'runs' if len(names) == 1 else 'run'}"

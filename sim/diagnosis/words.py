@@ -75,6 +75,11 @@ def thread_count(timeline: Timeline) -> int:
     )
 
 
+def only_thread(timeline: Timeline) -> str:
+    """What the one thread of a callback's executor is called; other executors may have threads too."""
+    return "its only thread" if thread_count(timeline) > 1 else "the only thread"
+
+
 def _is_any_running(timeline: Timeline, at: Nanoseconds) -> bool:
     window = Window(at, at + 1)
     return any(timeline.spans_on(thread, window) for thread in timeline.threads)

@@ -12,8 +12,10 @@ from tests.support.builder import ns
 from tests.support.simulation import Simulation
 
 
-def slow_and_quick(*, same_group: bool, threads: int | None, length: float = 3.0) -> Diagnosed:
-    """``slow`` works from 1 s on; ``quick`` is due a tenth of a second later."""
+def slow_and_quick(
+    *, same_group: bool, threads: int | None, length: float = 3.0, idle: bool = False
+) -> Diagnosed:
+    """``slow`` works from 1 s on; ``quick`` is due 0.1 s later; another executor may be ``idle``."""
 
     def program(simulation: Simulation) -> None:
         node = Node("n")
@@ -26,6 +28,8 @@ def slow_and_quick(*, same_group: bool, threads: int | None, length: float = 3.0
         first = MutuallyExclusiveCallbackGroup()
         once(node, 1.0, slow, first)
         once(node, 1.1, quick, first if same_group else MutuallyExclusiveCallbackGroup())
+        if idle:
+            SingleThreadedExecutor()
         spin(node, threads)
 
     return diagnosed(program)
@@ -52,6 +56,8 @@ def test_a_callback_whose_group_is_free_waits_long_for_a_thread() -> None:
     run = slow_and_quick(same_group=False, threads=None)
     assert run.problems() == {("no-free-worker", "quick")}
     assert run.explained("no-free-worker").what == "quick waited 2.9 s: the only thread ran slow"
+    beside_another = slow_and_quick(same_group=False, threads=None, idle=True)
+    assert beside_another.explained("no-free-worker").what == "quick waited 2.9 s: its only thread ran slow"
 
 
 def test_who_waits_for_the_thread_of_a_callback_that_holds_a_group_is_told_with_the_group() -> None:

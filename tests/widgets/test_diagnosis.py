@@ -137,6 +137,18 @@ def test_a_wait_in_the_event_queue_names_what_runs_before() -> None:
     assert said(run, 5.0).text == "tick waits 3.0 s: the only thread runs scan"
 
 
+def test_the_one_thread_of_an_executor_is_not_the_only_one_of_the_program() -> None:
+    run = Run()
+    thread = run.thread("MainThread")
+    for _ in range(2):
+        run.executor("SingleThreadedExecutor", 1)
+    group = run.reentrant(run.node("/n"))
+    slow, belt = run.timer(group, "slow", 9.0), run.timer(group, "belt", 0.5)
+    run.callback(slow, thread, 1.0)
+    run.wait(belt, 2.0, None, Reason.NO_FREE_WORKER, slow, workers_busy=True)
+    assert said(run, 5.0).text == "belt waits 3.0 s: its only thread runs slow"
+
+
 def test_a_node_that_nobody_spins_is_told() -> None:
     run = Run()
     run.wait(run.timer(run.exclusive(run.node("/n")), "tick", 1.0), 1.0, None, Reason.NOBODY_SPINS)

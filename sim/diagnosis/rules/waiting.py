@@ -16,7 +16,7 @@ from sim.diagnosis.rule import (
     place_of,
 )
 from sim.diagnosis.timeline_view import LongWait, TimelineView
-from sim.diagnosis.words import SPIN_ALWAYS, group_of, listed, often, threads_for, who
+from sim.diagnosis.words import SPIN_ALWAYS, group_of, listed, often, only_thread, threads_for, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
@@ -118,7 +118,7 @@ class NoFreeWorker(_KeptWaiting):
         room = remedy_for_waits([found.subject], found.subject, Window(found.at, found.until), timeline)
         cure = f"{room.words(timeline)}, or keep {culprit} short"
         if threads_for([found.culprit, found.subject], found.until, timeline) == 1:
-            busy = f"the only thread ran {culprit}"
+            busy = f"{only_thread(timeline)} ran {culprit}"
         elif beside_itself > 1:
             busy = f"{beside_itself} calls of {culprit} kept a thread each; no thread was free"
             room = Remedy((found.culprit,))
