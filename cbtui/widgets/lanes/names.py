@@ -91,7 +91,7 @@ def more_lanes(hidden: int, key: str, room: int) -> str:
 
     ``key`` is "" if there is none.
     """
-    plain = f"+{hidden} lanes"
+    plain = f"+{hidden} lane" + "s" * (hidden > 1)
     told = (f"{plain}: {key} shows more", f"{plain} {key}", f"+{hidden} {key}") if key else ()
     return next((text for text in told if len(text) <= room), plain)
 

@@ -40,6 +40,7 @@ def test_a_groups_kind_is_cut_to_what_it_is_known_by(room: int, shown: str) -> N
     [
         (2, "Z", 23, "+2 lanes: Z shows more"),
         (2, "Z", 12, "+2 lanes Z"),
+        (1, "Z", 12, "+1 lane Z"),
         (12, "↑ ↓", 12, "+12 ↑ ↓"),
         (2, "Z", 6, "+2 Z"),
         (2, "", 23, "+2 lanes"),
