@@ -83,9 +83,9 @@ def stage_note(lesson: Lesson, progress: LessonProgress, stage: Stage) -> StageN
     """Return the note on a lesson; an empty one for the stages before a prediction."""
     match stage:
         case Stage.PREDICTED:
-            text = "predicted, not watched yet"
+            text = f"predicted, not watched yet: {_to_watch(lesson)}"
         case Stage.WATCHED if not progress.seen:
-            text = "exercise passed, not watched yet"
+            text = f"exercise passed, not watched yet: {_to_watch(lesson)}"
         case Stage.WATCHED if not progress.explained:
             text = "watched, not explained yet"
         case Stage.WATCHED if lesson.exercise is not None and not progress.passed:
@@ -97,6 +97,12 @@ def stage_note(lesson: Lesson, progress: LessonProgress, stage: Stage) -> StageN
         case _:
             return StageNote()
     return StageNote(stage.value, text)
+
+
+def _to_watch(lesson: Lesson) -> str:
+    """What makes a lesson one that was watched."""
+    called = f", call {lesson.service.name}" if lesson.run.calls else ""
+    return f"run it for {lesson.run.seconds:g} s or to its end{called}, or have it explained"
 
 
 def next_lesson(lessons: Iterable[Lesson], stages: Mapping[str, Stage]) -> Lesson | None:

@@ -57,8 +57,8 @@ def of_lesson(
         ("groups", lesson.groups),
         ("service", lesson.service.name),
         *((("clock", "real: computing takes time"),) if lesson.setup.clock == "real" else ()),
-        *(() if opened is None else (("opened", time_ago(opened, now)),)),
         *((("so far", progress),) if progress else ()),
+        *(() if opened is None else (("opened", time_ago(opened, now)),)),
     )
     keys = tuple((key_in_force(attempt.key, keymap), attempt.text) for attempt in lesson.tries)
     return EntryDescription(lesson.title, text, facts, keys)

@@ -49,7 +49,7 @@ def test_list_tells_how_far_one_is(capsys: pytest.CaptureFixture[str]) -> None:
     told = capsys.readouterr().out
     assert f"{done.unit}: 1 of 8 done\n ✓  1  {done.id} " in told
     assert f"\n ◐  2  {begun.id} " in told
-    assert f"{begun.executor}; predicted, not watched yet\n" in told
+    assert f"{begun.executor}; predicted, not watched yet: run it for 30 s or to its end" in told
 
 
 @pytest.mark.parametrize(
