@@ -90,14 +90,13 @@ class Predictions(ScreenPart):
 
     def _was_watched(self) -> bool:
         """Whether enough of the run was watched to judge the predictions."""
-        timeline, terms = self.runs.timeline, self.learning.lesson.run
+        timeline, lesson = self.runs.timeline, self.learning.lesson
+        terms = lesson.run
         if timeline.ended is not None:
-            return not timeline.ended.failed
+            return not timeline.ended.failed or "program-raised" in lesson.diagnoses.node
         if timeline.end < terms.seconds * _SECOND:
             return False
-        return not terms.calls or any(
-            call.service == self.learning.lesson.service.name for call in timeline.calls
-        )
+        return not terms.calls or any(call.service == lesson.service.name for call in timeline.calls)
 
     async def action_explain(self) -> None:
         """Show the true answers and their reasons; open questions are asked first."""

@@ -296,6 +296,15 @@ async def test_a_run_that_failed_has_shown_nothing(failed: bool) -> None:
 
 
 @pytest.mark.slow
+async def test_a_run_that_is_meant_to_fail_has_shown_all_by_then() -> None:
+    async with console(3.0, "lost-exceptions") as (app, pilot):
+        await press(pilot, "1", "enter", "2", "enter")
+        app.engines.latest._deliver([RunEnded(ns(12.0), "the program raised ValueError", failed=True)])
+        await settle(pilot)
+        assert app.kept().seen
+
+
+@pytest.mark.slow
 async def test_what_is_being_read_stays_in_its_place_when_the_run_unlocks_what_it_showed() -> None:
     async with console(29.0, LESSON.id, the_lessons_own_run(), "1", "enter", "2", "enter") as (app, pilot):
         guide, read = app.screen.query_one(Guide), app.screen.query_one("#part-guide")
