@@ -188,8 +188,7 @@ class Executor:
     @contextmanager
     def _enter_spin(self) -> Generator[None, None, None]:
         with self._lock:
-            outer = self._spinning
-            if outer:
+            if outer := self._spinning:
                 refused = self._refuses_second_spin()
                 self._probe.spin_clashed(refused=refused)
                 if refused:
