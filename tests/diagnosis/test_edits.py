@@ -105,6 +105,8 @@ def test_the_use_of_a_result_moves_into_a_done_callback_with_what_follows() -> N
         "def tick(self):\n    self.log(self.future.result().success)  # here",
         "def tick(self):\n    n = 1\n    f = self.ask()\n    self.log(f.result().success, n)  # here",
         "def tick(self):\n    self.log(self.last.success)  # here",
+        "def ask(self):\n    f = self.client.call_async(1)\n    return f.result()\n\n"
+        "def tick(self):\n    reply = self.ask()\n    self.log(reply.success)  # here",
     ],
 )
 def test_a_use_of_a_result_that_is_not_simple_is_not_moved(methods: str) -> None:

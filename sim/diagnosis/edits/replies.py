@@ -64,7 +64,10 @@ def use_in_done_callback(source: SourceEditor, line: int, attribute: str) -> Non
 
 
 def futures_used(source: SourceEditor, line: int, attribute: str) -> list[ast.expr]:
-    """Return the futures whose ``result()`` is what an attribute is asked of at a line, itself or by name."""
+    """Return the futures whose ``result()`` is what an attribute is asked of at a line.
+
+    That is asked itself, by a name, or of a function that returns nothing else.
+    """
     within: ast.AST = source.tree
     with suppress(NotSimpleError):
         within = source.function_at(line)
@@ -77,9 +80,14 @@ def futures_used(source: SourceEditor, line: int, attribute: str) -> list[ast.ex
     named = [
         each.value for each in source.nodes(ast.Assign, within) if names & set(map(ast.unparse, each.targets))
     ]
+    called = {
+        ast.unparse(each.func).rpartition(".")[2] for each in (*asked, *named) if isinstance(each, ast.Call)
+    }
+    ends = [source.nodes(ast.Return, each) for each in source.nodes(ast.FunctionDef) if each.name in called]
+    returned = [each[0].value for each in ends if len(each) == 1]
     return [
         each.func.value
-        for each in (*asked, *named)
+        for each in (*asked, *named, *returned)
         if isinstance(each, ast.Call) and isinstance(each.func, ast.Attribute) and each.func.attr == "result"
     ]
 

@@ -57,7 +57,7 @@ class ProgramRaised(Rule):
         )
         if attribute := _used_too_soon(ended):
             why = "result() does not wait: of a future that is not done yet it is None"
-            cure = "after call_async(), spin_until_future_complete(node, future) comes before result()"
+            cure = "wait by rclpy.spin_until_future_complete(node, future) before result()"
             if found.subject:
                 subject = who(found.subject, timeline)
                 cure = "use the result in a done-callback, by future.add_done_callback(), or await the future"

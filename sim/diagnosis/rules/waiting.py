@@ -205,6 +205,9 @@ class NodeNeverSpins(Rule):
         if at is not None and not ever:
             place = CodeLocation(*at.place, at.place[1])
             what = f"the program is at line {place.first_line}, and has come to no spin() so far"
+            if at.call == "Client.call":
+                what = f"the program waits in {at.call}() at line {place.first_line}, and nothing spins"
+                cure = "use call_async() there, and rclpy.spin_until_future_complete(node, future)"
         if loop is not None:
             spins = "spins too rarely" if ever else "comes to no spin()"
             place, cure = loop, SPIN_ALWAYS
