@@ -169,7 +169,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
             _EVENTS,
         ),
         ("next_event", "right_curly_bracket", "event", "Go on to the selected lane's next bar", _EVENTS),
-        ("deselect", "escape", "deselect", "Leave the lanes, and clear the selection"),
+        ("deselect", "escape", "leave", "Leave the lanes, and clear the selection"),
         ("copy_details", "y", "copy", "Copy the selected bar's details, or the moment's"),
         ("next_pane", "tab", "next pane", "Go to the next pane"),
         ("jump", "j", "jump", _JUMP),

@@ -20,7 +20,7 @@ from cbtui.widgets.log import LogFilter, LogLines
 from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellOutput
 from lessons.lesson import Lesson
 
-_ON_LANES = ("zoom", "pan", "select", "lane", "event", "code", "copy", "deselect")
+_ON_LANES = ("zoom", "pan", "select", "lane", "event", "code", "copy", "leave")
 """Labels of the actions that the lanes' frame shows."""
 
 _ON_SHELL = ("ros2", "type")
