@@ -1,9 +1,10 @@
 """When a wait is over whatever happens: by its timeout, or by the condition of the loop around it."""
 
 import ast
-import linecache
 from functools import lru_cache
+from pathlib import Path
 
+from sim.files.untrusted import program_text
 from sim.trace.events import ProgramAt
 from sim.trace.model import Nanoseconds, Position
 
@@ -20,7 +21,7 @@ def time_limit(at: Position | ProgramAt) -> Nanoseconds:
 def ends_by_itself(file: str, line: int) -> bool:
     """Return whether a ``while`` compares a clock, or what it counts itself."""
     try:
-        tree = ast.parse("".join(linecache.getlines(file)))
+        tree = ast.parse(program_text(Path(file)) or "")
     except (SyntaxError, ValueError):
         return False
     loops = (each for each in ast.walk(tree) if isinstance(each, ast.While) and each.lineno == line)

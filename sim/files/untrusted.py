@@ -62,5 +62,5 @@ def program_text(path: Path) -> str | None:
     """Return the text of a program; None if it cannot be read. Bytes that are not UTF-8 are replaced."""
     try:
         return read_text(path, MAX_PROGRAM_BYTES, "replace")
-    except OSError:
+    except (OSError, ValueError):  # a file's name has no null character
         return None

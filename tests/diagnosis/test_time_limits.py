@@ -1,10 +1,12 @@
 """A wait that ends by itself is told with its end, and never as one for ever."""
 
+import os
 from pathlib import Path
 
 import pytest
 
 from cbtui.runs.live.findings import FindingsMonitor
+from sim.diagnosis.time_limits import ends_by_itself
 from sim.quantities.nanoseconds import SECOND
 from tests.support.engine_runs import run_program
 
@@ -117,6 +119,12 @@ def test_a_loop_that_ends_by_itself_is_no_deadlock(tmp_path: Path, loop: str, is
     start = "future, tries, end = self.call(), 160, time.monotonic() + 8.0\n"
     monitor = found_in(tmp_path, f"{start}{loop}\n    time.sleep(0.05)", 5.0)
     assert (monitor.nothing_moves_since() is not None) is is_endless
+
+
+def test_of_what_a_recording_calls_a_program_only_a_file_is_read(tmp_path: Path) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    assert not any(ends_by_itself(path, 1) for path in (str(pipe), "/dev/zero", "null\0character"))
 
 
 def test_a_loop_around_a_wait_with_a_timeout_may_last_for_ever(tmp_path: Path) -> None:

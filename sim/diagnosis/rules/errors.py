@@ -1,9 +1,9 @@
 """Rules on exceptions that go unnoticed."""
 
-import linecache
 import re
 from collections.abc import Iterator
 from contextlib import suppress
+from pathlib import Path
 
 from sim.diagnosis.edits.functions import fit_parameters, hand_over_function
 from sim.diagnosis.edits.names import rename_definition
@@ -12,6 +12,7 @@ from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, line_location, made_at, place_of
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of
 from sim.diagnosis.words import often, who
+from sim.files.untrusted import program_text
 from sim.trace.events import EntityKind, RunEnded
 from sim.trace.model import AxisMarkKind, EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -77,7 +78,7 @@ def _used_too_soon(ended: RunEnded) -> str:
     known = _NO_ATTRIBUTE.fullmatch(ended.error or "")
     file, line = ended.place
     with suppress(NotSimpleError):
-        if known and futures_used(SourceEditor("".join(linecache.getlines(file))), line, known[1]):
+        if known and futures_used(SourceEditor(program_text(Path(file)) or ""), line, known[1]):
             return known[1]
     return ""
 
