@@ -105,6 +105,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
         title = f"{self._judging.file.name}, run {self.runs.number}"
         setup = msgspec.structs.replace(self.subject.set_up(None, speed), title=title)
         self._judging.begin(setup)
+        self.query(PassedBanner).set(display=False)
         return LiveRun(setup, self._open_session, deliver, ended)
 
     # what is shown

@@ -186,12 +186,16 @@ async def test_what_is_asked_can_be_read_by_scrolling() -> None:
 
 @pytest.mark.slow
 async def test_a_file_that_passes_is_noted_and_the_next_lesson_named() -> None:
-    async with console(passing()) as (app, _, _pilot):
+    async with console(passing()) as (app, _, pilot):
         assert "✓ All 5 checks pass: the exercise is done." in text_of(app)
         assert "Exclusive, 2 threads" in text_of(app)
         assert Progress().of(LESSON.id).passed
         assert "n next" in lines_of(app)[-1]
         assert "hint" not in offered(app)
+        assert "all 5 checks pass, n opens the next lesson" in text_of(app)
+        await pilot.press("w")  # another run, of which that is not known
+        await settle(pilot)
+        assert "opens the next lesson" not in text_of(app)
 
 
 @pytest.mark.slow
