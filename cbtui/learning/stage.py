@@ -106,8 +106,9 @@ def _to_watch(lesson: Lesson) -> str:
 
 
 def next_lesson(lessons: Iterable[Lesson], stages: Mapping[str, Stage]) -> Lesson | None:
-    """Return the first lesson with something left to do; None if there is none."""
-    return next((lesson for lesson in lessons if stages[lesson.id] not in (Stage.WATCHED, Stage.DONE)), None)
+    """Return the first lesson that was begun and not watched, or else not begun; None if there is none."""
+    left = (lesson for lesson in lessons if stages[lesson.id] not in (Stage.WATCHED, Stage.DONE))
+    return min(left, key=lambda lesson: stages[lesson.id] is not Stage.PREDICTED, default=None)
 
 
 class StepState(Enum):
