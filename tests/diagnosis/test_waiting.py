@@ -204,7 +204,8 @@ def test_a_node_whose_executor_is_made_and_never_spun_is_told_so() -> None:
     told = run.explained("node-never-spins")
     assert told.what.endswith("does not run: none of the spinning executors has its node")
     assert told.cure == (
-        "add the node to an executor, and call spin() on that: one that is only made runs nothing"
+        "add the node to an executor that spins: one that is only made runs nothing, "
+        "and what stands behind spin() comes after it"
     )
 
 

@@ -197,7 +197,10 @@ class NodeNeverSpins(Rule):
         cure = "call rclpy.spin(node), or add the node to an executor and spin that"
         if timeline.executors and not ever:
             what = "none of the spinning executors has its node"
-            cure = "add the node to an executor, and call spin() on that: one that is only made runs nothing"
+            cure = (
+                "add the node to an executor that spins: one that is only made runs nothing, "
+                "and what stands behind spin() comes after it"
+            )
         elif ever:
             cure = "keep spinning the node: spin() has returned, or its executor was shut down"
         loop = loop_beside_spin(found.until, timeline)
