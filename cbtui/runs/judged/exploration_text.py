@@ -77,7 +77,7 @@ def _lines(
     for seed, result in found.items():
         outcomes[result].append(seed)
     failed = sum(len(seeds) for result, seeds in outcomes.items() if not result.well)
-    said = f"{counted(failed, 'schedule')} failed" if failed else "all went well"
+    said = f"{counted(failed, 'schedule')} failed" if failed else "none failed"
     if proof:
         yield f"{name}: {proof}"
     yield f"{name}: {counted(len(found), 'schedule')}, {counted(len(outcomes), 'outcome')}, {said}"
