@@ -364,7 +364,7 @@ class CompareScreen(SizedScreen[None]):
 def _about(number: int, side: ComparedSide, at: Nanoseconds) -> tuple[TextRun, ...]:
     timeline = side.timeline
     state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
-    facts = [text for text in (state, f"dropped {timeline.dropped(at)}", executor_label(timeline)) if text]
+    facts = [text for text in (state, f"lost {timeline.dropped(at)}", executor_label(timeline)) if text]
     name = TextRun(f" {RUNS[number]}  {side.name}", _STRONG)
     return (name, *(TextRun(f"   {fact}", _PLAIN) for fact in facts))
 

@@ -217,13 +217,13 @@ def _export(status: RunStatus) -> list[TextRun]:
 def _recording(status: RunStatus) -> list[TextRun]:
     if status.recorded is None:
         return []
-    lost = f", lost {status.unrecorded:,}" if status.unrecorded else ""
+    lost = f", {status.unrecorded:,} missed" if status.unrecorded else ""
     size = f" {status.recorded_bytes // 1_000_000:,} MB" if status.recorded_bytes >= _WORTH_TELLING else ""
     return [TextRun(f"REC {status.recorded:,}{size}{lost}", _WARN), _GAP]
 
 
 def _losses(status: RunStatus) -> list[TextRun]:
-    losses = [TextRun(f"dropped {status.dropped}", _WARN if status.dropped else _FAINT)]
+    losses = [TextRun(f"lost {status.dropped}", _WARN if status.dropped else _FAINT)]
     if status.lost:
         losses += [_GAP, TextRun(f"trace lost {status.lost}", _WARN)]
     return losses

@@ -33,7 +33,7 @@ _HEADS = (
     "max",
     "jitter median",
     "max",
-    "drops",
+    "lost",
     "age or lateness median",
     "max",
     "errors",

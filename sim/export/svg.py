@@ -146,7 +146,7 @@ class _Picture:
         for x, lost in losses(self._timeline, entity, self._scale, _LOSS_EVERY):
             yield (
                 f'<path d="M{x - 3:.2f},{y:.2f} h6 l-3,5 z" fill="{draw.WARN}">'
-                f"<title>{lost} dropped</title></path>"
+                f"<title>{lost} lost</title></path>"
             )
 
     def _bars(self, spans: Sequence[Span]) -> Iterator[Bar[Span]]:
@@ -226,7 +226,7 @@ class _Picture:
             (draw.hatched(Box(0, 0, 18, 11), reason, ""), f"waits: {reason.value}") for reason in Reason
         ]
         loss = f'<path d="M6,3 h6 l-3,5 z" fill="{draw.WARN}"/>'
-        entries.append((loss, "message dropped"))
+        entries.append((loss, "message lost"))
         entries.append((draw.words(9, 10, "✗", draw.WARN, "middle", "bold"), "raised an exception"))
         if self._path:
             entries.append((draw.outline(Box(0, 0, 18, 11), ""), "critical path of a chain"))

@@ -134,7 +134,7 @@ class TraceExporter:
         self._show_depth(event.entity, event.t, event.depth)
 
     def _message_dropped(self, event: ev.MessageDropped) -> None:
-        self._lose(event.entity, event.t, "dropped", self._flows.take(event.message, event.entity))
+        self._lose(event.entity, event.t, "lost", self._flows.take(event.message, event.entity))
         self._show_depth(event.entity, event.t, event.depth)
 
     def _lose(self, entity: EntityId, t: Nanoseconds, what: str, flows: tuple[int, ...]) -> None:

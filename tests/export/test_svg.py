@@ -64,13 +64,13 @@ def test_the_axis_is_in_seconds_and_the_legend_explains_every_sign() -> None:
     labels = texts(drawn(timeline_of(small_run()), 0, 2.5))
     assert {"0.0", "0.5", "1.0", "s"} <= {*labels}
     assert {f"waits: {reason.value}" for reason in Reason} <= {*labels}
-    assert {"message dropped", "raised an exception", "A MutuallyExclusiveCallbackGroup"} <= {*labels}
+    assert {"message lost", "raised an exception", "A MutuallyExclusiveCallbackGroup"} <= {*labels}
 
 
 def test_losses_and_errors_are_marked() -> None:
     picture = drawn(timeline_of(small_run()), 0, 2.5)
     titles = [element.text for element in picture.iter(f"{SPACE}title")]
-    assert "1 dropped" in titles
+    assert "1 lost" in titles
     assert texts(picture).count("✗") == 4
 
 

@@ -143,7 +143,7 @@ def test_a_wait_tells_reason_and_culprit(read: Read) -> None:
     [wait] = trace.slices[odom]
     assert (wait.name, wait.start, wait.end) == ("group A held by timer_callback", ns(0.6), ns(1.5))
     assert (wait.facts["reason"], wait.facts["culprit"]) == ("group held", "timer_callback")
-    assert [name for _, name in trace.instants[odom]] == ["dropped", "still in the queue"]
+    assert [name for _, name in trace.instants[odom]] == ["lost", "still in the queue"]
 
 
 @both

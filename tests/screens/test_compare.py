@@ -272,7 +272,7 @@ async def test_a_wide_screen_has_room_for_everything() -> None:
         table = app.comparison.query_one(ComparisonTable)
         assert table.max_scroll_y == 0
         picture = text_of(app)
-        for word in ("calls", "drops", "wait med/max", "age med/max", "robot travelled", "collisions"):
+        for word in ("calls", "lost", "wait med/max", "age med/max", "robot travelled", "collisions"):
             assert word in picture
 
 

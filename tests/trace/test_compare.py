@@ -167,11 +167,11 @@ def test_a_difference_has_a_word_and_a_meaning() -> None:
     told = {label: (row.difference, row.assessment) for label, row in there.items()}
     assert told == {
         "calls": ("1 more", Assessment.OTHER),
-        "drops": ("2 fewer", Assessment.BETTER),
+        "lost": ("2 fewer", Assessment.BETTER),
         "wait med/max": ("max 2.0 s shorter", Assessment.BETTER),
         "age med/max": ("max 1.8 s fresher", Assessment.BETTER),
     }
-    assert (back["drops"].difference, back["drops"].assessment) == ("2 more", Assessment.WORSE)
+    assert (back["lost"].difference, back["lost"].assessment) == ("2 more", Assessment.WORSE)
     assert back["age med/max"].difference == "max 1.8 s older"
 
 
@@ -248,7 +248,7 @@ run B is better: losses of odom_callback 0 instead of 2, and in 2 more ways.
 
 odom_callback
   calls         1              2                1 more
-  drops         2              0                2 fewer
+  lost          2              0                2 fewer
   wait med/max  2.0 s / 2.0 s  0 s / 0 s        max 2.0 s shorter
   age med/max   2.0 s / 2.0 s  100 ms / 200 ms  max 1.8 s fresher
   run A waits: group A held by timer_callback

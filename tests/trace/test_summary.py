@@ -13,10 +13,10 @@ from tests.support.runs import Run, dummy_server_one_thread_run, ns, shared_grou
 SHARED_GROUP = """\
 shared-group, 30.0 s of virtual time: its time was up
 
-callback        group  calls  running  late by  drops  errors
-odom_callback   A        209     0.3%   498 ms    390       0
-scan_callback   A        209     0.3%   495 ms    390       0
-timer_callback  A         21    66.7%    9.5 s      -       0
+callback        group  calls  running  late by  lost  errors
+odom_callback   A        209     0.3%   498 ms   390       0
+scan_callback   A        209     0.3%   495 ms   390       0
+timer_callback  A         21    66.7%    9.5 s     -       0
 late by: the oldest message it took, or how late its timer was at worst
 
 longest waits
@@ -31,9 +31,9 @@ robot    1 turn (4.0 rad), 0.76 m travelled, at x -0.03 y 0.36 heading 131°
 ONE_THREAD = """\
 reentrant-1-thread, 10.0 s of virtual time: its time was up
 
-callback          group  calls  running  late by  drops  errors
-service_callback  A          1    50.0%      0 s      0       0
-timer_callback    A          6     0.1%    4.5 s      -       0
+callback          group  calls  running  late by  lost  errors
+service_callback  A          1    50.0%      0 s     0       0
+timer_callback    A          6     0.1%    4.5 s     -       0
 late by: the oldest message it took, or how late its timer was at worst
 
 longest waits

@@ -60,7 +60,7 @@ async def test_a_visitor_sees_the_menu_opens_a_lesson_and_leaves() -> None:
                 await websocket.send_json(["stdin", "3\r"])
                 await read_until(websocket, "What do you expect?")
                 await websocket.send_json(["stdin", "\x1b"])
-                await read_until(websocket, "3/8 Split groups")
+                await read_until(websocket, "3 Split groups")
                 await until_an_engine_runs(server)
                 theirs = server.descendants()
                 await websocket.send_json(["stdin", "q"])

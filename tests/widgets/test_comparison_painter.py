@@ -11,7 +11,7 @@ CALLBACKS = tuple(
         f"{name}_callback",
         (
             ComparisonRow("calls", ("79", "399"), "320 more"),
-            ComparisonRow("drops", ("310", "0"), "310 fewer", Assessment.BETTER),
+            ComparisonRow("lost", ("310", "0"), "310 fewer", Assessment.BETTER),
             ComparisonRow(
                 "wait med/max", ("100 ms / 16.0 s", "0 s / 0 s"), "max 16.0 s shorter", Assessment.BETTER
             ),
@@ -35,13 +35,13 @@ def test_a_narrow_table_is_one_column_of_sections() -> None:
     assert text(table(SECTIONS, 79, Charset.BRAILLE)) == [
         "odom_callback",
         " calls            79              399             320 more",
-        " drops            310             0               310 fewer",
+        " lost             310             0               310 fewer",
         " wait med/max     100 ms / 16.0 s 0 s / 0 s       max 16.0 s shorter",
         " run A waits: group A held by timer_callback",
         "",
         "scan_callback",
         " calls            79              399             320 more",
-        " drops            310             0               310 fewer",
+        " lost             310             0               310 fewer",
         " wait med/max     100 ms / 16.0 s 0 s / 0 s       max 16.0 s shorter",
         " run A waits: group A held by timer_callback",
         "",
@@ -80,6 +80,6 @@ def test_an_ascii_table_is_ascii() -> None:
 
 
 def test_what_is_worse_is_in_another_ink_beside_its_sign_and_word() -> None:
-    worse = Section("scan", (ComparisonRow("drops", ("0", "3"), "3 more", Assessment.WORSE),))
+    worse = Section("scan", (ComparisonRow("lost", ("0", "3"), "3 more", Assessment.WORSE),))
     (_, row) = table((worse,), BLOCK, Charset.BRAILLE)
     assert [run.ink.role for run in row if "3 more" in run.text] == [Role.WARN]

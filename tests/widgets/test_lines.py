@@ -30,12 +30,12 @@ def text(runs: list[TextRun]) -> str:
 
 def test_a_narrow_status_line_leaves_out_the_executor() -> None:
     assert text(status_row(LIVE, 80)) == (
-        " 2/6 One shared group           ● LIVE  virtual ×1.0   t 14.250 s   dropped 392 "
+        " 2/6 One shared group              ● LIVE  virtual ×1.0   t 14.250 s   lost 392 "
     )
 
 
 def test_a_wide_status_line_tells_the_executor() -> None:
-    assert "t 14.250 s   SingleThreadedExecutor   dropped 392" in text(status_row(LIVE, 140))
+    assert "t 14.250 s   SingleThreadedExecutor   lost 392" in text(status_row(LIVE, 140))
 
 
 @pytest.mark.parametrize("width", [80, 99, 140, 200])
@@ -62,7 +62,7 @@ def test_a_status_line_is_as_wide_as_the_screen(
         (replace(LIVE, state=RunState.PAUSED, back=3_000_000_000), "◂ BACK 3.0 s, paused"),
         (replace(LIVE, lost=7), "trace lost 7"),
         (replace(LIVE, recorded=1234), "REC 1,234"),
-        (replace(LIVE, recorded=1234, unrecorded=1050), "REC 1,234, lost 1,050"),
+        (replace(LIVE, recorded=1234, unrecorded=1050), "REC 1,234, 1,050 missed"),
         (replace(LIVE, recorded=1234, recorded_bytes=41_900_000), "REC 1,234 41 MB"),
         (replace(LIVE, state=RunState.REPLAY_STANDS, back=3_000_000_000), "‖ REPLAY"),
         (replace(LIVE, state=RunState.REPLAY_PLAYS, back=3_000_000_000), "▶ REPLAY"),
@@ -90,8 +90,8 @@ def test_in_80_columns_the_pace_makes_room_for_the_checks_that_pass() -> None:
         LIVE, title=title, state=RunState.STARTING, pace="virtual max", brief_pace="max", at=0, dropped=0
     )
     row = text(status_row(replace(starting, steps=EXERCISE), 80))
-    assert row.startswith(f" {title}   Exercise 2/5 ")
-    assert "STARTING   t 0.000 s   dropped 0" in row
+    assert row.startswith(f" {title}      Exercise 2/5 ")
+    assert "STARTING   t 0.000 s   lost 0" in row
 
 
 @pytest.mark.parametrize("width", range(40, 200))

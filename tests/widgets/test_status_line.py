@@ -32,27 +32,27 @@ def line(status: RunStatus, width: int) -> str:
         (
             LIVE,
             120,
-            "| 2/6 One shared group                          ● LIVE  virtual ×1.0   t 12.480 s   "
-            "SingleThreadedExecutor   dropped 412 |",
+            "| 2/6 One shared group                             ● LIVE  virtual ×1.0   t 12.480 s   "
+            "SingleThreadedExecutor   lost 412 |",
         ),
-        (LIVE, 80, "| 2/6 One shared group           ● LIVE  virtual ×1.0   t 12.480 s   dropped 412 |"),
+        (LIVE, 80, "| 2/6 One shared group              ● LIVE  virtual ×1.0   t 12.480 s   lost 412 |"),
         (
             replace(LIVE, exported=35),
             100,
-            "| 2/6 One shared group                 ● LIVE  virtual ×1.0   t 12.480 s   EXPORT 35 %   "
-            "dropped 412 |",
+            "| 2/6 One shared group                    ● LIVE  virtual ×1.0   t 12.480 s   EXPORT 35 %   "
+            "lost 412 |",
         ),
         (
             replace(LIVE, recorded=41_204, unrecorded=7),
             110,
-            "| 2/6 One shared group                    ● LIVE  virtual ×1.0   t 12.480 s   "
-            "REC 41,204, lost 7   "
-            "dropped 412 |",
+            "| 2/6 One shared group                     ● LIVE  virtual ×1.0   t 12.480 s   "
+            "REC 41,204, 7 missed   "
+            "lost 412 |",
         ),
         (
             replace(LIVE, back=ns(3.2), dropped=0),
             80,
-            "| 2/6 One shared group       ◂ BACK 3.2 s  virtual ×1.0   t 12.480 s   dropped 0 |",
+            "| 2/6 One shared group          ◂ BACK 3.2 s  virtual ×1.0   t 12.480 s   lost 0 |",
         ),
         (replace(LIVE, lost=9), 48, "| 2/6 One sh… ● LIVE   t 12.480 s   trace lost 9 |"),
     ],

@@ -105,9 +105,8 @@ class ShownProgram:
 def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> ShownProgram:
     """Return the program of a lesson, one of ``lessons``."""
     place = lessons.index(lesson)
-    unit = [each for each in lessons if each.unit == lesson.unit]
     return ShownProgram(
-        heading=f"{unit.index(lesson) + 1}/{len(unit)} {lesson.title}",
+        heading=f"{lesson.number} {lesson.title}",
         guide=lesson.guide,
         node_path=lesson.node_path,
         service=lesson.service.name,

@@ -337,7 +337,7 @@ def _spread(values: Distribution | None) -> _Spread | None:
 _FIGURES: tuple[tuple[str, Callable[[CallbackInRun], Figure], _Wording], ...] = (
     ("calls", lambda side: side.figures.calls, _COUNTS),
     ("errors", lambda side: side.figures.errors or None, _LOSSES),
-    ("drops", lambda side: side.figures.drops if side.figures.entity.depth else None, _LOSSES),
+    ("lost", lambda side: side.figures.drops if side.figures.entity.depth else None, _LOSSES),
 )
 _SPREADS: tuple[tuple[str, Callable[[CallbackInRun], _Spread | None], _Wording], ...] = (
     ("wait med/max", _waited, _WAITS),

@@ -7,7 +7,7 @@ from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.figures.summary import CallbackFigures, RobotFigures, ServiceFigures, Summary
 
-HEADS = ("callback", "group", "calls", "running", "late by", "drops", "errors")
+HEADS = ("callback", "group", "calls", "running", "late by", "lost", "errors")
 LATE_BY = "late by: the oldest message it took, or how late its timer was at worst"
 
 

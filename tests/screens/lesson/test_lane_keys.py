@@ -202,7 +202,7 @@ async def test_y_copies_what_the_moment_means_where_nothing_is_selected() -> Non
     async with console() as (app, pilot):
         await press(pilot, "y")
         assert app.clipboard.splitlines()[:4] == [
-            "2/8 One shared group, t 12.900 s, SingleThreadedExecutor",
+            "2 One shared group, t 12.900 s, SingleThreadedExecutor",
             "odom_callback waits 8.9 s: group A is held by timer_callback",
             "  timer_callback runs on MainThread for 8.9 s",
             "  odom_callback waits 8.9 s: group A held by timer_callback",
