@@ -205,7 +205,7 @@ def test_a_node_whose_executor_is_made_and_never_spun_is_told_so() -> None:
     assert told.what.endswith("does not run: none of the spinning executors has its node")
     assert told.cure == (
         "add the node to an executor that spins: one that is only made runs nothing, "
-        "and what stands behind spin() comes after it"
+        "and a second spin() is not reached before the first one returns"
     )
 
 

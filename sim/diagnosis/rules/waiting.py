@@ -94,7 +94,7 @@ class GroupStarvation(_KeptWaiting):
         busy = ""
         if _others_waiting(found, Reason.NO_FREE_WORKER, timeline):
             is_only = threads_for([found.culprit], found.until, timeline) == 1
-            busy = ", on the only thread" if is_only else ", and all threads were busy"
+            busy = f", on {only_thread(timeline)}" if is_only else ", and all threads were busy"
         return self._explained(
             found,
             timeline,
@@ -199,7 +199,7 @@ class NodeNeverSpins(Rule):
             what = "none of the spinning executors has its node"
             cure = (
                 "add the node to an executor that spins: one that is only made runs nothing, "
-                "and what stands behind spin() comes after it"
+                "and a second spin() is not reached before the first one returns"
             )
         elif ever:
             cure = "keep spinning the node: spin() has returned, or its executor was shut down"

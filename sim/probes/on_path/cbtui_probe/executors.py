@@ -152,8 +152,7 @@ class Executors:
             spinner = self._spinners.get(executor) or self._know(executor, 1)
             here = self._recorder.here
             outer, here.spinner = here.spinner, spinner
-            call = _call_into_rclpy()
-            if here.entity and outer is spinner and call[0]:
+            if here.entity and outer is spinner and (call := _call_into_rclpy())[0]:
                 self._recorder.put("spin_clash", now(), here.entity, 0, *call, False)
             spinner.spins += 1
             try:
