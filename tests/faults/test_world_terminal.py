@@ -18,6 +18,8 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are l
 
 _ESCAPE = "\x1b"
 """Out of the question what one expects, without an answer."""
+_TAKEN = "\x1b[?1049h"
+"""Begins the console's screen, also when it goes on after a stop: keys typed before that are lost."""
 _LEFT = "\x1b[?1049l"
 """Leaves the console's screen for the one before, as the terminal is given back."""
 HUNG_UP = 128 + signal.SIGHUP
@@ -83,6 +85,7 @@ def test_a_console_that_was_stopped_goes_on_and_gives_the_terminal_back(tmp_path
         console.process.send_signal(signal.SIGSTOP)
         os.waitpid(console.process.pid, os.WUNTRACED)
         console.process.send_signal(signal.SIGCONT)
+        console.until(_TAKEN)
         console.until("Split groups")
         console.press("q")
         assert console.ended() == 0
