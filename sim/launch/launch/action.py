@@ -1,11 +1,11 @@
-"""Entities of a launch description: the base of all, and actions. They stand as deep as in ``launch``."""
+"""Entities of a launch description: what is visited, and actions."""
 
 # ruff: noqa: D102 -- what a method does that overrides another stands with that one
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 from sim.launch.errors import place_of_caller
 from sim.launch.launch.condition import Condition
@@ -15,7 +15,8 @@ if TYPE_CHECKING:
     from sim.launch.launch.launch_context import LaunchContext
 
 
-class LaunchDescriptionEntity:
+@runtime_checkable
+class LaunchDescriptionEntity(Protocol):
     """Something that a launch visits; what the visit gives is visited next."""
 
     def visit(self, context: LaunchContext) -> Iterable[LaunchDescriptionEntity] | None:
@@ -27,7 +28,7 @@ class LaunchDescriptionEntity:
         return ()
 
 
-class Action(LaunchDescriptionEntity):
+class Action:
     """Something that is done when it is reached, if its condition holds.
 
     ``place`` is the line of the launch file that made it.
@@ -51,6 +52,9 @@ class Action(LaunchDescriptionEntity):
         if self.completes_at_once:
             context.emit_event(ExecutionComplete(action=self))
         return found
+
+    def parts(self) -> Iterable[LaunchDescriptionEntity]:
+        return ()
 
     completes_at_once = True
     """Whether nothing of it is left to do after ``execute``."""

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from sim.launch.launch.launch_context import LaunchContext
 
 
-class LaunchDescription(LaunchDescriptionEntity):
+class LaunchDescription:
     """A list of entities, visited in order."""
 
     def __init__(
