@@ -13,6 +13,7 @@ from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
 from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
+from sim.ros.scheduling.events_executor import EventsExecutor
 from sim.trace.events import EntityKind
 
 SrvType = TypeVar("SrvType")
@@ -82,7 +83,11 @@ class Service(ClientOrService, Entity):
         return None
 
     async def _answer_later(self, request: Request, outcome: Any) -> None:
-        self.send_response(await outcome, request)
+        response = await outcome
+        if isinstance(executor := self.node.executor, EventsExecutor):
+            executor.create_task(self.send_response, response, request)  # a done-callback of rclpy's task
+        else:
+            self.send_response(response, request)
 
     @sends_responses
     def send_response(self, response: Any, header: Request | ServiceInfo | RequestId) -> None:

@@ -86,7 +86,9 @@ class EventQueue:
         return self._appointments[0][0] if self._appointments else None
 
     def _keep_appointments(self, now: int) -> None:
+        kept = []
         while (due := self._next_appointment()) is not None and due <= now:
-            appointment = heappop(self._appointments)[2]
+            kept.append(heappop(self._appointments)[2])
+        for appointment in kept:  # all are taken out first: what an action puts comes before the next action
             if appointment.action is not None:
                 appointment.action()

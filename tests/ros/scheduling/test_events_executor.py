@@ -604,6 +604,46 @@ def test_timers_that_fell_due_while_something_ran_come_in_any_order() -> None:
     assert orders == {("first", "second"), ("second", "first")}
 
 
+@pytest.mark.parametrize("distro", ["jazzy@7.1.5", "kilted@9.1.2"])
+def test_timers_of_two_nodes_that_fell_due_while_something_ran_come_in_order(distro: str) -> None:
+    # Measured on both: each node has a clock, and each clock its own wait for the next timer.
+    def program(bench: Bench) -> None:
+        other = Node("m")
+        bench.executor.add_node(other)
+        bench.hear("busy", lasts=0.9).publish(Int32())
+        bench.node.create_timer(0.5, lambda: bench.said.append("first"))
+        other.create_timer(0.7, lambda: bench.said.append("second"))
+        bench.spin_for(0.95)
+
+    assert on_bench(program, distro=distro)[0] == ["busy0", "first", "second"]
+
+
+def test_the_response_of_a_services_coroutine_is_an_event_behind_others() -> None:
+    # Measured on Kilted 9.1.2: a done-callback of the task sends it, which is a task itself.
+    def program(bench: Bench) -> None:
+        async def serve(_: Any, response: Any) -> Any:
+            first.publish(Int32())
+            return response
+
+        def hear(topic: str, then: Any) -> Any:
+            def heard(_: Any) -> None:
+                bench.said.append(topic)
+                if then is not None:
+                    then.publish(Int32())
+
+            bench.node.create_subscription(Int32, topic, heard, 10)
+            return bench.node.create_publisher(Int32, topic, 10)
+
+        first = hear("first", hear("second", hear("third", None)))
+        bench.node.create_service(SetBool, "s", serve)
+        client = bench.node.create_client(SetBool, "s")
+        bench.register()
+        client.call_async(SetBool.Request()).add_done_callback(lambda _: bench.said.append("got"))
+        bench.spin_for(0.5)
+
+    assert on_bench(program, distro="kilted")[0] == ["first", "second", "third", "got"]
+
+
 def test_the_end_of_a_goal_has_timers_looked_at_once_more() -> None:
     # Measured on Jazzy 7.1.5 and Kilted 9.1.2: the timer by which rcl forgets goals is among them.
     def program(bench: Bench) -> None:
