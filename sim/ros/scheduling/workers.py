@@ -137,7 +137,8 @@ class WorkerPool:
         waits = self._not_begun() if self._hands_over_again and self._may_start() else ()
         waiting = sum(each not in fresh for each in waits)
         self._handed_over_again += waiting
-        starts = waiting > 0 and (self._none_is_idle() or self.kept_busy())
+        finds = self._executor._cycle.would_find(self._clock.now())
+        starts = waiting > 0 and (self._none_is_idle() or (self.kept_busy() and not finds))
         if starts:
             self._start_worker()
         return starts
