@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import msgspec
 
-from tests.conformance.comparing import Case, Outcome, Result, on_model, outcome
+from tests.conformance.comparing import Case, Result, on_model, outcome
 from tests.conformance.running import Said
 from tests.conformance.systems import System
 
@@ -13,30 +13,36 @@ FILE = Path(__file__).with_name("recorded.jsonl")
 
 
 class Recorded(NamedTuple):
-    """A system, and what its runs on the wheels of a distribution said."""
+    """A system, and what its runs on the wheels of a distribution said.
+
+    ``runs`` is how many runs of the model come to that, of many orders; 0: its usual order is the same.
+    """
 
     distro: str
     seed: str
     pace: float
     system: System
     real: tuple[Said, ...]
+    runs: int = 0
 
 
-def record(distro: str, results: list[Result]) -> None:
+def record(distro: str, results: list[Result], runs: int = 0) -> None:
     """Keep what real runs said, beside what is kept already."""
     with FILE.open("ab") as file:
         for each in results:
-            kept = Recorded(distro, each.case.seed, each.case.pace, each.case.system, each.real)
+            kept = Recorded(distro, each.case.seed, each.case.pace, each.case.system, each.real, runs)
             file.write(msgspec.json.encode(kept) + b"\n")
 
 
-def against_recorded() -> list[tuple[Recorded, Outcome]]:
-    """How the model compares with what is kept."""
+def against_recorded(searched: bool) -> list[tuple[Recorded, Result]]:
+    """How the model compares with what is kept; ``searched``: with what it comes to in one of several runs."""
     kept = [msgspec.json.decode(line, type=Recorded) for line in FILE.read_bytes().splitlines()]
-    outcomes = []
+    kept = [each for each in kept if (each.runs > 0) == searched]
+    results = []
     for distro in sorted({each.distro for each in kept}):
         of_distro = [each for each in kept if each.distro == distro]
         for each, said in zip(of_distro, on_model([each.system for each in of_distro], distro), strict=True):
             assert said is not None
-            outcomes.append((each, outcome(Case(each.seed, each.system, said, each.pace), list(each.real))))
-    return outcomes
+            case = Case(each.seed, each.system, said, each.pace)
+            results.append((each, Result(case, outcome(case, list(each.real)), each.real)))
+    return results

@@ -128,8 +128,10 @@ class Cycle:
     def next(self, now: int) -> Work | None:
         """The next work, with its entity marked as handed out; None: nothing may be served now."""
         self._found_all = False
-        if self.held and not self._released():
-            return None
+        if self.held:
+            if not self._released():
+                return None
+            self._find_more(now)
         for _ in _STAGES:
             work = self._serve(now)
             if work is not None:
@@ -156,6 +158,16 @@ class Cycle:
             return False
         self.held = False
         return True
+
+    def _find_more(self, now: int) -> None:
+        """Add what came before found work was released, if the wait that found it lasted so long.
+
+        rclpy's wait takes up to a millisecond, in which it needs no interpreter, and looks at its end.
+        """
+        if self._snapshot and not self._yielded:
+            found = self._awaited(self._ready(now))
+            if len(found) > len(self._snapshot) and self._clock.choose(2):
+                self._name(found)
 
     def next_found(self, now: int) -> Work | None:
         """The next work that is found already; None: all is served, or none may be served yet."""
