@@ -35,7 +35,7 @@ def record(distro: str, results: list[Result], runs: int = 0) -> None:
 
 
 def against_recorded(searched: bool) -> list[tuple[Recorded, Result]]:
-    """How the model compares with what is kept; ``searched``: with what it comes to in one of several runs."""
+    """How the model compares with what is kept; ``searched``: with what it comes to in one of many runs."""
     kept = [msgspec.json.decode(line, type=Recorded) for line in FILE.read_bytes().splitlines()]
     kept = [each for each in kept if (each.runs > 0) == searched]
     results = []
