@@ -17,11 +17,15 @@ def time_limit(at: Position | ProgramAt) -> Nanoseconds:
     return at.until if not at.loop[0] or ends_by_itself(*at.loop) else 0
 
 
-@lru_cache(maxsize=64)
 def ends_by_itself(file: str, line: int) -> bool:
     """Return whether a ``while`` compares a clock, or what it counts itself."""
+    return _ends_by_itself(program_text(Path(file)) or "", line)
+
+
+@lru_cache(maxsize=64)
+def _ends_by_itself(text: str, line: int) -> bool:
     try:
-        tree = ast.parse(program_text(Path(file)) or "")
+        tree = ast.parse(text)
     except (SyntaxError, ValueError):
         return False
     loops = (each for each in ast.walk(tree) if isinstance(each, ast.While) and each.lineno == line)

@@ -132,3 +132,11 @@ def test_a_loop_around_a_wait_with_a_timeout_may_last_for_ever(tmp_path: Path) -
     monitor = found_in(tmp_path, loop, 5.0)
     (found,) = (each.explanation for each in monitor.findings if each.is_problem)
     assert found.for_ever
+
+
+def test_a_loop_that_was_edited_is_read_anew(tmp_path: Path) -> None:
+    file = tmp_path / "node.py"
+    file.write_text("while not done:\n    pass\n")
+    assert not ends_by_itself(str(file), 1)
+    file.write_text("while time.monotonic() < end:\n    pass\n")
+    assert ends_by_itself(str(file), 1)
