@@ -104,8 +104,9 @@ def _refuse_bad_lesson(error: ValueError) -> None:
 def _parser(*, with_commands: bool = True) -> argparse.ArgumentParser:
     parser = CommandParser(
         prog="cbtui",
-        description="A terminal teaching console for ROS 2 callback groups and executors.",
-        epilog="Without a command the console opens on its menu of lessons.",
+        description="A terminal teaching console for ROS 2 callback groups and executors. "
+        "Without a command it opens on its menu of lessons.",
+        epilog="cbtui COMMAND --help tells more of a command.",
     )
     parser.add_argument("--version", action=_VersionAction, nargs=0, help="show the version and exit")
     appearance.add_options(parser)

@@ -48,12 +48,17 @@ def add_commands(parser: CommandParser, whole: Callable[[], argparse.ArgumentPar
         own.set_defaults(action=action)
         return own
 
-    command("list", more_lessons.add_option, listing.list_lessons, help="list the lessons")
+    command(
+        "list",
+        more_lessons.add_option,
+        listing.list_lessons,
+        help="list lessons and puzzles, with your progress",
+    )
     opening = command(
         "open",
         console.add_open_options,
         console.open_console,
-        help="open a lesson, or a file of your own, in the console",
+        help="open a lesson, a puzzle, or a file of your own, in the console",
         usage="%(prog)s [options] LESSON|PUZZLE|FILE.py [-- ARGUMENTS of the file]",
     )
     more_lessons.add_option(opening)
