@@ -17,6 +17,18 @@ PROGRAMS = Path(__file__).parent / "beginners"
     ("program", "rule", "culprit", "cure"),
     [
         ("nested_spin", "nested-spin", "rclpy.spin_until_future_complete(self, future)", "add_done_callback"),
+        (
+            "spin_in_function",
+            "nested-spin",
+            "rclpy.spin_until_future_complete(node, future)",
+            "in an async def tick",
+        ),
+        (
+            "spin_in_method",
+            "nested-spin",
+            "rclpy.spin_until_future_complete(self, self.future)",
+            "in an async def plan",
+        ),
         ("spin_in_service", "nested-spin", "spin_until_future_complete(", "await the future in an async def"),
         (
             "call_in_service",

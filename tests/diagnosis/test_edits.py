@@ -15,7 +15,7 @@ from sim.diagnosis.edits.names import rename, rename_definition
 from sim.diagnosis.edits.polling import leave_out, step_by_step
 from sim.diagnosis.edits.profiles import match_quality
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback, use_in_done_callback
-from tests.diagnosis.edited_source import MARK, changed, edited, node
+from tests.diagnosis.edited_source import changed, edited, node
 
 
 def test_what_follows_a_call_goes_on_in_a_done_callback_with_its_comments() -> None:
@@ -130,70 +130,6 @@ def test_a_line_that_a_changed_file_has_no_more_and_any_other_are_no_error(
         for line in range(-1, text.count("\n") + 4):
             new = CodeEdit(str(path), "", change, (line,)).applied(text)
             assert new is None or ast.parse(new)
-
-
-def test_a_call_is_awaited_wherever_it_is_in_a_group_of_its_own() -> None:
-    text = node(
-        """
-        def __init__(self):
-            self.create_service(SetBool, "serve", self.serve)
-
-        def serve(self, request, response):
-            for each in self.clients:
-                if each.call(request).success:  # here
-                    pass
-                reply = each.call(request)
-            return response
-        """
-    )
-    made = 6
-    assert changed(text, await_reply, made) is None
-    assert changed(
-        text.replace(f"  {MARK}", "").replace(
-            "reply = each.call(request)", f"reply = each.call(request)  {MARK}"
-        ),
-        await_reply,
-        made,
-    ) == [
-        "+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup",
-        '-        self.create_service(SetBool, "serve", self.serve)',
-        '+        self.create_service(SetBool, "serve", self.serve, '
-        "callback_group=MutuallyExclusiveCallbackGroup())",
-        "-    def serve(self, request, response):",
-        "+    async def serve(self, request, response):",
-        "-            reply = each.call(request)  # here",
-        "+            reply = await each.call_async(request)  # here",
-    ]
-
-
-def test_a_loop_that_waits_for_a_future_is_one_await() -> None:
-    text = node(
-        """
-        def __init__(self):
-            self.create_timer(1.0, self.tick, self.group)
-
-        def tick(self):
-            while not future.done():
-                time.sleep(0.1)  # here
-            self.log()
-        """
-    )
-    assert changed(text, await_reply, 6) == [
-        "+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup",
-        "-        self.create_timer(1.0, self.tick, self.group)",
-        "+        self.create_timer(1.0, self.tick, MutuallyExclusiveCallbackGroup())",
-        "-    def tick(self):",
-        "-        while not future.done():",
-        "-            time.sleep(0.1)  # here",
-        "+    async def tick(self):",
-        "+        await future  # here",
-    ]
-
-
-def test_nothing_is_awaited_with_a_lock() -> None:
-    call = "with self.lock:\n        self.client.call(Trigger.Request())  # here"
-    made = "def __init__(self):\n    self.create_timer(1.0, self.tick)"
-    assert changed(node(f"{made}\n\ndef tick(self):\n    {call}"), await_reply, 6) is None
 
 
 @pytest.mark.parametrize(

@@ -71,6 +71,8 @@ FIT = "define it with the parameters it is called with (diff)"
     ("program", "cures"),
     [
         ("nested_spin", [DONE, AWAIT.format("tick")]),
+        ("spin_in_function", [AWAIT.format("tick")]),
+        ("spin_in_method", [AWAIT.format("plan")]),
         ("spin_once", ["return from go, and go on where what it waits for is set (diff)"]),
         ("wait_for_event", [APART.replace("tick", "go")]),
         ("call_in_timer", [APART, DONE, AWAIT.format("tick")]),

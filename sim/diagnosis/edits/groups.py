@@ -7,8 +7,22 @@ from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
 _GROUP = "MutuallyExclusiveCallbackGroup"
 
 
-def give_own_group(source: SourceEditor, line: int) -> None:
-    """Give what is made at a line, such as a timer, a callback group of its own."""
+def give_own_group(source: SourceEditor, *lines: int) -> None:
+    """Give what is made at each of the lines, such as a timer, a callback group of its own."""
+    for made in {_made_at(source, line) for line in lines}:
+        values = [*made.args, *(each.value for each in made.keywords)]
+        given = [each.value for each in made.keywords if each.arg == "callback_group"]
+        if ast.unparse(made.func).endswith("create_timer"):
+            given += made.args[2:3]
+        if given:
+            source.replace(given[0], f"{_GROUP}()")
+        else:
+            last = max(values, key=lambda each: (each.lineno, each.col_offset))
+            source.insert_behind(last, f", callback_group={_GROUP}()")
+    source.import_names("rclpy.callback_groups", [_GROUP])
+
+
+def _made_at(source: SourceEditor, line: int) -> ast.Call:
     made = [
         call
         for call in source.nodes(ast.Call)
@@ -16,16 +30,7 @@ def give_own_group(source: SourceEditor, line: int) -> None:
     ]
     if len(made) != 1:
         raise NotSimpleError
-    values = [*made[0].args, *(each.value for each in made[0].keywords)]
-    given = [each.value for each in made[0].keywords if each.arg == "callback_group"]
-    if ast.unparse(made[0].func).endswith("create_timer"):
-        given += made[0].args[2:3]
-    if given:
-        source.replace(given[0], f"{_GROUP}()")
-    else:
-        last = max(values, key=lambda each: (each.lineno, each.col_offset))
-        source.insert_behind(last, f", callback_group={_GROUP}()")
-    source.import_names("rclpy.callback_groups", [_GROUP])
+    return made[0]
 
 
 def _makes(function: str) -> bool:

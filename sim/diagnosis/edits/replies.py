@@ -4,7 +4,7 @@ import ast
 from contextlib import suppress
 
 from sim.diagnosis.edits.groups import give_own_group
-from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
+from sim.diagnosis.edits.source_editor import Function, NotSimpleError, SourceEditor, indentation
 
 _SPIN = "spin_until_future_complete"
 _IDLE = ("sleep", "sleep_for", "spin_once")
@@ -24,6 +24,8 @@ def go_on_in_done_callback(source: SourceEditor, line: int) -> None:
     if rest and rest[0].lineno == wait.end_lineno:
         raise NotSimpleError
     future, begin, first = _handed_over(source, wait, callback)
+    if not future.isidentifier():
+        raise NotSimpleError
     check_rest(callback, callback.body[:place], rest, future)
     inner = indentation(wait)
     comment = source.comment_behind(wait)
@@ -104,24 +106,51 @@ def _done_callback(source: SourceEditor, callback: ast.FunctionDef, future: str,
 
 
 def await_reply(source: SourceEditor, line: int, made: int) -> None:
-    """Let the callback at a line await the reply, as a coroutine in a group of its own.
+    """Let what waits for a reply at a line await it, as a coroutine, and so all that calls that.
 
-    ``made`` is the line that makes what calls it.
+    The callbacks among these get groups of their own; ``made`` is the line that makes what calls one of them.
     """
-    give_own_group(source, made)
-    callback = source.uncalled_at(line)
-    statement = _innermost(callback, line)
-    if any(is_at(each, line) for each in source.nodes(ast.With, callback)):
-        raise NotSimpleError  # it would keep a lock while others run on its thread
+    waiting = source.function_at(line)
+    statement = _innermost(waiting, line)
     call = plain_call(statement)
     if call is not None:
-        awaited = f"await {_asynchronous(source, call)}"
-        source.replace(call, awaited if getattr(statement, "value", None) is call else f"({awaited})")
+        begin, end = _await(source, call)
+        source.replace(call, f"{begin}{_asynchronous(source, call)}{end}")
     else:
-        future = future_of(statement)
-        awaited = f"await {future}{source.comment_behind(statement)}"
+        awaited = f"await {future_of(statement)}{source.comment_behind(statement)}"
         source.replace_lines(statement, statement, f"{indentation(statement)}{awaited}\n")
-    source.insert_before(callback, "async ")
+    coroutines: list[Function] = []
+    callers, makers = [(waiting, line)], [made]
+    for function, at in callers:
+        if function.decorator_list or any(is_at(each, at) for each in source.nodes(ast.With, function)):
+            raise NotSimpleError  # it would keep a lock while others run on its thread
+        if function in coroutines:
+            continue
+        uses = source.uses_of(function)
+        if function.name.startswith("__") or (coroutines and not uses):
+            raise NotSimpleError  # nobody would await it
+        coroutines.append(function)
+        if isinstance(function, ast.FunctionDef):
+            source.insert_before(function, "async ")
+        for use, call in uses:
+            if call is None:
+                makers.append(use.lineno)
+            else:
+                begin, end = _await(source, call)
+                source.insert_before(call, begin)
+                source.insert_behind(call, end)
+                callers.append((source.function_at(call.lineno), call.lineno))
+    give_own_group(source, *makers)
+
+
+def _await(source: SourceEditor, call: ast.Call) -> tuple[str, str]:
+    """Return what to write before and after a call to await it."""
+    unfit = [*source.nodes(ast.Lambda), *source.nodes(ast.JoinedStr)]
+    if any(call in ast.walk(each) for each in unfit):
+        raise NotSimpleError
+    asked = {each.value for each in source.nodes(ast.Attribute)}
+    asked |= {each.value for each in source.nodes(ast.Subscript)}
+    return ("(await ", ")") if call in asked else ("await ", "")
 
 
 def is_at(statement: ast.stmt, line: int) -> bool:
@@ -129,7 +158,7 @@ def is_at(statement: ast.stmt, line: int) -> bool:
     return statement.lineno <= line <= (statement.end_lineno or statement.lineno)
 
 
-def _innermost(callback: ast.FunctionDef, line: int) -> ast.stmt:
+def _innermost(callback: Function, line: int) -> ast.stmt:
     """Return the innermost statement at a line; the loop around it if that waits for a future."""
     around = [each for each in ast.walk(callback) if isinstance(each, ast.stmt) and is_at(each, line)]
     loops = [each for each in around if isinstance(each, ast.While) and _loop_future(each)]
@@ -176,8 +205,8 @@ def future_of(wait: ast.stmt) -> str:
         function = wait.value.func
         if isinstance(function, ast.Attribute) and function.attr == _SPIN:
             for each in wait.value.args[-1:]:
-                if isinstance(each, ast.Name) and not wait.value.keywords:
-                    return each.id
+                if isinstance(each, ast.Name | ast.Attribute) and not wait.value.keywords:
+                    return ast.unparse(each)
     future = _loop_future(wait)
     if not future:
         raise NotSimpleError

@@ -75,6 +75,20 @@ class SourceEditor:
             raise NotSimpleError
         return function
 
+    def uses_of(self, function: Function) -> list[tuple[ast.expr, ast.Call | None]]:
+        """Return where a function is named outside its definition, each time with the call if it is called.
+
+        Raises:
+            NotSimpleError: another function has the same name.
+        """
+        functions: list[Function] = [*self.nodes(ast.FunctionDef), *self.nodes(ast.AsyncFunctionDef)]
+        if sum(each.name == function.name for each in functions) > 1:
+            raise NotSimpleError
+        calls = {each.func: each for each in self.nodes(ast.Call)}
+        kind = "attr" if self.is_method(function) else "id"
+        uses = (each for each in self.nodes(ast.expr) if getattr(each, kind, "") == function.name)
+        return [(each, calls.get(each)) for each in uses]
+
     def is_method(self, function: Function) -> bool:
         """Return whether a function is a method of a class."""
         return any(function in each.body for each in self.nodes(ast.ClassDef))
