@@ -1,9 +1,11 @@
 """Edits of callbacks that wait or loop."""
 
+from pathlib import Path
 from textwrap import indent
 
 import pytest
 
+from sim.diagnosis.edits.flags import setters, sleep_in_loop
 from sim.diagnosis.edits.polling import go_on_where_set, look_again, one_round_a_call, step_by_step
 from tests.diagnosis.edited_source import changed, edited, node
 
@@ -267,3 +269,63 @@ def test_a_loop_that_may_be_over_before_the_next_call_stays(rounds: str, count: 
 )
 def test_a_loop_whose_rounds_are_not_known_stays(old: str, new: str) -> None:
     assert changed(node(ROUNDS.replace(old, new)), one_round_a_call) is None
+
+
+@pytest.mark.parametrize(
+    ("loop", "asleep"),
+    [
+        ("while not self.done:  # here\n    pass  # yet", ["sleep(0.01)  # yet"]),
+        ("while not self.done: pass  # here", ["while not self.done: sleep(0.01)  # here"]),
+        ("while self.x is None:  # here\n    self.log.info('no')", ["sleep(0.01)"]),
+        ("while True:  # here\n    if self.done:\n        break", ["sleep(0.01)"]),
+    ],
+)
+def test_a_loop_that_only_asks_sleeps_in_each_round(loop: str, asleep: list[str]) -> None:
+    lines = changed(node(f"def tick(self):\n{indent(loop, '    ')}"), sleep_in_loop)
+    assert lines is not None
+    assert [each[1:].strip() for each in lines if each[0] == "+"] == ["from time import sleep", "", *asleep]
+
+
+def test_a_loop_sleeps_by_the_module_that_is_imported() -> None:
+    text = node("def tick(self):\n    while not self.done:  # here\n        pass", "import time")
+    assert changed(text, sleep_in_loop) == ["-            pass", "+            time.sleep(0.01)"]
+
+
+@pytest.mark.parametrize(
+    "loop",
+    [
+        "while not self.done:  # here\n    time.sleep(0.1)",
+        "while self.n < 9:  # here\n    self.n += 1",
+        "while not self.done:  # here\n    self.step()",
+    ],
+)
+def test_a_loop_that_sleeps_or_works_is_left_as_it_is(loop: str) -> None:
+    assert changed(node(f"def tick(self):\n{indent(loop, '    ')}"), sleep_in_loop) is None
+
+
+@pytest.mark.parametrize(
+    ("asks", "sets", "found"),
+    [
+        ("not self.done", "self.done = True", ("on_done",)),
+        ("not self.done", "self.count = 1", ()),
+        ("not done", "global done\n    done = True", ("on_done",)),
+        ("not done", "done = True", ()),
+        ("self.last is None or self.last.data == 0", "self.last, self.n = 1, 2", ("on_done",)),
+    ],
+)
+def test_it_is_known_who_sets_what_a_loop_asks(
+    asks: str, sets: str, found: tuple[str, ...], tmp_path: Path
+) -> None:
+    path = tmp_path / "node.py"
+    waits = f"def tick(self):\n    while {asks}:\n        time.sleep(0.1)\n"
+    path.write_text(f"def __init__(self):\n    self.done = None\n\n{waits}\ndef on_done(self):\n    {sets}\n")
+    assert setters(str(path), 5) == found
+
+
+def test_who_sets_what_a_loop_that_works_asks_is_nothing_that_it_waits_for(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(
+        "def tick(self):\n    while self.on:\n        self.step()\n\ndef off(self):\n    self.on = 0\n"
+    )
+    assert setters(str(path), 2) == ()
+    assert setters(str(tmp_path / "no.py"), 2) == ()

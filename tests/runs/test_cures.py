@@ -62,6 +62,7 @@ APART = "give tick a callback group of its own, and spin with MultiThreadedExecu
 DONE = "go on in a done-callback of the future (diff)"
 AWAIT = "await the reply in an async def {0}, and give {0} a callback group of its own (diff)"
 LATER = "return from tick, and look again at its next call (diff)"
+ASLEEP = f"sleep in the loop, and {APART} (diff)"
 STEP = "do one step of the loop at each call of {} (diff)"
 FIT = "define it with the parameters it is called with (diff)"
 
@@ -88,7 +89,8 @@ FIT = "define it with the parameters it is called with (diff)"
         ("call_in_service", [APART.replace("tick", "cook"), AWAIT.format("cook")]),
         ("spin_in_service", [AWAIT.format("cook")]),
         ("wait_for_future", [APART, DONE, AWAIT.format("tick")]),
-        ("while_true", [LATER]),
+        ("while_true", [LATER, ASLEEP]),
+        ("busy_wait_in_service", ["sleep in the loop, and give close a callback group of its own (diff)"]),
         ("while_sleeping", [STEP.format("wander")]),
         ("loop_with_break", [STEP.format("drive")]),
         ("loop_in_subscription", []),

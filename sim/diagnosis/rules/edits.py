@@ -1,10 +1,19 @@
 """The edits that several rules advise."""
 
+from dataclasses import replace
+
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.edits.polling import go_on_where_set, leave_out, look_again, one_round_a_call, step_by_step
+from sim.diagnosis.edits.flags import sleep_in_loop
+from sim.diagnosis.edits.polling import (
+    go_on_where_set,
+    leave_out,
+    look_again,
+    one_round_a_call,
+    step_by_step,
+)
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
 from sim.diagnosis.rule import CodeLocation, by_edit, made_at
-from sim.diagnosis.words import must_answer, who
+from sim.diagnosis.words import must_answer, threads_for, who
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.timeline import Timeline
 
@@ -23,9 +32,17 @@ def edits_for_reply(place: CodeLocation | None, entity: EntityId, timeline: Time
 
 def edits_for_waiting(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
     """Return edits of a callback that waits at a place for a condition, or is in a loop there."""
+    room = beside_others(entity, timeline)
+    sleeping = by_edit(place, "sleep in the loop", sleep_in_loop)
+    beside = (replace(room, edit=each.edit) for each in sleeping)
     if timeline.entities[entity].kind not in (EntityKind.TIMER, EntityKind.SUBSCRIPTION):
-        return ()
-    return *_returning(place, entity, timeline), *edits_for_steps(place, entity, timeline)
+        return tuple(beside)
+    return *_returning(place, entity, timeline), *edits_for_steps(place, entity, timeline), *beside
+
+
+def beside_others(entity: EntityId, timeline: Timeline) -> Remedy:
+    """Return what lets others run while a callback does: a group of its own, and a second thread."""
+    return Remedy((entity,), 2 if threads_for([entity], timeline.end, timeline) == 1 else 0)
 
 
 def edits_for_service(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:

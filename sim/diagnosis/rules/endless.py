@@ -4,8 +4,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from sim.diagnosis.cures import remedy_for_waits
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, line_location, line_of
-from sim.diagnosis.rules.edits import edits_for_reply, edits_for_waiting
+from sim.diagnosis.edits.flags import setters
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_location, line_of
+from sim.diagnosis.rules.edits import beside_others, edits_for_reply, edits_for_waiting
 from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, must_answer, often, who
@@ -22,6 +23,7 @@ _KEPT = (
     "while {0} runs, no other callback of its group or thread does: if it waits for what one of them brings, "
     "that never comes"
 )
+_AWAITED = "{0} waits for what {1} sets, and while it runs, no other callback of its group or thread does"
 _LEAVE = (
     "keep the state in self and return: {0} is called again; or do one step of the loop at each call of a "
     "timer"
@@ -158,8 +160,8 @@ class StillComputing(Rule):
         where = f" in the loop of line {loop.first_line}" if loop else ""
         return Explanation(
             f"{subject} computes{where} and {_how_long(found, timeline)}",
-            _KEPT.format(subject),
-            _leaving(found.subject, timeline),
+            _why(found.subject, loop, timeline),
+            _leaving(found.subject, loop, timeline),
             place,
             for_ever=found.until >= timeline.end,
             remedies=(
@@ -206,8 +208,8 @@ class StaysInLoop(Rule):
         )
         return Explanation(
             f"{subject} has been in the loop of line {at.loop[1]} for {duration(found.lasted)}{only}",
-            _KEPT.format(subject),
-            _leaving(found.subject, timeline),
+            _why(found.subject, loop, timeline),
+            _leaving(found.subject, loop, timeline),
             loop,
             remedies=(*((room,) if kept else ()), *edits_for_waiting(loop, found.subject, timeline)),
         )
@@ -245,11 +247,33 @@ def _computes(notice: Notice, view: TimelineView) -> bool:
     return all(each.doing is not Doing.WAITS for each in at)
 
 
-def _leaving(entity: EntityId, timeline: Timeline) -> str:
+def _why(entity: EntityId, loop: CodeLocation | None, timeline: Timeline) -> str:
+    """Tell what a callback in a loop keeps from running."""
+    subject, others = who(entity, timeline), _setters(entity, loop, timeline)
+    return _AWAITED.format(subject, listed(others)) if others else _KEPT.format(subject)
+
+
+def _leaving(entity: EntityId, loop: CodeLocation | None, timeline: Timeline) -> str:
+    """Return the cure of a callback in a loop."""
+    subject, others = who(entity, timeline), _setters(entity, loop, timeline)
+    if others:
+        room = beside_others(entity, timeline).words(timeline)
+        if must_answer(entity, timeline):
+            return f"sleep() in the loop, and {room}"
+        return (
+            f"return from {subject}, and go on in {listed(others)}; "
+            f"to wait inside {subject}, with a sleep() in the loop, {room}"
+        )
     text = _LEAVE if timeline.entities[entity].kind is EntityKind.TIMER else _LEAVE_FOR_TIMER
     if must_answer(entity, timeline):
         text = _LEAVE_WITH_RESPONSE
-    return text.format(who(entity, timeline))
+    return text.format(subject)
+
+
+def _setters(entity: EntityId, loop: CodeLocation | None, timeline: Timeline) -> list[str]:
+    """Return the other functions that set what the loop of a callback asks."""
+    found = setters(loop.file, loop.first_line) if loop else ()
+    return [each for each in found if each != who(entity, timeline)]
 
 
 def _moment(found: Finding) -> Window:

@@ -1,0 +1,66 @@
+"""Loops that only ask for what another function sets: which function, and the edit that lets it run."""
+
+import ast
+from functools import lru_cache
+from pathlib import Path
+
+from sim.diagnosis.edits.replies import is_idle
+from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
+from sim.files.untrusted import program_text
+
+_TELLS = ("print", "debug", "info", "warn", "warning", "error", "fatal")
+
+
+@lru_cache(maxsize=64)
+def setters(file: str, line: int) -> tuple[str, ...]:
+    """Return the functions that set what a ``while`` waits for which only asks; constructors are left out."""
+    try:
+        source = SourceEditor(program_text(Path(file)) or "")
+        loop = _asking(source, line)
+    except NotSimpleError:
+        return ()
+    tests = [loop.test, *(each.test for each in loop.body if isinstance(each, ast.If))]
+    asked = {ast.unparse(part) for test in tests for part in source.nodes(ast.expr, test)}
+    functions = (each for each in source.nodes(ast.FunctionDef) if each.name != "__init__")
+    return tuple(each.name for each in functions if asked & _set_by(source, each))
+
+
+def _set_by(source: SourceEditor, function: ast.FunctionDef) -> set[str]:
+    """Return the attributes and global variables that a function sets."""
+    shared = {name for each in source.nodes(ast.Global, function) for name in each.names}
+    stored = (
+        each for each in source.nodes(ast.expr, function) if isinstance(vars(each).get("ctx"), ast.Store)
+    )
+    return {name for name in map(ast.unparse, stored) if "." in name or name in shared}
+
+
+def sleep_in_loop(source: SourceEditor, line: int) -> None:
+    """Let the ``while`` at a line that only asks sleep in each round, if it does not yet."""
+    loop = _asking(source, line)
+    if any(map(is_idle, (each for each in loop.body if not isinstance(each, ast.Pass)))):
+        raise NotSimpleError
+    has_time = any(name.name == "time" for each in source.nodes(ast.Import) for name in each.names)
+    sleep, last = "time.sleep(0.01)" if has_time else "sleep(0.01)", loop.body[-1]
+    if isinstance(last, ast.Pass):
+        source.replace(last, sleep)
+    else:
+        source.insert_behind(last, f"\n{indentation(last)}{sleep}")
+    if not has_time:
+        source.import_names("time", ["sleep"])
+
+
+def _asking(source: SourceEditor, line: int) -> ast.While:
+    """Return the ``while`` at a line if all it does is to ask, to log, and to let time pass."""
+    loops = [each for each in source.nodes(ast.While) if each.lineno == line]
+    if len(loops) != 1 or not all(is_idle(each) or _asks_or_logs(each) for each in loops[0].body):
+        raise NotSimpleError
+    return loops[0]
+
+
+def _asks_or_logs(statement: ast.stmt) -> bool:
+    match statement:
+        case ast.If(body=[ast.Break()], orelse=[]):
+            return True
+        case ast.Expr(value=ast.Call(func=ast.Attribute(attr=name) | ast.Name(id=name))):
+            return name in _TELLS
+    return False
