@@ -84,6 +84,8 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "let go of the lock before the call",
         ),
         ("locks_by_acquire", "self-made-deadlock", ".acquire()", "in the same order"),
+        ("locks_in_methods", "self-made-deadlock", "with self.l", "in the same order"),
+        ("locks_in_helpers", "self-made-deadlock", "with self.", "in the same order"),
         ("lock_not_released", "self-made-deadlock", "self.lock.acquire()", "let go of it before"),
         ("lock_acquired_twice", "self-made-deadlock", "self.lock.acquire()", "threading.RLock"),
         ("lock_taken_twice", "self-made-deadlock", "with self.lock", "threading.RLock"),

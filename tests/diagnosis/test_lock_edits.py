@@ -6,10 +6,12 @@ import pytest
 
 from sim.diagnosis.edits.locks import (
     let_go_during_wait,
+    make_one,
     make_reentrant,
     take_before,
     take_by_one_with,
     take_by_with,
+    take_early,
     take_together,
 )
 from tests.diagnosis.edited_source import changed, edited, node
@@ -289,3 +291,79 @@ def test_a_lock_that_one_function_alone_acquires_is_not_made_reentrant() -> None
         "def tick(self):\n    self.lock.acquire()  # here", "import threading\nself.lock = threading.Lock()"
     )
     assert changed(text, make_reentrant) is None
+
+
+HELPERS = """
+def __init__(self):
+    self.arm = threading.Lock()
+    self.camera = threading.Lock()
+
+def move(self):
+    with self.arm:
+        self.step()
+
+def step(self):
+    self.take()
+
+def take(self):
+    with self.camera:  # here
+        self.b()
+
+def look(self):
+    with self.camera:
+        self.turn()
+
+def turn(self):
+    with self.arm:
+        self.c()
+"""
+
+
+def test_a_lock_that_a_helper_takes_is_taken_before_by_what_calls_it() -> None:
+    text = node(HELPERS)
+    callers = line_with(text, "self.step()"), line_with(text, "self.take()")
+    turned = line_with(text, "self.c()") - 1
+    assert changed(text, take_early, turned, *callers) == [
+        "-        self.camera = threading.Lock()",
+        "+        self.camera = threading.RLock()",
+        "-        with self.arm:",
+        "+        with self.camera, self.arm:",
+    ]
+    assert changed(text, take_early, turned) is None
+    free = text.replace("with self.arm:\n            self.step", "if 1:\n            self.step")
+    assert changed(free, take_early, turned, *callers) is None
+    moved = text.replace("    def take", "class Other:\n    def take")
+    assert changed(moved, take_early, turned + 1, callers[0], callers[1]) is None
+
+
+@pytest.mark.parametrize(
+    ("imports", "made", "one"),
+    [
+        ("import threading", "threading.Lock()", "threading.RLock()"),
+        ("from threading import Lock", "Lock()", "RLock()"),
+    ],
+)
+def test_two_locks_become_one_which_its_holder_may_take_again(imports: str, made: str, one: str) -> None:
+    text = node(HELPERS.replace("threading.Lock()", made), imports)
+    lines = changed(text, make_one, line_with(text, "self.c()") - 1)
+    assert lines is not None
+    assert [each for each in lines if each[0] == "+" and "import" not in each] == [
+        f"+        self.arm = {one}",
+        "+        self.camera = self.arm",
+    ]
+    assert [each for each in lines if "import" in each] == (
+        [] if "import t" in imports else ["-from threading import Lock", "+from threading import RLock"]
+    )
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        "self.camera = make_lock()",
+        "self.camera = self.arm",
+        "pass\n\ndef more(self):\n    self.camera = Lock()",
+    ],
+)
+def test_only_locks_that_are_made_side_by_side_become_one(made: str) -> None:
+    text = node(HELPERS.replace("self.camera = threading.Lock()", indent(made, "    ").strip()))
+    assert changed(text, make_one, line_with(text, "self.c()") - 1) is None

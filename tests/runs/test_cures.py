@@ -64,6 +64,8 @@ AWAIT = "await the reply in an async def {0}, and give {0} a callback group of i
 LATER = "return from tick, and look again at its next call (diff)"
 ASLEEP = f"sleep in the loop, and {APART} (diff)"
 STEP = "do one step of the loop at each call of {} (diff)"
+EARLY = "take both locks at once, in the order of {}, one of them as a threading.RLock (diff)"
+ONE = "make both locks one, a threading.RLock (diff)"
 FIT = "define it with the parameters it is called with (diff)"
 
 
@@ -107,13 +109,15 @@ FIT = "define it with the parameters it is called with (diff)"
         ("wait_in_service", ["return the response from grip at once if the service is not there (diff)"]),
         (
             "lock_across_callbacks",
-            ["take both locks at once, in the order of look (diff)"],
+            ["take both locks at once, in the order of look (diff)", ONE],
         ),
         ("lock_during_call", ["let go of the lock during the call (diff)"]),
         ("lock_during_reentrant_call", ["let go of the lock during the call (diff)"]),
         ("lock_taken_twice", ["make the lock a threading.RLock (diff)"]),
-        ("locks_by_acquire", ["take both locks in the order of earn (diff)"]),
-        ("locks_by_try", ["take both locks by one with, in the order of spend (diff)"]),
+        ("locks_by_acquire", ["take both locks in the order of earn (diff)", ONE]),
+        ("locks_by_try", ["take both locks by one with, in the order of spend (diff)", ONE]),
+        ("locks_in_methods", [EARLY.format("sell"), ONE]),
+        ("locks_in_helpers", [EARLY.format("report"), ONE]),
         ("lock_not_released", ["take the lock by with, which releases it whatever happens (diff)"]),
         ("lock_acquired_twice", ["make the lock a threading.RLock (diff)"]),
         ("call_in_parameter_callback", [APART.replace("tick", "tune")]),

@@ -204,15 +204,51 @@ def make_reentrant(source: SourceEditor, line: int) -> None:
 
     Where it is taken by ``acquire``, only if another function takes it, too: else it was never released.
     """
+    lock, here = _taken_at(source, line), list(ast.walk(source.function_at(line)))
+    taken = [each for each in source.nodes(ast.Expr) if _method_of(each, "acquire", lock)]
+    if taken and all(each in here for each in taken):
+        raise NotSimpleError
+    _reentrant(source, lock)
+
+
+def take_early(source: SourceEditor, line: int, other: int, *callers: int) -> None:
+    """Take the lock of a line before the one that is taken at line ``other``, by the ``with`` of that.
+
+    The ``with`` is around one of the lines ``callers``, from which the function is called that takes the
+    lock of the line. That takes it again: it becomes an ``RLock``.
+    """
+    wanted, held = _taken_at(source, line), _taken_at(source, other)
+    blocks = [each for each in source.nodes(ast.With) if any(is_at(each, caller) for caller in callers)]
+    around = [each for each in blocks if _lock(source, each) == held]
+    owners = {
+        source.owner_of(source.function_at(each)) for each in (line, *(block.lineno for block in around))
+    }
+    if len(around) != 1 or len(owners) != 1:
+        raise NotSimpleError
+    source.replace(around[0].items[0].context_expr, f"{wanted}, {held}")
+    _reentrant(source, wanted)
+
+
+def make_one(source: SourceEditor, line: int, other: int) -> None:
+    """Let the locks that are taken at two lines be one ``RLock``, if the same function makes both."""
+    names = {_taken_at(source, each) for each in (line, other)}
+    made = {name: value for name in names for value in _made(source, name)}
+    ordered = sorted(made, key=lambda name: made[name].lineno)
+    makers = {ast.unparse(each) for each in made.values()}
+    functions = {source.function_at(each.lineno) for each in made.values()}
+    if len(made) != 2 or len(functions) != 1 or not makers <= {"threading.Lock()", "Lock()"}:
+        raise NotSimpleError
+    source.replace(made[ordered[1]], ordered[0])
+    _reentrant(source, ordered[0])
+
+
+def _taken_at(source: SourceEditor, line: int) -> str:
+    """Return the lock that is taken at a line."""
     blocks = [each for each in source.nodes(ast.With) if each.lineno <= line <= each.body[0].lineno]
-    if blocks:
-        lock = _lock(source, blocks[-1])
-    else:
-        lock = _acquired(source.statement_at(line))
-        here = list(ast.walk(source.function_at(line)))
-        taken = [each for each in source.nodes(ast.Expr) if _method_of(each, "acquire", lock)]
-        if all(each in here for each in taken):
-            raise NotSimpleError
+    return _lock(source, blocks[-1]) if blocks else _acquired(source.statement_at(line))
+
+
+def _reentrant(source: SourceEditor, lock: str) -> None:
     made = _made(source, lock)
     match made:
         case [

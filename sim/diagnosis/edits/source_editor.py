@@ -91,7 +91,11 @@ class SourceEditor:
 
     def is_method(self, function: Function) -> bool:
         """Return whether a function is a method of a class."""
-        return any(function in each.body for each in self.nodes(ast.ClassDef))
+        return self.owner_of(function) is not None
+
+    def owner_of(self, function: Function) -> ast.ClassDef | None:
+        """Return the class of which a function is a method; None for no method."""
+        return next((each for each in self.nodes(ast.ClassDef) if function in each.body), None)
 
     def code_of(self, node: Positioned) -> str:
         """Return the text of a node."""
@@ -160,7 +164,7 @@ class SourceEditor:
     def import_names(self, module: str, names: Iterable[str], instead_of: str = "") -> None:
         """Import names from a module that the source does not import yet.
 
-        They replace the name ``instead_of`` if that is used once only.
+        They replace the name ``instead_of`` if all its uses are replaced by the edits so far.
         """
         imports = [each for each in self.tree.body if isinstance(each, ast.ImportFrom)]
         ours = [each for each in imports if each.module == module]
@@ -168,9 +172,10 @@ class SourceEditor:
         missing = sorted(set(names) - known)
         if not missing:
             return
-        uses = sum(each.id == instead_of for each in self.nodes(ast.Name))
-        gone = [alias for each in ours for alias in each.names if alias.name == instead_of and uses == 1]
-        if gone:
+        uses = [self._span(each) for each in self.nodes(ast.Name) if each.id == instead_of]
+        replaced = [use for use in uses for start, end, _ in self._edits if start <= use[0] and use[1] <= end]
+        gone = [alias for each in ours for alias in each.names if alias.name == instead_of]
+        if gone and len(replaced) == len(uses):
             self.replace(gone[0], ", ".join(missing))
         elif ours:
             self.insert_behind(ours[0].names[-1], "".join(f", {each}" for each in missing))

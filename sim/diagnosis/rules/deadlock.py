@@ -6,10 +6,12 @@ from dataclasses import replace
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.locks import (
     let_go_during_wait,
+    make_one,
     make_reentrant,
     take_before,
     take_by_one_with,
     take_by_with,
+    take_early,
     take_together,
 )
 from sim.diagnosis.rule import (
@@ -172,13 +174,19 @@ def _lock_remedies(place: CodeLocation | None, found: Finding, timeline: Timelin
         reentrant = by_edit(place, "make the lock a threading.RLock", make_reentrant)
         return *reentrant, *by_edit(place, words, take_by_with)
     other = _line_of(found.culprit, found, timeline)
-    if other is None:
+    if place is None or other is None:
         return ()
     order = f"in the order of {who(found.culprit, timeline)}"
+    positions = timeline.positions_of(found.subject, Window(found.at, found.until + 1))
+    there = (each.frames for each in positions if (each.file, each.line) == (place.file, place.first_line))
+    callers = (each.line for each in next(there, ())[:-1] if each.file == place.file)
+    early = f"take both locks at once, {order}, one of them as a threading.RLock"
     return (
         *by_edit(place, f"take both locks at once, {order}", take_together, other.first_line),
         *by_edit(place, f"take both locks {order}", take_before, other.first_line),
         *by_edit(place, f"take both locks by one with, {order}", take_by_one_with, other.first_line),
+        *by_edit(place, early, take_early, other.first_line, *callers),
+        *by_edit(place, "make both locks one, a threading.RLock", make_one, other.first_line),
     )
 
 
