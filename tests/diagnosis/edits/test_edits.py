@@ -15,7 +15,7 @@ from sim.diagnosis.edits.names import rename, rename_definition
 from sim.diagnosis.edits.polling import leave_out, step_by_step
 from sim.diagnosis.edits.profiles import match_quality
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback, use_in_done_callback
-from tests.diagnosis.edited_source import changed, edited, node
+from tests.diagnosis.edits.edited_source import changed, edited, node
 
 
 def test_what_follows_a_call_goes_on_in_a_done_callback_with_its_comments() -> None:
@@ -125,7 +125,7 @@ def test_a_function_of_no_class_and_what_is_no_python_is_not_edited() -> None:
 def test_a_line_that_a_changed_file_has_no_more_and_any_other_are_no_error(
     change: Callable[..., None],
 ) -> None:
-    for path in sorted((Path(__file__).parent / "beginners").glob("l*.py")):
+    for path in sorted((Path(__file__).parents[1] / "beginners").glob("l*.py")):
         text = path.read_text()
         for line in range(-1, text.count("\n") + 4):
             new = CodeEdit(str(path), "", change, (line,)).applied(text)

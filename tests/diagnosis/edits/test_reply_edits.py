@@ -5,7 +5,7 @@ from textwrap import dedent
 import pytest
 
 from sim.diagnosis.edits.replies import await_reply
-from tests.diagnosis.edited_source import MARK, changed, node
+from tests.diagnosis.edits.edited_source import MARK, changed, node
 
 TIMER = "def __init__(self):\n    self.create_timer(1.0, self.tick)"
 HELPER = """

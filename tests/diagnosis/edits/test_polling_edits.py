@@ -7,7 +7,7 @@ import pytest
 
 from sim.diagnosis.edits.flags import setters, sleep_in_loop
 from sim.diagnosis.edits.polling import go_on_where_set, look_again, one_round_a_call, step_by_step
-from tests.diagnosis.edited_source import changed, edited, node
+from tests.diagnosis.edits.edited_source import changed, edited, node
 
 
 @pytest.mark.parametrize(

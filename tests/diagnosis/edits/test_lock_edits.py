@@ -14,7 +14,7 @@ from sim.diagnosis.edits.locks import (
     take_early,
     take_together,
 )
-from tests.diagnosis.edited_source import changed, edited, node
+from tests.diagnosis.edits.edited_source import changed, edited, node
 
 LOCKS = """
 def move(self):
