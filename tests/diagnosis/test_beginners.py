@@ -72,6 +72,8 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("result_at_once", "program-raised", "reply.message", "use the result in a done-callback"),
         ("result_of_helper", "program-raised", "response.message", "use the result in a done-callback"),
         ("call_before_spin", "node-never-spins", "self.client.call(", "use call_async() there"),
+        ("two_spins", "node-never-spins", "rclpy.spin(listener)", "add all nodes to one executor"),
+        ("two_executors", "node-never-spins", "viewer_executor.spin()", "add all nodes to one executor"),
         ("hides_a_name", "program-raised", "def handle(self, message):", "hides Node.handle"),
         ("input_in_timer", "program-raised", "input(", "read in another thread"),
         ("wait_for_service", "service-never-comes", "self.client.wait_for_service()", "start the node"),

@@ -76,6 +76,8 @@ FIT = "define it with the parameters it is called with (diff)"
         ("nested_spin", [DONE, AWAIT.format("tick")]),
         ("spin_in_function", [AWAIT.format("tick")]),
         ("spin_in_method", [AWAIT.format("plan")]),
+        ("two_spins", ["spin all nodes by one executor (diff)"]),
+        ("two_executors", ["spin all nodes by one executor (diff)"]),
         ("spin_once", ["return from go, and go on where what it waits for is set (diff)"]),
         ("wait_for_event", [APART.replace("tick", "go")]),
         ("call_in_timer", [APART, DONE, AWAIT.format("tick")]),

@@ -5,12 +5,14 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
+from sim.diagnosis.edits.spins import spin_together, spins_in_turn
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
     Finding,
     Rule,
     Weight,
+    by_edit,
     line_of,
     loop_beside_spin,
     place_of,
@@ -193,6 +195,9 @@ class NodeNeverSpins(Rule):
             each.node == node and timeline.calls_of(each.id, Window(0, timeline.end + 1))
             for each in timeline.entities.values()
         )
+        place, at = place_of(found.subject, timeline), timeline.program_at(found.until)
+        spins: tuple[int, ...] = ()
+        remedies: tuple[Remedy, ...] = ()
         what = "nobody spins its node any more" if ever else "nobody ever spun its node"
         cure = "call rclpy.spin(node), or add the node to an executor and spin that"
         if timeline.executors and not ever:
@@ -201,10 +206,15 @@ class NodeNeverSpins(Rule):
                 "add the node to an executor that spins: one that is only made runs nothing, "
                 "and a second spin() is not reached before the first one returns"
             )
+            spins = spins_in_turn(place.file) if place and at is None else ()
         elif ever:
             cure = "keep spinning the node: spin() has returned, or its executor was shut down"
+        if place and spins:
+            first, place = (CodeLocation(place.file, each, each) for each in spins[:2])
+            what = f"the spin() of line {first.first_line} does not return, so that no later one is reached"
+            cure = "add all nodes to one executor by add_node(), and spin that, once"
+            remedies = by_edit(first, "spin all nodes by one executor", spin_together)
         loop = loop_beside_spin(found.until, timeline)
-        place, at = place_of(found.subject, timeline), timeline.program_at(found.until)
         if at is not None and not ever:
             place = CodeLocation(*at.place, at.place[1])
             what = f"the program is at line {place.first_line}, and has come to no spin() so far"
@@ -212,15 +222,16 @@ class NodeNeverSpins(Rule):
                 what = f"the program waits in {at.call}() at line {place.first_line}, and nothing spins"
                 cure = "use call_async() there, and rclpy.spin_until_future_complete(node, future)"
         if loop is not None:
-            spins = "spins too rarely" if ever else "comes to no spin()"
+            how = "spins too rarely" if ever else "comes to no spin()"
             place, cure = loop, SPIN_ALWAYS
-            what = f"the program is in the loop of line {loop.first_line}, and {spins}"
+            what = f"the program is in the loop of line {loop.first_line}, and {how}"
         return Explanation(
             f"{subject} of {found.about} has been ready for {duration(found.lasted)} "
             f"and does not run: {what}",
             "callbacks run only inside spin()",
             cure,
             place,
+            remedies=remedies,
         )
 
 

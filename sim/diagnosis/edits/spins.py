@@ -1,0 +1,67 @@
+"""Calls of ``spin()`` one after another, of which one is reached, and the edit that makes them one."""
+
+import ast
+from functools import lru_cache
+from pathlib import Path
+
+from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
+from sim.files.untrusted import program_text
+
+
+@lru_cache(maxsize=64)
+def spins_in_turn(file: str) -> tuple[int, ...]:
+    """Return the lines of ``spin()`` in turn, if a file has such in one place only, else ()."""
+    try:
+        (spins,) = _spins_in_turn(SourceEditor(program_text(Path(file)) or ""))
+    except (NotSimpleError, ValueError):
+        return ()
+    return tuple(each.lineno for each in spins)
+
+
+def spin_together(source: SourceEditor, line: int) -> None:
+    """Spin all nodes that are spun in turn, first at a line, by one executor there.
+
+    Only if each is spun by ``rclpy.spin(node)``, or each by an executor; the first of these gets all nodes.
+    """
+    spins = next((each for each in _spins_in_turn(source) if each[0].lineno == line), [])
+    calls = [each.value for each in spins if isinstance(each.value, ast.Call)]
+    nodes = [source.code_of(argument) for each in calls for argument in each.args]
+    if nodes and len(nodes) == len(spins):
+        names = {each.id for each in source.nodes(ast.Name)}
+        executor = next(each for each in ("executor", "one_executor") if each not in names)
+        lines = [f"{executor} = SingleThreadedExecutor()"]
+        lines += [*(f"{executor}.add_node({each})" for each in nodes), f"{executor}.spin()"]
+        blank = indentation(spins[0])
+        source.replace_lines(spins[0], spins[0], "".join(f"{blank}{each}\n" for each in lines))
+        source.import_names("rclpy.executors", ["SingleThreadedExecutor"])
+    elif not nodes and spins:
+        first, *others = (ast.unparse(each.func).removesuffix(".spin") for each in calls)
+        for adding in source.nodes(ast.Attribute):
+            if adding.attr == "add_node" and ast.unparse(adding.value) in others:
+                source.replace(adding.value, first)
+    else:
+        raise NotSimpleError
+    for each in spins[1:]:
+        source.replace_lines(each, each, "")
+
+
+def _spins_in_turn(source: SourceEditor) -> list[list[ast.Expr]]:
+    """Return the statements that spin, if a body has several, for each such body."""
+    makers = ((each, ast.unparse(each.value).partition("(")[0]) for each in source.nodes(ast.Assign))
+    executors = {ast.unparse(each.targets[0]) for each, maker in makers if maker.endswith("Executor")}
+    spinning = {"rclpy.spin", "spin", *(f"{each}.spin" for each in executors)}
+    bodies = [
+        [each for each in body if _spins(each, spinning)]
+        for statement in source.nodes(ast.AST)
+        for body in (getattr(statement, name, ()) for name in ("body", "orelse", "finalbody"))
+        if isinstance(body, list)
+    ]
+    return [each for each in bodies if len(each) > 1]
+
+
+def _spins(statement: ast.stmt, spinning: set[str]) -> bool:
+    match statement:
+        case ast.Expr(value=ast.Call(func=function, args=arguments, keywords=[])):
+            is_rclpys = ast.unparse(function) in ("rclpy.spin", "spin")
+            return ast.unparse(function) in spinning and len(arguments) == is_rclpys
+    return False
