@@ -145,3 +145,9 @@ def test_a_service_is_not_told_to_go_on_after_it_has_returned(program: str) -> N
     told = [each.rule.explain(each, timeline) for each in diagnose(timeline)]
     assert told
     assert "done_callback" not in "".join(each.cure for each in told)
+
+
+def test_it_is_told_who_sets_what_a_loop_waits_for() -> None:
+    timeline = run_to_end(program_setup(PROGRAMS / "busy_wait_in_service.py", 2.0)).timeline
+    told = [each.rule.explain(each, timeline) for each in diagnose(timeline)]
+    assert told[0].why.endswith("does, and it waits for what on_closed sets")

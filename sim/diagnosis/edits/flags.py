@@ -11,11 +11,15 @@ from sim.files.untrusted import program_text
 _TELLS = ("print", "debug", "info", "warn", "warning", "error", "fatal")
 
 
-@lru_cache(maxsize=64)
 def setters(file: str, line: int) -> tuple[str, ...]:
     """Return the functions that set what a ``while`` waits for which only asks; constructors are left out."""
+    return _setters(program_text(Path(file)) or "", line)
+
+
+@lru_cache(maxsize=16)
+def _setters(text: str, line: int) -> tuple[str, ...]:
     try:
-        source = SourceEditor(program_text(Path(file)) or "")
+        source = SourceEditor(text)
         loop = _asking(source, line)
     except NotSimpleError:
         return ()

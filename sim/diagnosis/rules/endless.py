@@ -23,7 +23,7 @@ _KEPT = (
     "while {0} runs, no other callback of its group or thread does: if it waits for what one of them brings, "
     "that never comes"
 )
-_AWAITED = "{0} waits for what {1} sets, and while it runs, no other callback of its group or thread does"
+_AWAITED = "while {0} runs, no other callback of its group or thread does, and it waits for what {1} sets"
 _LEAVE = (
     "keep the state in self and return: {0} is called again; or do one step of the loop at each call of a "
     "timer"
