@@ -11,6 +11,9 @@ from sim.trace.timeline import Timeline
 SPIN_ALWAYS = "do one step of the loop in a timer's callback, and call rclpy.spin(node)"
 """The cure of a program whose loop spins too rarely, or never."""
 
+SPIN_ONCE = "add all nodes to one executor by add_node(), and spin that, once"
+"""The cure of a program that spins one node after another."""
+
 
 def who(entity: EntityId, timeline: Timeline) -> str:
     """Return the name of a callback; for a client, the reply that it waits for."""

@@ -73,6 +73,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("result_of_helper", "program-raised", "response.message", "use the result in a done-callback"),
         ("call_before_spin", "node-never-spins", "self.client.call(", "use call_async() there"),
         ("two_spins", "node-never-spins", "rclpy.spin(listener)", "add all nodes to one executor"),
+        (
+            "two_spins_of_new_nodes",
+            "spin-not-reached",
+            "rclpy.spin(Listener())",
+            "add all nodes to one executor",
+        ),
         ("two_executors", "node-never-spins", "viewer_executor.spin()", "add all nodes to one executor"),
         ("hides_a_name", "program-raised", "def handle(self, message):", "hides Node.handle"),
         ("input_in_timer", "program-raised", "input(", "read in another thread"),

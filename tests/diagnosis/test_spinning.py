@@ -332,3 +332,16 @@ def test_a_program_that_waits_for_a_service_before_it_spins_is_told_of_the_one_t
 def test_a_program_that_spins_as_it_should_records_no_position(tmp_path: Path) -> None:
     run = run_program(tmp_path, program("pass"))
     assert not [each for each in run.events if isinstance(each, ProgramAt)]
+
+
+@pytest.mark.parametrize("last_words", ["rclpy.shutdown()", "raise ValueError"])
+def test_a_spin_that_came_back_is_not_said_to_keep_the_next_from_being_reached(
+    last_words: str, tmp_path: Path
+) -> None:
+    text = (Path(__file__).parent / "beginners" / "two_spins_of_new_nodes.py").read_text()
+    text = text.replace(
+        "create_timer(0.5, lambda: self.pub", "create_timer(1.5, self.stop); (lambda: self.pub"
+    )
+    text = text.replace("class Listener", f"    def stop(self):\n        {last_words}\n\n\nclass Listener")
+    found = diagnose(run_program(tmp_path, text, 3.0).timeline)
+    assert "spin-not-reached" not in {each.rule.id for each in found}

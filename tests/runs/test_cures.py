@@ -77,6 +77,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("spin_in_function", [AWAIT.format("tick")]),
         ("spin_in_method", [AWAIT.format("plan")]),
         ("two_spins", ["spin all nodes by one executor (diff)"]),
+        ("two_spins_of_new_nodes", ["spin all nodes by one executor (diff)"]),
         ("two_executors", ["spin all nodes by one executor (diff)"]),
         ("spin_once", ["return from go, and go on where what it waits for is set (diff)"]),
         ("wait_for_event", [APART.replace("tick", "go")]),

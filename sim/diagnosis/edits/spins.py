@@ -1,21 +1,53 @@
 """Calls of ``spin()`` one after another, of which one is reached, and the edit that makes them one."""
 
 import ast
+from collections.abc import Collection
 from functools import lru_cache
 from pathlib import Path
 
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
 from sim.files.untrusted import program_text
 
+_ENTITIES = ("create_timer", "create_subscription", "create_service", "create_client")
 
-@lru_cache(maxsize=64)
+
 def spins_in_turn(file: str) -> tuple[int, ...]:
     """Return the lines of ``spin()`` in turn, if a file has such in one place only, else ()."""
+    return tuple(each.lineno for each in _read(program_text(Path(file)) or "")[1])
+
+
+def never_made(file: str, made: Collection[int]) -> list[str]:
+    """Return the classes of nodes that only a ``spin(Name())`` after another makes, and that made no entity.
+
+    ``made`` are the lines of the file at which entities were made; if it has no such lines, it has been
+    changed since, and nothing is known.
+    """
+    source, spins = _read(program_text(Path(file)) or "")
+    nodes = [argument for spin in spins[1:] for argument in getattr(spin.value, "args", ())]
+    names = {ast.unparse(each.func) for each in nodes if isinstance(each, ast.Call)}
+    if not names or not all(_makes(source, source.tree, [line]) for line in made):
+        return []
+    classes = [each for each in source.nodes(ast.ClassDef) if each.name in names]
+    return [each.name for each in classes if _makes(source, each) and not _makes(source, each, made)]
+
+
+def _makes(source: SourceEditor, part: ast.AST, lines: Collection[int] | None = None) -> bool:
+    """Return whether a part of a source makes an entity, at one of the lines if some are given."""
+    calls = source.nodes(ast.Call, part)
+    makers = [each for each in calls if ast.unparse(each.func).rpartition(".")[2] in _ENTITIES]
+    at = {line for each in makers for line in range(each.lineno, (each.end_lineno or 0) + 1)}
+    return bool(at if lines is None else at.intersection(lines))
+
+
+@lru_cache(maxsize=16)
+def _read(text: str) -> tuple[SourceEditor, list[ast.Expr]]:
+    """Return a source and its only statements that spin in turn."""
     try:
-        (spins,) = _spins_in_turn(SourceEditor(program_text(Path(file)) or ""))
+        source = SourceEditor(text)
+        (spins,) = _spins_in_turn(source)
     except (NotSimpleError, ValueError):
-        return ()
-    return tuple(each.lineno for each in spins)
+        return SourceEditor(""), []
+    return source, spins
 
 
 def spin_together(source: SourceEditor, line: int) -> None:

@@ -9,7 +9,7 @@ from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
 from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.parameters import ParameterOverruled
 from sim.diagnosis.rules.services import NobodyOffers, ServiceNeverComes, UnreturnedResponse
-from sim.diagnosis.rules.spinning import NestedSpin, SpinInConstructor
+from sim.diagnosis.rules.spinning import NestedSpin, SpinInConstructor, SpinNotReached
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
 from sim.diagnosis.rules.timing import OverlappingCallback, OverrunTimer
 from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NodeNeverSpins, NoFreeWorker
@@ -19,6 +19,7 @@ RULES: tuple[Rule, ...] = (
     NeedsOneMoreWorker(),
     NestedSpin(),
     SpinInConstructor(),
+    SpinNotReached(),
     StillComputing(),
     EndlessWait(),
     WaitsForLock(),

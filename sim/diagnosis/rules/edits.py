@@ -12,6 +12,7 @@ from sim.diagnosis.edits.polling import (
     step_by_step,
 )
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
+from sim.diagnosis.edits.spins import spin_together, spins_in_turn
 from sim.diagnosis.rule import CodeLocation, by_edit, made_at
 from sim.diagnosis.words import must_answer, threads_for, who
 from sim.trace.events import EntityId, EntityKind
@@ -84,3 +85,10 @@ def _returning(place: CodeLocation | None, entity: EntityId, timeline: Timeline)
         *by_edit(place, f"return from {subject}, and go on where what it waits for is set", go_on_where_set),
         *by_edit(place, f"return from {subject}, and look again at its next call", look_again),
     )
+
+
+def not_reached(file: str) -> tuple[str, CodeLocation, tuple[Remedy, ...]]:
+    """Tell of a file's ``spin()`` in turn: what is wrong, the second one, and the edit."""
+    first, second = (CodeLocation(file, line, line) for line in spins_in_turn(file)[:2])
+    what = f"the spin() of line {first.first_line} does not return, so that no later one is reached"
+    return what, second, by_edit(first, "spin all nodes by one executor", spin_together)

@@ -1,14 +1,26 @@
 """Rules on spinning in the wrong place: inside a callback, and inside a node's constructor."""
 
+from collections import defaultdict
 from collections.abc import Iterator
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.polling import leave_out
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, line_location
-from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning
+from sim.diagnosis.edits.spins import never_made
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, is_models, line_location
+from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning, not_reached
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES
-from sim.diagnosis.words import awaiting, group_of, listed, must_answer, often, threads_for, who, with_threads
+from sim.diagnosis.words import (
+    SPIN_ONCE,
+    awaiting,
+    group_of,
+    listed,
+    must_answer,
+    often,
+    threads_for,
+    who,
+    with_threads,
+)
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import Doing, EntityKind, GroupKind, SpinClashed
 from sim.trace.model import Nanoseconds, Position, Window
@@ -110,13 +122,42 @@ class SpinInConstructor(Rule):
         place, spin = CodeLocation(file, line, line), found.detail.rpartition(".")[2]
         return Explanation(
             f"__init__ calls {spin}(), which does not come back: what follows line {line} never runs",
-            f"{spin}() runs callbacks until the program ends; what is made after it never exists",
+            _NEVER.format(spin),
             f"leave {spin}() out of __init__, and call rclpy.spin(node) in main() once the node is made",
             place,
             remedies=by_edit(place, f"leave {spin}() out of __init__", leave_out),
         )
 
 
+class SpinNotReached(Rule):
+    """A node is made only for a second ``spin()``, which is not reached: the first one does not return."""
+
+    id = "spin-not-reached"
+    summary = "a second spin() is not reached, nor the node that is made for it"
+    threshold: Nanoseconds = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each class of nodes of which no entity was made, while the program spins."""
+        timeline = view.timeline
+        if view.end < self.threshold or not timeline.executors or timeline.program_at(view.end) is not None:
+            return
+        ended = timeline.ended
+        if timeline.processes_ended or (ended and ended.failed and not ended.time_was_up):
+            return  # spin() has raised, or what came after it has
+        made: defaultdict[str, set[int]] = defaultdict(set)
+        for file, line in (each.made_at for each in timeline.entities.values() if not is_models(each)):
+            made[file].add(line)
+        for file, lines in made.items():
+            for name in never_made(file, lines):
+                yield Finding(self, self.threshold, view.end, about=name, detail=file)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        what, place, remedies = not_reached(found.detail)
+        made = f"no {found.about} is ever made: {what}"
+        return Explanation(made, _NEVER.format("spin"), SPIN_ONCE, place, remedies=remedies)
+
+
+_NEVER = "{0}() runs callbacks until the program ends; what is made after it never exists"
 _SPIN = "spin"
 """A part of the names of all functions that spin."""
 

@@ -5,20 +5,20 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
-from sim.diagnosis.edits.spins import spin_together, spins_in_turn
+from sim.diagnosis.edits.spins import spins_in_turn
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
     Finding,
     Rule,
     Weight,
-    by_edit,
     line_of,
     loop_beside_spin,
     place_of,
 )
+from sim.diagnosis.rules.edits import not_reached
 from sim.diagnosis.timeline_view import LongWait, TimelineView
-from sim.diagnosis.words import SPIN_ALWAYS, group_of, listed, often, only_thread, threads_for, who
+from sim.diagnosis.words import SPIN_ALWAYS, SPIN_ONCE, group_of, listed, often, only_thread, threads_for, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
@@ -210,10 +210,8 @@ class NodeNeverSpins(Rule):
         elif ever:
             cure = "keep spinning the node: spin() has returned, or its executor was shut down"
         if place and spins:
-            first, place = (CodeLocation(place.file, each, each) for each in spins[:2])
-            what = f"the spin() of line {first.first_line} does not return, so that no later one is reached"
-            cure = "add all nodes to one executor by add_node(), and spin that, once"
-            remedies = by_edit(first, "spin all nodes by one executor", spin_together)
+            cure = SPIN_ONCE
+            what, place, remedies = not_reached(place.file)
         loop = loop_beside_spin(found.until, timeline)
         if at is not None and not ever:
             place = CodeLocation(*at.place, at.place[1])

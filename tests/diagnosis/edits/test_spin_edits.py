@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.diagnosis.edits.spins import spin_together, spins_in_turn
+from sim.diagnosis.edits.spins import never_made, spin_together, spins_in_turn
 from tests.diagnosis.edits.edited_source import changed
 
 
@@ -50,3 +50,50 @@ def test_spins_in_turn_are_those_of_one_body(text: str, lines: tuple[int, ...], 
 def test_a_spin_of_a_node_and_one_of_an_executor_stay() -> None:
     text = "import rclpy\none = SingleThreadedExecutor()\nrclpy.spin(a)  # here\none.spin()\n"
     assert changed(text, spin_together) is None
+
+
+NODES = """
+class Talker(Node):
+    def __init__(self):
+        self.create_timer(1.0, self.tick)
+
+class Listener(Node):
+    def __init__(self):
+        self.create_subscription(
+            String, "chatter", self.hear, 10
+        )
+
+class Empty(Node):
+    pass
+
+rclpy.spin(Talker())
+rclpy.spin(Listener())
+rclpy.spin(Empty())
+"""
+
+
+@pytest.mark.parametrize(
+    ("made", "found"),
+    [({4}, ["Listener"]), ({4, 9}, []), ({4, 3}, [])],
+    ids=["not made", "made", "another text ran"],
+)
+def test_a_node_that_a_later_spin_makes_was_made_if_its_entities_were(
+    made: set[int], found: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(NODES)
+    assert never_made(str(path), made) == found
+
+
+def test_a_node_that_is_made_before_the_first_spin_is_not_missing(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(NODES.replace("rclpy.spin(Listener())", "rclpy.spin(listener)"))
+    assert never_made(str(path), {4}) == []
+
+
+def test_a_file_that_has_been_changed_is_read_again(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text("rclpy.spin(a)\nrclpy.spin(b)\n")
+    assert spins_in_turn(str(path)) == (1, 2)
+    path.write_text("executor.spin()\n")
+    assert spins_in_turn(str(path)) == ()
