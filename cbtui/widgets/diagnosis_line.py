@@ -25,7 +25,7 @@ _INDENT = 3
 _GAP = 2
 """Columns between the sentence and the text at the right."""
 _LEAST_AFTER_NAME = 17
-"""Columns after the first word of a note, to which it may be cut: as ``reply for 3.2 s:``."""
+"""Columns after the name in a note on a reply, to which it may be cut."""
 _MOST = 4
 """The most lines of a sentence."""
 _SIGNS = {DiagnosisLevel.FINE: "✓", DiagnosisLevel.WAITS: "·", DiagnosisLevel.TROUBLE: "!"}
@@ -135,6 +135,12 @@ def _texts(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def _fitting(note: str, room: int) -> str:
-    """The note and a blank, cut to the remaining room; "" if that is too small."""
+    """The note and a blank, cut to the remaining room; "" if that is too small.
+
+    Of a call without a reply the number of others gives way, then the service's name, each as a whole.
+    """
+    if not note.startswith("/"):
+        ways = (note, note.partition(" and ")[0], note.partition(": ")[0])
+        return next((f"{way} " for way in ways if 0 < len(way) < room), "")
     whole, least = len(note) + 1, len(note.partition(" ")[0]) + _LEAST_AFTER_NAME
-    return fit(f"{note} ", min(whole, room), Charset.BRAILLE) if note and room >= min(whole, least) else ""
+    return fit(f"{note} ", min(whole, room), Charset.BRAILLE) if room >= min(whole, least) else ""

@@ -232,7 +232,8 @@ def test_the_line_is_as_wide_as_the_screen(width: int, note: str, problems: str)
 @pytest.mark.parametrize(
     ("note", "shown"),
     [
-        ("no reply for 3.2 s: /dummy_server_srv", "no reply for 3.2 s:…"),
+        ("no reply for 3.2 s: /dummy_server_srv", "no reply for 3.2 s"),
+        ("no reply for 12.8 s: /dummy_server_srv", "no reply for 12.8 s"),
         ("/dummy_server_srv replied success=True", ""),
     ],
 )

@@ -53,7 +53,7 @@ def headlines(scene: FactoryScene) -> tuple[Headline, ...]:
         return (Headline(counts),)
     trouble, brief = _trouble(scene), _trouble(scene, is_brief=True)
     if not trouble:
-        return Headline(f"{counts}, no callback waits for another"), Headline(counts)
+        return Headline(f"{counts}, {_calm(scene)}"), Headline(counts)
     idle = [f"{trouble}, {counted(scene.idle, 'worker')} idle"] if scene.idle else []
     return (*(Headline(counts, each) for each in (*idle, trouble, brief)), Headline(counts))
 
@@ -88,6 +88,17 @@ def _trouble(scene: FactoryScene, *, is_brief: bool = False) -> str:
         for reason, what in objects.items()
         if (number := waits[reason])
     )
+
+
+def _calm(scene: FactoryScene) -> str:
+    """Say what the belts and seats still tell of while no callback waits for another one."""
+    blocked = sum(worker.blocked is not None for worker in scene.workers)
+    if blocked:
+        return f"{counted(blocked, 'worker')} blocked in a call"
+    if own := sum(1 for _ in scene.every_wait()):
+        verb = "waits for its own last call" if own == 1 else "wait for their own last calls"
+        return f"{counted(own, 'callback')} {verb}"
+    return "no callback waits for another"
 
 
 def wait_texts(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, ...]:

@@ -78,7 +78,7 @@ def test_one_seat_fits_a_narrow_pane() -> None:
 def test_four_workers_go_round_three_areas() -> None:
     assert factory(SPLIT, 9.412, 64, 12, Charset.ASCII) == drawn(
         """
-        | 4 workers, 3 areas, no callback waits for another              |
+        | 4 workers, 3 areas, 1 callback waits for its own last call     |
         |                                += A one seat ============+     |
         | timer every 500 ms ----------*X|[@ timer_callback] 5.4 s |     |
         |      late 4.9 s: last call runs|   Pool-0_0              |     |
@@ -97,7 +97,7 @@ def test_four_workers_go_round_three_areas() -> None:
 def test_three_areas_fit_nine_rows() -> None:
     assert factory(SPLIT, 9.412, 78, 9) == drawn(
         """
-        | 4 workers, 3 areas, no callback waits for another                            |
+        | 4 workers, 3 areas, 1 callback waits for its own last call                   |
         |                                            ┏━ A ██ one seat ━━━━━━━━━━━┓     |
         | timer ◷ 500 ms 4.9 s: last call runs ────◆✗┃▐☻ timer_callback▌ 5.4 s   ┃     |
         |                                            ┣━ B ·· one seat ━━━━━━━━━━━┫     |
@@ -130,7 +130,7 @@ def test_three_areas_fit_a_narrow_pane() -> None:
 def test_a_wide_pane_has_large_figures_and_a_yard() -> None:
     assert factory(SPLIT, 9.412, 104, 20) == drawn(
         r"""
-    | 4 workers, 3 areas, no callback waits for another                                                      |
+    | 4 workers, 3 areas, 1 callback waits for its own last call                                             |
     | belts                                  areas                               workers                     |
     |                                      ┏━ A ██ one seat ━━━━━━━━━━━━━┓                                   |
     | timer ◷ 500 ms ────────────────────◆✗┃    ☻                        ┃                                   |
@@ -316,6 +316,21 @@ def test_a_worker_in_a_call_is_blocked_in_its_seat() -> None:
         | · Pool-0_0 works in A  ☺ worker 2 never needed                               |
         """
     )
+
+
+def test_a_blocked_call_is_not_told_as_nothing_that_waits() -> None:
+    """The belt below it says that the timer's last call still runs."""
+    run = Run("calls")
+    worker = run.thread("ThreadPoolExecutor-0_0")
+    run.executor("MultiThreadedExecutor", 2)
+    timer = run.timer(run.exclusive(run.node("/node")), "ask", 1.0)
+    run.callback(timer, worker, 1.0)
+    run.blocked(run.call("/clamp", 1.2, None, entity=timer), "/clamp", worker, timer, 1.2)
+    run.wait(timer, 2.0, None, holder=timer)
+    run.stop(9.0)
+    picture = factory(told(run), 3.0, 78, 9)
+    assert picture.splitlines()[0].strip("| ") == "2 workers, 1 seat, 1 worker blocked in a call"
+    assert "last call" in picture
 
 
 def test_the_most_telling_areas_come_first_in_a_short_pane() -> None:
