@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import groupby
 from operator import itemgetter
-from typing import TypeAlias
+from typing import ClassVar, TypeAlias
 
+from textual.binding import BindingType
 from textual.content import Content
 from textual.geometry import Offset
-from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
 from cbtui.learning.stage import Stage, next_lesson
@@ -16,6 +16,7 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, time_ago
 from cbtui.text.cells import fit, visible
 from cbtui.widgets.jump import JumpTarget
+from cbtui.widgets.pageable_option_list import PageableOptionList
 from lessons.lesson import Lesson
 from lessons.puzzles import Puzzle
 
@@ -30,8 +31,15 @@ _OVERHANG = 3
 """Columns of the narrow list after a title."""
 
 
-class MenuList(OptionList, inherit_bindings=False):
-    """The list of lessons and files; the screen's keys move its highlight."""
+class MenuList(PageableOptionList, inherit_bindings=False):
+    """The list of lessons and files; the screen's keys move its highlight, but for those of far moves."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [
+        ("home", "first"),
+        ("end", "last"),
+        ("pageup", "page_up"),
+        ("pagedown", "page_down"),
+    ]
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id, markup=False)

@@ -49,6 +49,20 @@ def high_enough(size: tuple[int, int]) -> tuple[int, int]:
     return size[0], max(size[1], 2 * len(lessons()))
 
 
+async def test_far_keys_go_to_the_first_and_the_last_lesson_and_by_pages() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        chosen = app.screen.query_one(MenuList)
+        await pilot.press("end")
+        assert chosen.chosen == lessons()[-1]
+        await pilot.press("pageup")
+        assert chosen.chosen not in (lessons()[0], lessons()[-1])
+        await pilot.press("home")
+        assert chosen.chosen == lessons()[0]
+        await pilot.press("pagedown")
+        assert chosen.chosen not in (lessons()[0], lessons()[-1])
+
+
 @pytest.mark.parametrize("size", first_daily(WIDE, TALL))
 async def test_the_menu_shows_every_lesson_under_its_unit(size: tuple[int, int]) -> None:
     app = menu()
