@@ -99,6 +99,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
             ),
             lesson=lambda: self.console.open_lesson(lesson, Changes(real=real)),
         )
+        self._keys.first = self._first_keys
         runs.begin(speed=None)
 
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
@@ -107,6 +108,13 @@ class ExerciseScreen(RunScreen[LiveRun]):
         self._judging.begin(setup)
         self.query(PassedBanner).set(display=False)
         return LiveRun(setup, self._open_session, deliver, ended)
+
+    def _first_keys(self) -> Sequence[str]:
+        """Return the labels of what leads on; to run again takes no key, as saving the file does it."""
+        if self._sheet.status is CheckStatus.PASSED:
+            return ("next",)
+        on_checks = ("check", "go there", "watch", "hint", "lesson")
+        return ("editor", *(on_checks if isinstance(self.focused, ChecksView) else ()))
 
     # what is shown
 

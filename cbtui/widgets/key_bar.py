@@ -42,7 +42,7 @@ class KeyBarEntry:
 class KeyBar(PaintedWidget):
     """Shows the keys of a scope; a click performs the action. Call ``changed`` when others are available.
 
-    ``first`` are labels of actions that come first; ``offered`` those shown, if the screen sets them.
+    ``first`` are labels of actions that come first, in that order; ``offered`` is what is shown, if it is set.
     """
 
     first: Sequence[str] = ()
@@ -61,7 +61,8 @@ class KeyBar(PaintedWidget):
     def working(self) -> list[KeyAction]:
         """Return the available actions with the keys in force."""
         working = [action for action in actions_of(self._scope) if action.label and self._works(action)]
-        working.sort(key=lambda action: action.label not in self.first)
+        places = {label: place for place, label in enumerate(self.first)}
+        working.sort(key=lambda action: places.get(action.label, len(places)))
         return keymap_of(self.app).of(working)
 
     def say(self, words: str) -> None:

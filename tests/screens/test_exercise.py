@@ -202,7 +202,14 @@ async def test_a_file_that_passes_is_noted_and_the_next_lesson_named() -> None:
 async def test_a_narrow_screen_has_room_for_the_keys_that_help_with_a_file_that_fails() -> None:
     async with console(failing()) as (app, _, _pilot):
         keys = lines_of(app)[-1]
-        assert all(key in keys for key in ("go there", "w watch", "h hint", "e lesson"))
+        assert all(key in keys for key in ("o editor", "go there", "w watch", "h hint", "e lesson"))
+
+
+@pytest.mark.slow
+async def test_the_key_bar_begins_with_what_the_exercise_needs_next() -> None:
+    for events, first in ((failing(), ["o", "editor"]), (passing(), ["n", "next"])):
+        async with console(events) as (app, _, _pilot):
+            assert lines_of(app)[-1].split()[:2] == first
 
 
 @pytest.mark.slow

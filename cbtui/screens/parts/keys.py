@@ -1,6 +1,6 @@
 """The keys that a run's screen offers, by the state of its parts and the focus; and why others do nothing."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,7 +20,7 @@ from cbtui.widgets.log import LogFilter, LogLines
 from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellOutput
 from lessons.lesson import Lesson
 
-_ON_LANES = ("zoom", "pan", "select", "lane", "event", "code", "copy", "leave")
+_ON_LANES = ("zoom", "pan", "select", "code", "lane", "event", "leave", "copy")
 """Labels of the actions that the lanes' frame shows."""
 
 _ON_SHELL = ("ros2", "type")
@@ -56,11 +56,15 @@ _SCOPES: Mapping[type[Widget], Scope] = {
 
 @dataclass
 class OfferedKeys:
-    """Tells which actions are available, and shows their keys."""
+    """Tells which actions are available, and shows their keys.
+
+    They stand in the registry's order, a pane's before the screen's, and the labels ``first`` before all.
+    """
 
     screen: SizedScreen[Any]
     parts: ScreenParts
     charset: Charset
+    first: Callable[[], Sequence[str]] = tuple
 
     def offer(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Tell whether an action is available now."""
@@ -79,7 +83,7 @@ class OfferedKeys:
         # In the grid the lanes have a frame, which shows their keys.
         framed = self.screen.layout_now is Layout.GRID
         on_lanes = (*_ON_LANES, "enlarge") if lanes.has_focus and not framed else ()
-        bar.first = _ON_SHELL if isinstance(self.screen.focused, ShellOutput) else on_lanes
+        bar.first = _ON_SHELL if isinstance(self.screen.focused, ShellOutput) else on_lanes or self.first()
         bar.offered = tuple(bar.working())
         of_screen = (action for action in bar.offered if action.scope is Scope.LESSON)
         lanes.hint = hint([action for action in of_screen if action.label in _ON_LANES], self.charset)
