@@ -155,6 +155,8 @@ class ExerciseScreen(RunScreen[LiveRun]):
             return super().diagnosis()
         sheet, has_failed = self._sheet, self._sheet.status is CheckStatus.FAILED
         if has_failed and not sheet.note:
+            if self.query_one(ChecksView).display:
+                return Diagnosis("no check was judged: the checks pane says why", DiagnosisLevel.TROUBLE)
             return Diagnosis(sheet.news, DiagnosisLevel.TROUBLE, stays=True)
         # A problem of the run takes the place of a diagnosis that is fine.
         alone = not any(each.is_problem for each in self.runs.findings.findings)

@@ -351,4 +351,7 @@ async def test_an_engine_that_is_lost_is_told_of_in_a_sentence() -> None:
         engines.latest.end("the engine ended with exit code 3")
         await until(pilot, lambda: is_judged(app.exercise))
         await settle(pilot)
-        assert f"{FILE} ended its whole process at 0.000 s" in text_of(app)
+        assert text_of(app).count(f"{FILE} ended its whole process at 0.000 s") == 1
+        await pilot.press("2")
+        await settle(pilot)
+        assert text_of(app).count(f"{FILE} ended its whole process at 0.000 s") == 1
