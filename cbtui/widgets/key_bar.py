@@ -42,7 +42,7 @@ class KeyBarEntry:
 class KeyBar(PaintedWidget):
     """Shows the keys of a scope; a click performs the action. Call ``changed`` when others are available.
 
-    ``first`` are labels of actions that come first, in that order; ``offered`` is what is shown, if it is set.
+    ``first`` are labels of actions that come first, in that order; ``offered`` those shown, if they are set.
     """
 
     first: Sequence[str] = ()
