@@ -40,6 +40,7 @@ class PageKeys:
     hint: str
     solution: str
     exercise: str
+    call_service: str
 
 
 @dataclass(frozen=True)
@@ -47,12 +48,13 @@ class PageState:
     """The state that a page depends on.
 
     ``outcome`` is the result of the lesson's run, None while unknown; ``is_running`` tells that the run is
-    in progress.
+    in progress. ``was_called`` tells whether the run on screen has the call that the explanation is about.
     """
 
     progress: LessonProgress
     outcome: PredictionOutcome | None = None
     is_running: bool = False
+    was_called: bool = True
 
 
 def introduction(guide: str) -> str:
@@ -107,7 +109,11 @@ def _parts(lesson: Lesson, state: PageState, signs: PageKeys) -> Iterator[tuple[
         return
     if lesson.predictions:
         yield PageSection.SHOWN, _shown(lesson, state, signs)
-    yield PageSection.EXPLANATION, "\n".join((re.sub(r"^# ", "## ", lesson.explanation), why))
+    title, told = re.sub(r"^# ", "## ", lesson.explanation).split("\n", 1)
+    if not state.was_called:
+        note = f"Not yet: nobody has called `{lesson.service.name}` in this run. `{signs.call_service}` does."
+        title = f"{title}\n\n**{note}**"
+    yield PageSection.EXPLANATION, "\n".join((title, told, why))
     if lesson.exercise is not None:
         yield PageSection.EXERCISE, _exercise(lesson.exercise, progress, signs)
         yield PageSection.HINTS, _hints(lesson.exercise, progress, signs)

@@ -18,7 +18,7 @@ from lessons.catalogue import find, lessons
 from lessons.lesson import Lesson
 from lessons.progress import LessonProgress
 
-SIGNS = PageKeys("P", "a", "h", "H", "e")
+SIGNS = PageKeys("P", "a", "h", "H", "e", "s")
 EVERY = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
 
 

@@ -17,7 +17,7 @@ from cbtui.widgets.guide import Guide
 from lessons.lesson import Lesson
 from lessons.progress import LessonProgress, Progress
 
-_NAMED = ("predict", "explain", "hint", "solution", "exercise")
+_NAMED = ("predict", "explain", "hint", "solution", "exercise", "call_service")
 """Actions whose keys the page names."""
 
 
@@ -39,6 +39,8 @@ class Learning:
     """The state of the page; None until it is shown first."""
     outcome_pending: bool = False
     """Whether the run that shows the true answers is in progress."""
+    was_called: bool = True
+    """Whether the run on screen has the call that the explanation is about."""
 
     @property
     def store(self) -> Progress:
@@ -68,7 +70,7 @@ class Learning:
     def update_state(self, outcome: PredictionOutcome | None = None) -> None:
         """Update the state of the page; a known outcome is kept until the next run for one."""
         known = None if self.state is None or self.outcome_pending else self.state.outcome
-        self.state = PageState(self.progress, outcome or known, self.outcome_pending)
+        self.state = PageState(self.progress, outcome or known, self.outcome_pending, self.was_called)
         self.host.redraw()
 
     async def update_page(self, outcome: PredictionOutcome | None = None) -> None:

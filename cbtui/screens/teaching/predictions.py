@@ -78,7 +78,12 @@ class Predictions(ScreenPart):
     def check_whether_watched(self) -> None:
         """Unlock the explanation once enough of the run was watched."""
         learning = self.learning
-        if learning.state is None or learning.state.progress.seen or not self._was_watched():
+        if learning.state is None:
+            return
+        if learning.was_called != self._was_called():
+            learning.was_called = not learning.was_called
+            self.screen.run_worker(learning.update_page(), group="page")
+        if learning.state.progress.seen or not self._was_watched():
             return
         learning.store.see(self.learning.lesson.id)
         self._find_out()
@@ -91,12 +96,14 @@ class Predictions(ScreenPart):
     def _was_watched(self) -> bool:
         """Whether enough of the run was watched to judge the predictions."""
         timeline, lesson = self.runs.timeline, self.learning.lesson
-        terms = lesson.run
         if timeline.ended is not None:
             return not timeline.ended.failed or "program-raised" in lesson.diagnoses.node
-        if timeline.end < terms.seconds * _SECOND:
-            return False
-        return not terms.calls or any(call.service == lesson.service.name for call in timeline.calls)
+        return timeline.end >= lesson.run.seconds * _SECOND and self._was_called()
+
+    def _was_called(self) -> bool:
+        """Whether the lesson's service was called, if its run is about that."""
+        lesson, calls = self.learning.lesson, self.runs.timeline.calls
+        return not lesson.run.calls or any(call.service == lesson.service.name for call in calls)
 
     async def action_explain(self) -> None:
         """Show the true answers and their reasons; open questions are asked first."""

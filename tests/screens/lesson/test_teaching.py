@@ -23,7 +23,7 @@ from cbtui.widgets.guide import Guide
 from lessons.catalogue import find, is_built_in, lessons
 from lessons.progress import LessonProgress, Progress
 from sim.engine.setup import RunSetup
-from sim.trace.events import RunEnded
+from sim.trace.events import RunEnded, ServiceCalled
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
 from tests.support.console import NARROW, observed, settle
@@ -272,6 +272,16 @@ async def test_a_key_holds_the_prediction_against_a_run_and_explains() -> None:
         assert "What you saw" in app.page
         assert "Four workers" in app.page
         assert app.kept().seen
+
+
+@pytest.mark.slow
+async def test_an_explanation_says_while_its_call_was_not_made() -> None:
+    async with console(3.0, "rate-sleep-in-a-callback") as (app, pilot):
+        await press(pilot, "escape", "a", "escape")
+        await until_shown(pilot, app, "Not yet: nobody has called `/walk_round` in this run. `s` does.")
+        app.engines.latest._deliver([ServiceCalled(ns(3.1), 1, "/walk_round", 0, "")])
+        await until(pilot, lambda: "Not yet" not in app.page)
+        assert "What you saw" in app.page
 
 
 @pytest.mark.slow
