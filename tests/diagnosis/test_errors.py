@@ -44,7 +44,7 @@ def test_an_exception_that_no_later_callback_brings_out_is_swallowed() -> None:
     run = raising(2, ticks_on=False)
     assert run.problems() == {("exception-swallowed", "fails")}
     told = run.explained("exception-swallowed")
-    assert told.what == "fails raised ValueError: no scan, and spin() has not raised it"
+    assert told.what == "fails raised what spin() has not raised: ValueError: no scan"
 
 
 def test_an_exception_that_comes_when_the_program_ends_is_told_with_what_main_should_wait_for() -> None:

@@ -167,7 +167,7 @@ class ExceptionSwallowed(Rule):
             why += "; here none came, for spin() had returned or was about to"
             cure += f"; let main() wait for {subject} before it shuts down what that uses"
         return Explanation(
-            f"{subject} raised {found.detail}, and spin() has not raised it{often(found.count)}",
+            f"{subject} raised what spin() has not raised: {found.detail}{often(found.count)}",
             why,
             cure,
             place_of(found.subject, timeline),

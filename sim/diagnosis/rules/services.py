@@ -56,14 +56,14 @@ class UnreturnedResponse(Rule):
         place = place_of(found.subject, timeline)
         remedies: tuple[Remedy, ...] = ()
         if found.detail:
-            what = f"{subject} raised {found.detail}"
+            what, error = f"{subject} raised", f": {found.detail}"
             cure = f"fix what raises, or catch it in {subject} and return a response that says so"
         else:
-            what = f"{subject} returned no response"
+            what, error = f"{subject} returned no response", ""
             cure = f"end {subject} with: return response"
             remedies = by_edit(place, cure, return_response)
         return Explanation(
-            f"{what}, so the caller of {service} waits for ever{often(found.count)}",
+            f"{what}, so the caller of {service} waits for ever{error}{often(found.count)}",
             "only what a service's callback returns is sent to the caller",
             cure,
             place,
