@@ -98,10 +98,14 @@ def diagnose(timeline: Timeline) -> tuple[Finding, ...]:
 
 
 def _merge(into: dict[_FindingKey, Finding], found: Finding) -> None:
-    """Add an occurrence: the worst one gives the times; of equal ones, the earliest."""
+    """Add an occurrence: the worst one gives the times, of equal ones the earliest.
+
+    A rule may date all by the first one.
+    """
     known = into.get(found.key)
     if known is None:
         into[found.key] = found
         return
     worst = found if (found.size, -found.at) > (known.size, -known.at) else known
-    into[found.key] = replace(worst, count=known.count + found.count)
+    at = min(known.at, found.at) if found.rule.dated_by_first else worst.at
+    into[found.key] = replace(worst, at=at, count=known.count + found.count)

@@ -117,6 +117,8 @@ class Rule(ABC):
     """Whether all effects of one culprit on others are one finding."""
     is_effect: ClassVar[bool] = False
     """Whether the rule finds effects of a callback that can never continue."""
+    dated_by_first: ClassVar[bool] = False
+    """Whether ``at`` is when the first occurrence began; ``until`` is the worst one's end all the same."""
 
     @abstractmethod
     def check(self, view: TimelineView) -> Iterator[Finding]:

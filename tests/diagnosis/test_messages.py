@@ -59,6 +59,12 @@ def test_lost_messages_are_counted_with_what_their_callback_waited_for() -> None
     assert told == "hear lost 20 messages while it waited (group A held by decide): its queue holds 10"
 
 
+def test_losses_are_dated_when_they_began_and_the_worst_second_is_told() -> None:
+    run = sensor_and_sleeper(5)
+    assert ns(3.4) < run.one("dropped-messages").at < ns(3.7)
+    assert run.explained("dropped-messages").why.endswith("; most in the second from 4 s on, 10")
+
+
 def test_messages_lost_during_several_calls_are_not_said_to_be_lost_in_one() -> None:
     def program(simulation: Simulation) -> None:
         node = Node("n")

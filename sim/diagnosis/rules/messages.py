@@ -38,6 +38,7 @@ class DroppedMessages(Rule):
     id = "dropped-messages"
     summary = "messages are lost because a callback does not take them in time"
     is_effect = True
+    dated_by_first = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield the losses of each second as one."""
@@ -57,7 +58,7 @@ class DroppedMessages(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         entity = entity_of(found, timeline)
         subject = who(found.subject, timeline)
-        waits = timeline.waits_of(entity.id, Window(found.at, found.at + 1))
+        waits = timeline.waits_of(entity.id, Window(found.until, found.until + 1))
         because = ""
         if waits:
             own = waits[-1].holder == entity.id
@@ -71,14 +72,15 @@ class DroppedMessages(Rule):
             room.words(timeline) or f"let {subject} return sooner",
             place_of(found.subject, timeline),
         )
-        loop = loop_beside_spin(found.at, timeline)
+        loop = loop_beside_spin(found.until, timeline)
         if loop is not None and waits and waits[-1].reason is Reason.NOBODY_SPINS:
             cure, place = SPIN_ALWAYS, loop
         messages = "1 message" if found.count == 1 else f"{found.count} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
+        worst = f"; most in the second from {found.until // SECOND} s on, {found.size}"
         return Explanation(
             f"{subject} lost {messages}{because}{holds}",
-            "what comes into a full queue pushes the oldest out",
+            f"what comes into a full queue pushes the oldest out{worst if found.size < found.count else ''}",
             f"{cure}; a longer queue only delays it",
             place,
             remedies=(room,),
