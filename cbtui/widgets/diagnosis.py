@@ -207,18 +207,22 @@ def _of_keyboard(asked: KeyboardAsked, keymap: Keymap, can_type: bool) -> str:
     return f"{asked.program} waits for input from the keyboard{way}"
 
 
-def call_note(timeline: Timeline, at: Nanoseconds) -> str:
-    """Return the state of the latest call from outside: without reply, or just answered; else ""."""
+def call_note(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
+    """Return texts on the latest call from outside, the fullest first: without reply, or just answered.
+
+    Of a call without a reply the number of others gives way first, then the service's name. Else ().
+    """
     lately = Window(at - _REPLY_STAYS - 1, at + 1)
     calls = [call for call in timeline.calls_within(lately) if call.caller == 0]
     pending = [call for call in calls if call.replied is None or call.replied > at]
     if pending:
-        more = f" and {len(pending) - 1} more" if len(pending) > 1 else ""
-        return f"no reply for {duration(at - pending[0].sent)}: {pending[0].service}{more}"
+        brief = f"no reply for {duration(at - pending[0].sent)}"
+        texts = (f"{brief}: {pending[0].service}", brief)
+        return (f"{texts[0]} and {len(pending) - 1} more", *texts) if len(pending) > 1 else texts
     latest = max(calls, key=lambda call: call.replied or 0, default=None)
     if latest is None or latest.replied is None or at - latest.replied > _REPLY_STAYS:
-        return ""
-    return f"{latest.service} replied {_response(latest)}"
+        return ()
+    return f"{latest.service} replied {_response(latest)}", f"{latest.service} replied"
 
 
 def _response(call: Call) -> str:

@@ -1,7 +1,6 @@
 """The diagnosis line at the bottom, with the number of problems."""
 
 from collections.abc import Iterator, Sequence
-from itertools import chain
 from re import finditer, search, sub
 from textwrap import wrap
 
@@ -24,18 +23,19 @@ _INKS = {
 _INDENT = 3
 _GAP = 2
 """Columns between the sentence and the text at the right."""
-_LEAST_AFTER_NAME = 17
-"""Columns after the name in a note on a reply, to which it may be cut."""
 _MOST = 4
 """The most lines of a sentence."""
 _SIGNS = {DiagnosisLevel.FINE: "✓", DiagnosisLevel.WAITS: "·", DiagnosisLevel.TROUBLE: "!"}
 
 
 class DiagnosisLine(PaintedWidget):
-    """Shows a diagnosis; at the right the state of the latest service call, and the number of problems."""
+    """Shows a diagnosis; at the right the state of the latest service call, and the number of problems.
+
+    ``note`` has the texts of the former, the fullest first.
+    """
 
     diagnosis: reactive[Diagnosis] = painted(Diagnosis("", DiagnosisLevel.FINE))
-    note: reactive[str] = painted("")
+    note: reactive[tuple[str, ...]] = painted(())
     problems: reactive[str] = painted("")
 
     class Clicked(Message):
@@ -67,7 +67,9 @@ class DiagnosisLine(PaintedWidget):
             self.styles.height = len(rows)
 
 
-def diagnosis_rows(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[list[TextRun]]:
+def diagnosis_rows(
+    diagnosis: Diagnosis, note: tuple[str, ...], problems: str, width: int
+) -> list[list[TextRun]]:
     """Return the lines, each in exactly ``width`` columns: several only for a diagnosis that stays."""
     taken = " " * (_GAP + len(problems) + 1 if problems else 0)
     room = max(20, width - _INDENT)
@@ -76,12 +78,12 @@ def diagnosis_rows(diagnosis: Diagnosis, note: str, problems: str, width: int) -
     if not diagnosis.stays or not others:
         return [diagnosis_row(diagnosis, note, problems, width)]
     ink = _INKS[diagnosis.level]
-    head = diagnosis_row(Diagnosis(first.strip(), diagnosis.level), "", problems, width)
+    head = diagnosis_row(Diagnosis(first.strip(), diagnosis.level), (), problems, width)
     kept = [TextRun(fit(" " * _INDENT + line, width, Charset.BRAILLE), ink) for line in others]
     return [head, *([run] for run in kept)]
 
 
-def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[TextRun]:
+def diagnosis_row(diagnosis: Diagnosis, note: tuple[str, ...], problems: str, width: int) -> list[TextRun]:
     """Return the line in exactly ``width`` columns; of the text at the right only the problems always fit.
 
     Where nothing is wrong, the note is worth more than the further clauses of the diagnosis.
@@ -99,11 +101,9 @@ def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) ->
         cut = f"line {place.first_line}: {cut}"
     fitting = [each for each in texts if len(each) <= room] or [sign + cut]
     beside = {each: room - len(each) - _INDENT for each in fitting}
-    # A reply is told whole; of a call without one only the service's name, its end, would be cut.
-    whole = (each for each in fitting if note.startswith("/") and beside[each] > len(note))
-    with_note = chain(whole, (each for each in fitting if _fitting(note, beside[each])))
+    with_note = (each for way in note for each in fitting if len(way) < beside[each])
     text = next(with_note, fitting[0]) if diagnosis.level is DiagnosisLevel.FINE else fitting[0]
-    shown_note = _fitting(note, room - len(text) - _INDENT)
+    shown_note = next((f"{way} " for way in note if len(way) < room - len(text) - _INDENT), "")
     runs = [
         TextRun(fit(text, room - len(shown_note), Charset.BRAILLE), ink),
         TextRun(shown_note + " " * gap, Ink(Role.FAINT)),
@@ -132,15 +132,3 @@ def _texts(diagnosis: Diagnosis) -> Iterator[str]:
     for text in brief:
         for end in reversed(list(finditer(r"[;.] ", text))):
             yield text[: end.start()]
-
-
-def _fitting(note: str, room: int) -> str:
-    """The note and a blank, cut to the remaining room; "" if that is too small.
-
-    Of a call without a reply the number of others gives way, then the service's name, each as a whole.
-    """
-    if not note.startswith("/"):
-        ways = (note, note.partition(" and ")[0], note.partition(": ")[0])
-        return next((f"{way} " for way in ways if 0 < len(way) < room), "")
-    whole, least = len(note) + 1, len(note.partition(" ")[0]) + _LEAST_AFTER_NAME
-    return fit(f"{note} ", min(whole, room), Charset.BRAILLE) if room >= min(whole, least) else ""

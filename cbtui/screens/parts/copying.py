@@ -52,9 +52,7 @@ def summary(
     label = executor_label(timeline)
     yield f"{subject.heading_of(timeline)}, t {timestamp(now)}" + (f", {label}" if label else "")
     yield diagnosis_at(timeline, now, concurrency).text
-    note = call_note(timeline, now)
-    if note:
-        yield note
+    yield from call_note(timeline, now)[:1]
     yield from (f"  {each}" for each in what_runs(timeline, now))
     for wait in timeline.moment(now).waiting.values():
         took = duration(max(0, now - wait.since))

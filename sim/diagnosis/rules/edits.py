@@ -90,5 +90,5 @@ def _returning(place: CodeLocation | None, entity: EntityId, timeline: Timeline)
 def not_reached(file: str) -> tuple[str, CodeLocation, tuple[Remedy, ...]]:
     """Tell of a file's ``spin()`` in turn: what is wrong, the second one, and the edit."""
     first, second = (CodeLocation(file, line, line) for line in spins_in_turn(file)[:2])
-    what = f"the spin() of line {first.first_line} does not return, so that no later one is reached"
+    what = f"the spin() of line {first.first_line} has not returned, so that no later one was reached"
     return what, second, by_edit(first, "spin all nodes by one executor", spin_together)

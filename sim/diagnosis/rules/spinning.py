@@ -153,7 +153,7 @@ class SpinNotReached(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         what, place, remedies = not_reached(found.detail)
-        made = f"no {found.about} is ever made: {what}"
+        made = f"no {found.about} has been made: {what}"
         return Explanation(made, _NEVER.format("spin"), SPIN_ONCE, place, remedies=remedies)
 
 

@@ -57,7 +57,7 @@ def test_of_several_calls_without_a_reply_the_lane_and_the_line_at_the_bottom_te
     run.stop(6.0)
     timeline = told(run)
     assert LatestCalls(timeline).summary("/x", ns(5.0)) == "no reply 3.0 s"
-    assert call_note(timeline, ns(5.0)) == "no reply for 3.0 s: /x and 1 more"
+    assert call_note(timeline, ns(5.0))[0] == "no reply for 3.0 s: /x and 1 more"
 
 
 def test_a_call_that_waits_for_a_lock_looks_unlike_one_that_sleeps() -> None:
