@@ -32,6 +32,9 @@ from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.executors import Executor
 
 HIDDEN_NODE_PREFIX = "_"
+_SERVED = ("subscriptions", "timers", "services", "clients", "guards", "waitables")
+"""The properties in which rclpy's executors look for what they serve."""
+_HIDES = "{0}.{1} hides the {1} of rclpy's nodes: real executors serve what it holds or fail; here all is served"
 
 
 _parameters = Delegated[ParameterStore]("_parameter_store")
@@ -105,6 +108,9 @@ class Node:
             self._logger_service = LoggingService(self)
         self._type_description_service = TypeDescriptionService(self)
         self._node_entities.overrides = self._callback_overrides()
+        for name in _SERVED:
+            if getattr(type(self), name) is not getattr(Node, name):
+                self._logger.warn(_HIDES.format(type(self).__name__, name))
 
     __module__ = "rclpy.node"  # printed in tracebacks and reprs
 

@@ -23,12 +23,13 @@ def parameter_event_publisher(node: Node) -> Publisher:
 def publish_change(publisher: Publisher, change: ParameterChange) -> None:
     """Publish a change; without a subscription nothing is sent, which keeps the trace short."""
     publisher.require_usable()
+    node = publisher.node
+    name = f"{node.get_namespace().rstrip('/')}/{node.get_name()}"  # as a program's class may override them
     if publisher.get_subscription_count() == 0:
         return
-    node = publisher.node
     event = rcl_interfaces.ParameterEvent(
         stamp=node.get_clock().now().to_msg(),
-        node=node.get_fully_qualified_name(),
+        node=name,
         new_parameters=[each.to_parameter_msg() for each in change.new],
         changed_parameters=[each.to_parameter_msg() for each in change.changed],
         deleted_parameters=[each.to_parameter_msg() for each in change.deleted],

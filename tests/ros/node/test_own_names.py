@@ -2,8 +2,11 @@
 
 from typing import Any
 
+import pytest
+
 import sim.ros.rclpy as rclpy
 from sim.ros.node.node import Node
+from sim.trace.events import Logged, Severity
 from tests.support.simulation import Simulation, simulate
 
 LIKELY = [
@@ -71,3 +74,28 @@ def test_a_node_with_attributes_of_likely_names_still_works() -> None:
         rclpy.spin(node)
 
     assert simulate(program, until=1.6).times("tick") == [0.5, 1.0, 1.5]
+
+
+class Hiding(Node):
+    """Has a tuple of the name under which rclpy's executors look for timers."""
+
+    timers: Any = ()
+
+
+def test_a_class_that_hides_what_executors_look_for_is_told_so() -> None:
+    trace = simulate(lambda _: Hiding("h"))
+    (line,) = trace.of(Logged)
+    assert line.severity is Severity.WARN
+    assert line.text.startswith("Hiding.timers hides the timers of rclpy's nodes: real executors ")
+
+
+def test_a_name_that_a_class_makes_up_is_asked_when_a_node_is_made_as_in_rclpy() -> None:
+    class Greeter(Node):
+        def get_name(self, person: str) -> str:  # type: ignore[override]
+            return person
+
+    def program(simulation: Simulation) -> None:
+        with pytest.raises(TypeError, match="missing 1 required positional argument: 'person'"):
+            Greeter("n")
+
+    simulate(program)
