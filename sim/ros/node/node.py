@@ -34,7 +34,7 @@ from sim.ros.scheduling.executors import Executor
 HIDDEN_NODE_PREFIX = "_"
 _SERVED = ("subscriptions", "timers", "services", "clients", "guards", "waitables")
 """The properties in which rclpy's executors look for what they serve."""
-_HIDES = "{0}.{1} hides the {1} of rclpy's nodes: real executors serve what it holds or fail; here all is served"
+_HIDES = "{0}.{1} hides the {1} of rclpy's nodes: real executors serve what it holds or fail; here all run"
 
 
 _parameters = Delegated[ParameterStore]("_parameter_store")
