@@ -197,6 +197,22 @@ def test_a_publisher_of_another_program_that_does_not_match_is_told() -> None:
     assert diagnosed(program).told() == {("qos-mismatch", "hear")}
 
 
+def test_where_others_are_heard_a_publisher_of_another_program_that_does_not_match_is_a_remark() -> None:
+    def program(simulation: Simulation) -> None:
+        simulation.outside_node().create_publisher(Int32, "t", BEST_EFFORT)
+        simulation.publisher_at_rate("t", 0.5)
+        node = Node("n")
+
+        def hear(_: object) -> None: ...
+
+        node.create_subscription(Int32, "t", hear, RELIABLE)
+        spin(node, None)
+
+    run = diagnosed(program)
+    assert run.told() == {("qos-mismatch", "hear")}
+    assert run.problems() == set()
+
+
 def test_of_two_publishers_that_do_not_match_the_one_in_the_program_is_told_with_both_lines() -> None:
     def program(simulation: Simulation) -> None:
         simulation.outside_node().create_publisher(Int32, "t", BEST_EFFORT)

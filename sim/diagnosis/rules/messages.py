@@ -205,6 +205,13 @@ class QosMismatch(Rule):
             ),
         )
 
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight:
+        """A remark on a publisher outside the program where the subscription hears from others."""
+        assert isinstance(found.event, QosMismatched)
+        outside = found.subject and not found.event.publisher[0]
+        heard = outside and timeline.calls_of(found.subject, Window(0, timeline.end + 1))
+        return Weight.REMARK if heard else Weight.PROBLEM
+
 
 _PROFILE_WORDS = ("request no more than is offered", "offer what is requested")
 _ENDPOINTS = ("publisher", "subscription")
