@@ -137,11 +137,14 @@ class WorkerPool:
         waits = self._not_begun() if self._hands_over_again and self._may_start() else ()
         waiting = sum(each not in fresh for each in waits)
         self._handed_over_again += waiting
-        finds = self._executor._cycle.would_find(self._clock.now())
-        starts = waiting > 0 and (self._none_is_idle() or (self.kept_busy() and not finds))
+        starts = waiting > 0 and (self._none_is_idle() or self._goes_round_in_vain())
         if starts:
             self._start_worker()
         return starts
+
+    def _goes_round_in_vain(self) -> bool:
+        """Whether the executor is kept busy, and each round takes one more idle worker and finds nothing."""
+        return self.kept_busy() and not self._executor._cycle.would_find(self._clock.now())
 
     def _may_start(self) -> bool:
         return self._starting is None and len(self._workers) < self._executor.threads
