@@ -63,8 +63,16 @@ def test_info_gives_what_is_left_of_a_recording_and_one_sentence(
     assert told.out.startswith("run        exclusive-2-threads")
     assert len(told.err.splitlines()) == 1
     assert told.err.startswith(f"cbtui: {cut}: it breaks off at byte ")
+
+
+def test_a_comparison_with_a_damaged_recording_says_what_is_missing(
+    recorded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cut = tmp_path / "cut.mcap"
+    # How much of the run half a file has is by its chunks, which the recorder ends by the real time.
+    cut.write_bytes(recorded.read_bytes()[:-100])
     assert cli.main(["compare", str(recorded), str(cut), "--text"]) == 0
-    assert f"cbtui: {cut}: it breaks off at byte " in capsys.readouterr().err
+    assert f"cbtui: {cut}: all of it is there but its index" in capsys.readouterr().err
 
 
 def test_info_says_what_is_no_recording(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

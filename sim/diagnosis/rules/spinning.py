@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Iterator
+from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.polling import leave_out
@@ -135,11 +136,15 @@ class SpinNotReached(Rule):
     id = "spin-not-reached"
     summary = "a second spin() is not reached, nor the node that is made for it"
     threshold: Nanoseconds = SECOND
+    most: ClassVar[int] = 100
+    """Entities of a program that is looked into: to look at all of them at each check has to stay cheap."""
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each class of nodes of which no entity was made, while the program spins."""
         timeline = view.timeline
-        if view.end < self.threshold or not timeline.executors or timeline.program_at(view.end) is not None:
+        if view.end < self.threshold or not timeline.executors or len(timeline.entities) > self.most:
+            return
+        if timeline.program_at(view.end) is not None:
             return
         ended = timeline.ended
         if timeline.processes_ended or (ended and ended.failed and not ended.time_was_up):
