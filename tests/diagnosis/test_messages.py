@@ -76,6 +76,19 @@ def test_messages_lost_during_several_calls_are_not_said_to_be_lost_in_one() -> 
     assert "messages while its calls ran: its queue holds 10" in told
 
 
+def test_what_is_lost_while_nobody_spins_is_not_laid_to_the_callback() -> None:
+    def program(simulation: Simulation) -> None:
+        node, talker = Node("n"), Node("talker")
+        node.create_subscription(Int32, "numbers", lambda message: None, 2)
+        publisher = talker.create_publisher(Int32, "numbers", 2)
+        talker.create_timer(0.5, lambda: publisher.publish(Int32()))
+        spin(talker, None)
+
+    told = diagnosed(program).explained("dropped-messages")
+    assert "while it waited (nobody spins)" in told.what
+    assert told.cure == "keep spinning its node; a longer queue only delays it"
+
+
 def test_a_queue_that_is_long_enough_loses_nothing() -> None:
     assert "dropped-messages" not in {rule for rule, _ in sensor_and_sleeper(100).told()}
 

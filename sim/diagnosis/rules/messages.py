@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from operator import attrgetter
 
-from sim.diagnosis.cures import remedy_for_waits
+from sim.diagnosis.cures import Remedy, remedy_for_waits
 from sim.diagnosis.edits.profiles import match_quality
 from sim.diagnosis.rule import (
     Explanation,
@@ -72,9 +72,9 @@ class DroppedMessages(Rule):
             room.words(timeline) or f"let {subject} return sooner",
             place_of(found.subject, timeline),
         )
-        loop = loop_beside_spin(found.until, timeline)
-        if loop is not None and waits and waits[-1].reason is Reason.NOBODY_SPINS:
-            cure, place = SPIN_ALWAYS, loop
+        if waits and waits[-1].reason is Reason.NOBODY_SPINS:
+            loop, room = loop_beside_spin(found.until, timeline), Remedy()
+            cure, place = (SPIN_ALWAYS, loop) if loop else ("keep spinning its node", place)
         messages = "1 message" if found.count == 1 else f"{found.count} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
         worst = f"; most in the second from {found.until // SECOND} s on, {found.size}"
