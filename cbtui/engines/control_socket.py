@@ -43,7 +43,7 @@ class LineOutput(msgspec.Struct, frozen=True, tag="said"):
 
 
 class LineResult(msgspec.Struct, frozen=True, tag="done"):
-    """The line's exit status; None: the run ended before it."""
+    """The line's exit status; None: the run ended before it, or before the line was given."""
 
     status: int | None
 
@@ -90,6 +90,7 @@ class ControlServer:
         self._lock = threading.Lock()
         self._next = _FIRST_NUMBER
         self._answers: dict[LineId, SimpleQueue[ServerMessage]] = {}
+        self._over = False
         self._socket: socket.socket | None = None
         self._path = Path()
 
@@ -121,6 +122,13 @@ class ControlServer:
                 case LineEnded(line=line, status=status):
                     self._answer(line, LineResult(status))
 
+    def over(self) -> None:
+        """Tell all clients, and those that come until ``stop``, that the run is over."""
+        with self._lock:
+            self._over = True
+            for answers in self._answers.values():
+                answers.put(LineResult(None))
+
     def stop(self) -> None:
         """Stop listening and tell all clients that the run is over."""
         if self._socket is not None:
@@ -129,8 +137,7 @@ class ControlServer:
                 listening.shutdown(socket.SHUT_RDWR)  # wakes the thread that accepts
             listening.close()
             self._path.unlink(missing_ok=True)
-        for line in tuple(self._answers):
-            self._answer(line, LineResult(None))
+        self.over()
 
     def _answer(self, line: LineId, answer: ServerMessage) -> None:
         queue = self._answers.get(line)
@@ -157,6 +164,8 @@ class ControlServer:
             line = self._next
             self._next += 1
             answers = self._answers[line] = SimpleQueue()
+            if self._over:
+                answers.put(LineResult(None))
         self._send(RunLine(line, text))
         threading.Thread(target=self._listen, args=(connection, line), name="control", daemon=True).start()
         try:
@@ -164,7 +173,8 @@ class ControlServer:
                 connection.send_bytes(_encode(answer))
             connection.send_bytes(_encode(answer))
         finally:
-            del self._answers[line]
+            with self._lock:
+                del self._answers[line]
 
     def _listen(self, connection: Connection, line: LineId) -> None:
         """Interrupt the line when its client asks for it or disconnects."""

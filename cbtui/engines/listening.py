@@ -12,7 +12,8 @@ class ListeningSession:
 
     def __init__(self, setup: RunSetup, deliver: Deliver, ended: Ended) -> None:
         self._deliver = deliver
-        self._session = ProcessSession(setup, self._take, ended)
+        self._ended = ended
+        self._session = ProcessSession(setup, self._take, self._end)
         self._control = ControlServer(self._session.send)
 
     def start(self) -> str | None:
@@ -32,3 +33,7 @@ class ListeningSession:
     def _take(self, events: list[AnyEvent]) -> None:
         self._control.take(events)
         self._deliver(events)
+
+    def _end(self, trouble: str | None) -> None:
+        self._control.over()
+        self._ended(trouble)

@@ -21,6 +21,8 @@ from cbtui.engines.control_socket import (
     connect,
     runtime_folder,
 )
+from cbtui.engines.listening import ListeningSession
+from cbtui.runs.setup.lesson_setup import RunRequest
 from sim.engine.commands import Command, InterruptLine, RunLine
 from sim.trace.events import LineEnded, LineSaid
 
@@ -91,6 +93,30 @@ def test_the_end_of_the_run_ends_every_line(server: ControlServer, sent: "Queue[
     asked = RemoteLine(connect(None), "ros2 topic echo /odom")
     given(sent)
     server.stop()
+    assert asked.next_answer() == LineResult(None)
+
+
+def test_a_line_for_a_run_whose_console_outlives_it_gets_one_sentence(
+    sent: "Queue[Command]", tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program = tmp_path / "node.py"
+    program.write_text("raise ValueError")
+    ended = Queue[str | None]()
+    session = ListeningSession(RunRequest(files=[program]).setup(), lambda events: None, ended.put)
+    session.start()
+    try:
+        assert ended.get(timeout=PATIENCE) is None
+        assert cli.main(["ros2", "topic", "list"]) == 1
+    finally:
+        session.stop()
+    over = "cbtui: that run is over; press r in its console to run it again, or open another one\n"
+    assert capsys.readouterr() == ("", over)
+
+
+def test_a_line_that_runs_when_the_run_ends_is_told(server: ControlServer, sent: "Queue[Command]") -> None:
+    asked = RemoteLine(connect(None), "ros2 topic echo /odom")
+    given(sent)
+    server.over()
     assert asked.next_answer() == LineResult(None)
 
 
