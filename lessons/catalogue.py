@@ -23,7 +23,7 @@ ENTRY_POINTS = "cbtui.lessons"
 
 
 class UnknownLesson(LookupError):  # noqa: N818 - the sentence it carries is what a reader sees
-    """No lesson has the id that was asked for; the text is one sentence naming the nearest."""
+    """No lesson has the id that was asked for; the text is one sentence, naming one that is near."""
 
 
 def lessons() -> tuple[Lesson, ...]:
@@ -38,14 +38,13 @@ def lessons() -> tuple[Lesson, ...]:
 
 
 def find(lesson_id: str) -> Lesson:
-    """Return the lesson with this id or number. Raises UnknownLesson, which names the nearest one."""
+    """Return the lesson with this id or number. Raises UnknownLesson, which names one that is near."""
     for lesson in lessons():
         if lesson_id in (lesson.id, str(lesson.number)):
             return lesson
-    raise UnknownLesson(
-        f"No lesson is called {lesson_id!r}; the nearest is {_nearest(lesson_id)!r}, "
-        "and 'cbtui list' shows all."
-    )
+    if lesson_id.isdecimal():
+        raise UnknownLesson(f"There are {len(lessons())} lessons, and none is number {lesson_id}.")
+    raise UnknownLesson(f"No lesson is called {lesson_id!r}; {_nearest(lesson_id)}'cbtui list' shows all.")
 
 
 def lesson_on(problem: str) -> Lesson | None:
@@ -164,5 +163,5 @@ def _check_ids(every: list[Lesson]) -> None:
 def _nearest(lesson_id: str) -> str:
     from difflib import get_close_matches  # only needed for a wrong id
 
-    ids = [lesson.id for lesson in lessons()]
-    return get_close_matches(lesson_id.lower(), ids, n=1, cutoff=0.0)[0]
+    near = get_close_matches(lesson_id.lower(), [lesson.id for lesson in lessons()], n=1)
+    return f"the nearest is {near[0]!r}, and " if near else ""

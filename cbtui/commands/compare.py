@@ -112,7 +112,7 @@ def _compared_run(name: str, changed: "Changes", arguments: list[str]) -> "Compa
         file = file_of(name)
         request = RunRequest(files=[file], arguments=arguments, changes=changed, clock="virtual")
         return ComparedRun(called, request)
-    return ComparedRun(called, RunRequest(lesson=lesson_of(name), changes=changed))
+    return ComparedRun(called, RunRequest(lesson=lesson_of(name, or_file=True), changes=changed))
 
 
 def _readable(path: Path) -> Path:

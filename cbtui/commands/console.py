@@ -69,7 +69,7 @@ def open_console(options: argparse.Namespace) -> int:
         if changes.seeded_changes_of(options).words:
             refuse("a puzzle is run as it is: leave out the options on threads and such")
     elif target is not None:
-        opened = lesson_of(target)
+        opened = lesson_of(target, or_file=True)
         check_seed(options.seed, opened.setup.clock)
         lesson = opened.id
     look = appearance(options)

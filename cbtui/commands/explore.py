@@ -275,7 +275,7 @@ def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[ReplayComm
 def _of_lesson(options: argparse.Namespace) -> "tuple[Exploration, list[ReplayCommand]]":
     from cbtui.runs.judged.exploration_text import ReplayCommand
 
-    lesson = lesson_of(options.target)
+    lesson = lesson_of(options.target, or_file=True)
     if lesson.setup.clock == "real":
         refuse(f"{lesson.id} runs on the real clock, where the machine alone chooses the order of threads")
     run = lesson.run

@@ -97,7 +97,7 @@ def _opened(words: list[str]) -> list[str]:
     if is_file_name(target):
         file_of(target)
     else:
-        lesson_of(target)
+        lesson_of(target, or_file=True)
     return ["open", *words]
 
 

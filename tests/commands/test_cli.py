@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from cbtui import cli
-from lessons.catalogue import lessons
+from cbtui.commands.options.targets import targets_of
+from lessons.catalogue import find, lessons
 from lessons.progress import Progress
 from lessons.puzzles import puzzles_of
 from sim.engine.setup import RunSetup
@@ -56,7 +57,8 @@ def test_list_tells_how_far_one_is(capsys: pytest.CaptureFixture[str]) -> None:
     ("arguments", "sentence"),
     [
         (["run", "split-group"], "the nearest is 'split-groups'"),
-        (["open", "nonsense"], "the nearest is"),
+        (["open", "nonsense"], "No lesson is called 'nonsense'; 'cbtui list' shows all."),
+        (["run", "999"], " lessons, and none is number 999."),
         (["run", "single-thread", "--threads", "0"], "an executor cannot have 0 threads here; give 1 to 64"),
         (["run", "single-thread", "--threads", "two"], "'two' is not a whole number; give 1 to 64"),
         (["run", "single-thread", "--for", "-1"], "a run cannot last -1 seconds; give more than 0"),
@@ -84,6 +86,39 @@ def test_a_wrong_command_is_refused_in_one_line(arguments: list[str], sentence: 
     assert done.stdout == ""
     assert len(done.stderr.splitlines()) == 1
     assert sentence in done.stderr
+
+
+@pytest.mark.parametrize("command", [["run"], ["explore"], ["open"], ["prove"], ["compare", "single-thread"]])
+@pytest.mark.parametrize(
+    ("target", "sentence"),
+    [
+        ("notes.txt", "notes.txt is no program, by its name; give a Python file (.py) or a launch file"),
+        ("./notes.txt", "./notes.txt is no program, by its name; give a Python file (.py) or a launch file"),
+        ("folder", "folder is a folder; name the file in it to run"),
+    ],
+)
+def test_a_file_that_is_no_program_is_refused_as_a_file(
+    command: list[str],
+    target: str,
+    sentence: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    (tmp_path / "folder").mkdir()
+    (tmp_path / "notes.txt").write_text("plain words")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit, match="2"):
+        cli.main([*command, target])
+    assert capsys.readouterr() == ("", f"cbtui: {sentence}\n")
+
+
+def test_a_lesson_takes_precedence_over_a_folder_of_its_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "single-thread").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert targets_of(["single-thread"]).lesson is find("single-thread")
 
 
 @pytest.mark.parametrize(

@@ -17,16 +17,23 @@ if TYPE_CHECKING:
 
 RECORDING = ".mcap"
 """The name ending of a recording."""
+_PROGRAMS = (".py", ".xml", ".yaml", ".yml")
+"""The name endings of node and launch files."""
 
 
-def lesson_of(name: str) -> "Lesson":
-    """Return the lesson with that id; exits with code 2 and one line if there is none."""
+def lesson_of(name: str, *, or_file: bool = False) -> "Lesson":
+    """Return the lesson with that id; exits with code 2 and one line if there is none.
+
+    That line is about the file or folder of that name, if there is one and it could be meant (``or_file``).
+    """
     from lessons.catalogue import UnknownLesson, find
 
     _refuse_recording(name)
     try:
         return find(name)
     except UnknownLesson as error:
+        if or_file and os.path.lexists(name):
+            file_of(name)
         refuse(str(error))
 
 
@@ -68,12 +75,12 @@ def targets_of(targets: Sequence[str]) -> RunTargets:
         return RunTargets(None, [file_of(name) for name in targets])
     if len(targets) > 1:
         refuse("one lesson runs at a time; several targets must all be files")
-    return RunTargets(lesson_of(targets[0]), [])
+    return RunTargets(lesson_of(targets[0], or_file=True), [])
 
 
 def is_file_name(target: str) -> bool:
     """Tell whether a target names a file rather than a lesson."""
-    return target.endswith((".py", ".xml", ".yaml", ".yml")) or "/" in target
+    return target.endswith(_PROGRAMS) or "/" in target
 
 
 def is_recording(name: str) -> bool:
@@ -100,6 +107,8 @@ def file_of(name: str) -> Path:
             refuse(f"{name} is a pipe or a device; give a file, which can be read more than once")
     except OSError as error:
         refuse(f"{name} cannot be opened: {error.strerror}")
+    if not name.endswith(_PROGRAMS):
+        refuse(f"{name} is no program, by its name; give a Python file (.py) or a launch file")
     if not is_text(str(path.resolve())):
         refuse(f"{name}: its name and its folders' names have to be UTF-8; rename it")
     return path
