@@ -218,6 +218,10 @@ class Execution:
         rows = self._threads[thread].covering(at)
         return self._spans.span(rows[-1]) if rows else None
 
+    def innermost_now(self) -> list[Span]:
+        """The innermost calls that run now, one of each thread that runs any."""
+        return [self._spans.span(lane.stack[-1]) for lane in self._threads.values() if lane.stack]
+
     def running(self, entity: EntityId) -> RowId | None:
         """The span that an entity runs now, the latest of several."""
         stacks = (lane.stack for lane in self._threads.values() if lane.stack)

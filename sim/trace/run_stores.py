@@ -11,6 +11,7 @@ from sim.trace.activity import Activity
 from sim.trace.blocking import Blocking
 from sim.trace.events import AnyEvent, EntityId, EntityKind
 from sim.trace.execution import Execution
+from sim.trace.makings import Makings
 from sim.trace.model import AxisMark, AxisMarkKind, Nanoseconds, Queue
 from sim.trace.participants import Participants
 from sim.trace.positions import Positions
@@ -47,6 +48,7 @@ class RunStores:
         self.contents_lost = 0
         self.end: Nanoseconds = 0
         self.participants = Participants()
+        self.makings = Makings()
         self.active = Activity()
         self.execution = Execution(spill)
         self.waiting = Waiting(spill)
@@ -115,7 +117,7 @@ class RunStores:
             ev.EntityAppeared: self._entity_appeared,
             ev.EntityGone: self._entity_gone,
             ev.EntityReady: self._ready,
-            ev.TimerCancelled: lambda event: self.cancels[event.entity].add(event),
+            ev.TimerCancelled: self._timer_cancelled,
             ev.MessageDropped: self._message_dropped,
             ev.WaitStarted: self.waiting.start,
             ev.WaitEnded: self._wait_ended,
@@ -155,13 +157,19 @@ class RunStores:
         }
 
     def _entity_appeared(self, event: ev.EntityAppeared) -> None:
-        self.participants.add_entity(event)
+        entity = self.participants.add_entity(event)
         self.execution.join(event.entity, event.group)
+        self.makings.note(entity, self.execution.innermost_now(), self.participants.entities)
 
     def _entity_gone(self, event: ev.EntityGone) -> None:
         self.waiting.finish(event.entity, event.t)
         self.queues[event.entity].clear(event.t)
         self.active.note(event.entity, event.t)
+        self.makings.release(event.entity)
+
+    def _timer_cancelled(self, event: ev.TimerCancelled) -> None:
+        self.cancels[event.entity].add(event)
+        self.makings.release(event.entity)
 
     def _ready(self, event: ev.EntityReady) -> None:
         self.queues[event.entity].arrive(event.t, event.depth, event.message)

@@ -1,11 +1,12 @@
 """The timeline: a database of a run, filled with events and queried by time."""
 
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 
 from sim.trace import events as ev
 from sim.trace.ending import UntilEnding
 from sim.trace.events import AnyEvent, EntityId, ExecutorId, GroupId, MessageId, NodeId, ProcessId, ThreadId
 from sim.trace.lazy import LazyMapping
+from sim.trace.makings import Making
 from sim.trace.model import (
     AxisMark,
     Blocked,
@@ -64,6 +65,11 @@ class Timeline:
         """The callback groups, in order of appearance, which is the order of their letters."""
         self.entities: dict[EntityId, EntityInfo] = run.participants.entities
         """The entities, in order of appearance, including destroyed ones."""
+        self.makings: Mapping[Making, Mapping[EntityId, Nanoseconds]] = run.makings.kept
+        """The entities that callbacks made at each line, with the starts of the calls that made them.
+
+        Lines of which an entity was destroyed or cancelled are left out.
+        """
         self.services_called: Collection[str] = run.calls.services
         """The services that were called, in order of their first calls."""
         self.logs: Sequence[ev.Logged | ev.Printed] = run.logs

@@ -5,6 +5,7 @@ from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
 from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing, WaitsForLock
 from sim.diagnosis.rules.errors import ExceptionSwallowed, ProgramRaised
 from sim.diagnosis.rules.gaps import GapsInTrace
+from sim.diagnosis.rules.leaks import NeverDestroyed
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
 from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.parameters import ParameterOverruled
@@ -33,6 +34,7 @@ RULES: tuple[Rule, ...] = (
     ParameterOverruled(),
     ExceptionSwallowed(),
     UnreturnedResponse(),
+    NeverDestroyed(),
     GroupStarvation(),
     NoFreeWorker(),
     BehindOthers(),
