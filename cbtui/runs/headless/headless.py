@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from cbtui.engines.listening import ListeningSession
 from cbtui.engines.session import PROGRAM_EXIT_TIMEOUT
+from cbtui.runs.headless.deadlock_news import DeadlockNews
 from cbtui.runs.headless.program_log import ProgramLog
 from cbtui.runs.headless.standard_input import StandardInput
 from cbtui.runs.live.disk_space import DiskSpaceWatch
@@ -92,6 +93,7 @@ class _Headless:
         self._file = file
         self._recorder = recorder
         self._disk_space = DiskSpaceWatch(self._timeline)
+        self._deadlocks = DeadlockNews(self._timeline) if setup.clock == "real" else None
         self._input = StandardInput(self._run.session.send) if setup.keyboard is Keyboard.LIVE else None
         self._log = ProgramLog(echo=self._input is None)
         self._signal: Signals | None = None
@@ -148,6 +150,8 @@ class _Headless:
                 if self._input is not None:
                     self._input.follow(events)
                 self._warn_of_full_disk()
+                for sentence in () if self._deadlocks is None else self._deadlocks.news():
+                    complain(sentence)
         except EngineLostError as error:
             return str(error)
         except RunTimeoutError:

@@ -5,12 +5,12 @@ import subprocess
 import time
 from collections import deque
 from collections.abc import Iterator, Sequence
-from pathlib import Path
 from threading import Event, Thread
 
 from cbtui.engines.follow import EngineLostError, FollowedRun, GivenUpError
 from cbtui.engines.session import ProcessSession
-from cbtui.runs.live.findings import ExplainedFinding, FindingsMonitor
+from cbtui.runs.headless.deadlock_news import told_in_a_line
+from cbtui.runs.live.findings import FindingsMonitor
 from cbtui.runs.live.live_recording import unused_name
 from cbtui.runs.recorded.recording_file import CannotRecordError, start_recording
 from cbtui.terminal.interrupts import ending_signals
@@ -93,7 +93,7 @@ class Keeper:
                 key = each.finding.rule.id, each.finding.subject
                 if each.is_problem and each.finding.rule.id in _RECORDED_RULES and key not in self._known:
                     self._known.add(key)
-                    yield _sentence(each)
+                    yield told_in_a_line(each)
 
     def _write(self) -> str:
         """Write what is kept to a new file in the current folder; returns a clause that names it."""
@@ -106,12 +106,6 @@ class Keeper:
         if recorder.failure is not None:
             return f"{recorder.path} is not whole: {recorder.failure}"
         return f"the last {self._seconds:g} s: cbtui replay {recorder.path}"
-
-
-def _sentence(found: ExplainedFinding) -> str:
-    place = found.explanation.place
-    where = "" if place is None else f", {Path(place.file).name}:{place.first_line}"
-    return f"{found.explanation.what}{where}"
 
 
 def run_and_keep(command: Sequence[str], environment: dict[str, str], setup: RunSetup, seconds: float) -> int:
