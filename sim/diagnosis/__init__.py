@@ -3,7 +3,7 @@
 from sim.diagnosis.diagnoses import Diagnoses, diagnose
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Weight
 from sim.diagnosis.rules import RULES
-from sim.diagnosis.text import findings_text, location_text, sentence
+from sim.diagnosis.text import findings_text, location_text, sentence, with_stop
 
 __all__ = [
     "RULES",
@@ -16,4 +16,5 @@ __all__ = [
     "findings_text",
     "sentence",
     "location_text",
+    "with_stop",
 ]

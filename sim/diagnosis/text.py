@@ -27,9 +27,9 @@ def findings_text(findings: Sequence[Finding], timeline: Timeline) -> str:
 def _lines(found: Finding, timeline: Timeline) -> Iterator[str]:
     weight = found.rule.weigh(found, timeline) or found.rule.weight
     explanation = found.rule.explain(found, timeline)
-    yield from _wrapped(f"  {SIGNS[weight]} ", f"{explanation.what}.")
+    yield from _wrapped(f"  {SIGNS[weight]} ", with_stop(explanation.what))
     yield from _wrapped("    ", sentence(explanation.why))
-    yield from _wrapped("    → ", f"{explanation.cure}.")
+    yield from _wrapped("    → ", with_stop(explanation.cure))
     where = location_text(found, explanation)
     if where:
         yield f"      {where}"
@@ -38,7 +38,12 @@ def _lines(found: Finding, timeline: Timeline) -> Iterator[str]:
 def sentence(text: str) -> str:
     """Return a clause as a sentence; a piece of code at its beginning keeps its case."""
     first = text.partition(" ")[0]
-    return f"{text}." if "(" in first or "_" in first else f"{text[:1].upper()}{text[1:]}."
+    return with_stop(text if "(" in first or "_" in first else f"{text[:1].upper()}{text[1:]}")
+
+
+def with_stop(text: str) -> str:
+    """Return a text with a full stop at its end, unless it ends in one or in a question mark."""
+    return text if text.endswith((".", "?")) else f"{text}."
 
 
 def location_text(found: Finding, explanation: Explanation) -> str:

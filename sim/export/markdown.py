@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
-from sim.diagnosis import diagnose, location_text, sentence
+from sim.diagnosis import diagnose, location_text, sentence, with_stop
 from sim.export.texts import markdown as plain
 from sim.export.texts import seconds
 from sim.quantities.durations import duration
@@ -104,8 +104,9 @@ def _diagnosis(timeline: Timeline) -> Iterator[str]:
         told = found.rule.explain(found, timeline)
         weight = found.rule.weigh(found, timeline) or found.rule.weight
         where = location_text(found, told)
-        yield f"- **{weight.value.capitalize()}**{f' ({plain(where)})' if where else ''}: {plain(told.what)}."
-        yield f"  {plain(sentence(told.why))} What to do: {plain(told.cure)}."
+        what = with_stop(plain(told.what))
+        yield f"- **{weight.value.capitalize()}**{f' ({plain(where)})' if where else ''}: {what}"
+        yield f"  {plain(sentence(told.why))} What to do: {with_stop(plain(told.cure))}"
     yield ""
 
 

@@ -1,10 +1,13 @@
 """The report: all its parts, and texts that stay texts."""
 
 import re
+from pathlib import Path
 
+from sim.diagnosis import diagnose, findings_text
 from sim.export.markdown import report
 from sim.export.texts import markdown
 from tests.export.examples import small_run, timeline_of
+from tests.support.engine_runs import run_program
 from tests.support.runs import Run, shared_group_run
 
 
@@ -34,6 +37,12 @@ def test_a_report_tells_what_went_wrong_where_and_what_to_do() -> None:
     assert "What to do: give timer_callback a callback group of its own" in text
     assert "- **Remark** (node.py:120, at 4.000 s): timer_callback took 10.0 s" in text
     assert "No problems found." in report(timeline_of([]))
+
+
+def test_a_problem_that_ends_in_a_question_gets_no_full_stop(tmp_path: Path) -> None:
+    timeline = run_program(tmp_path, "message = 1\nmesage").timeline
+    for text in (report(timeline), findings_text(diagnose(timeline), timeline)):
+        assert "did you mean 'message'?\n" in text
 
 
 def test_every_table_has_as_many_cells_in_each_line() -> None:

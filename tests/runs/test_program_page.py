@@ -57,6 +57,13 @@ def test_a_problem_promises_a_cure_only_where_there_is_one(
     assert f"- tick waits. {said}, and 1 further problem." in page["tries"].splitlines()
 
 
+def test_a_problem_that_ends_in_a_question_gets_no_full_stop() -> None:
+    page = page_of_program(
+        "node.py", "virtual", Timeline(), [Explanation("did you mean spin?", "", "", None)]
+    )
+    assert "- did you mean spin? `d` says" in page["tries"]
+
+
 def test_a_problem_of_a_lambda_names_it() -> None:
     page = page_of_program("node.py", "virtual", Timeline(), [Explanation("<lambda> waits", "", "", None)])
     assert r"- \<lambda\> waits. `d` says what to do." in page["tries"].splitlines()

@@ -18,6 +18,7 @@ from cbtui.runs.judged.cures import Cure, Verdict
 from cbtui.runs.live.findings import ExplainedFinding, FindingsMonitor
 from cbtui.runs.setup.changes import Changes
 from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.linear.narrative import told_finding
 from cbtui.screens.replay import ReplayScreen
 from cbtui.screens.windows import diagnoses
 from cbtui.screens.windows.diagnoses import (
@@ -236,6 +237,15 @@ def test_a_finding_is_a_line_and_a_paragraph() -> None:
         "MultiThreadedExecutor(num_threads=2); or let timer_callback return sooner.",
         "node.py:120, at 4.003 s",
     ]
+
+
+def test_a_finding_that_ends_in_a_question_gets_no_full_stop() -> None:
+    worst = told_of(shared_group_run().until(TURNED))[0]
+    asked = replace(worst, explanation=replace(worst.explanation, what="is it 'spin'?", cure="or 'run'?"))
+    lines = details_of(asked, Charset.BRAILLE).plain.splitlines()
+    assert (lines[0], lines[2]) == ("is it 'spin'?", "→ or 'run'?")
+    assert "is it 'spin'? why: " in told_finding(asked)
+    assert "or 'run'? node.py:120" in told_finding(asked)
 
 
 def test_the_title_counts_what_there_is() -> None:

@@ -84,6 +84,11 @@ def test_a_file_that_cannot_be_judged_is_told_of_and_no_check_has_a_verdict() ->
     assert sheet.note == ""
 
 
+def test_a_question_gets_no_full_stop() -> None:
+    sheet = WORDS.judged(checked(trouble="name 'spni' is not defined; did you mean 'spin'?"))
+    assert sheet.news.startswith("name 'spni' is not defined; did you mean 'spin'? o opens mine.py")
+
+
 def test_while_it_runs_it_tells_how_far_it_is() -> None:
     assert shown(WORDS.running(12_300_000_000))[0] == "· mine.py runs: 12.3 s of 30 s"
 

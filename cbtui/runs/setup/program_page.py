@@ -5,7 +5,7 @@ from itertools import islice
 
 from cbtui.runs.setup.changeable import is_set_bool, programs_own
 from cbtui.text.markdown import as_it_is
-from sim.diagnosis import Explanation
+from sim.diagnosis import Explanation, with_stop
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted, plural
 from sim.trace.descriptions import executor_label
@@ -87,7 +87,7 @@ def _tries(timeline: Timeline, problems: Sequence[Explanation], *, has_cures: bo
         more = f", and {counted(len(problems) - 1, 'further problem')}" if len(problems) > 1 else ""
         line = "" if problems[0].place is None else "its line and "
         what = "tries a cure" if has_cures else "says what to do"
-        yield f"{as_it_is(problems[0].what)}. `d` {line and 'shows '}{line}{what}{more}."
+        yield f"{with_stop(as_it_is(problems[0].what))} `d` {line and 'shows '}{line}{what}{more}."
     services = [each for each in own if each.kind is EntityKind.SERVICE]
     calls = next((each.name for each in services if is_set_bool(each)), None)
     if calls is not None:

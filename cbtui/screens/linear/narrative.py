@@ -9,7 +9,7 @@ from cbtui.screens.parts.copying import what_runs
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.log.line import line_of
 from cbtui.widgets.narrator import narration, returning, waiting
-from sim.diagnosis import location_text
+from sim.diagnosis import location_text, with_stop
 from sim.quantities.durations import duration, timestamp
 from sim.quantities.plural import counted
 from sim.trace.descriptions import name_of
@@ -124,7 +124,8 @@ def told_finding(each: ExplainedFinding) -> str:
     explained = each.explanation
     where = location_text(each.finding, explained)
     parts = (each.headline, f"why: {explained.why}", f"what to do: {explained.cure}", where)
-    return ". ".join(part for part in parts if part)
+    *clauses, last = filter(None, parts)
+    return " ".join([*map(with_stop, clauses), last])
 
 
 def told_moment(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:

@@ -24,7 +24,7 @@ from cbtui.screens.windows.window import PlainOptionList, WindowScreen
 from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
 from lessons.lesson import Lesson
-from sim.diagnosis import location_text, sentence
+from sim.diagnosis import location_text, sentence, with_stop
 from sim.quantities.durations import timestamp
 from sim.quantities.plural import counted
 
@@ -341,12 +341,12 @@ def step_row(text: str, charset: Charset) -> Content:
 def details_of(each: ExplainedFinding, charset: Charset, about_trial: str = "") -> Content:
     """Return what happened, the sentence on trials of cures, why, what to do, and where and when."""
     explained = each.explanation
-    parts = [(f"{visible(explained.what, charset)}.", "bold")]
+    parts = [(visible(with_stop(explained.what), charset), "bold")]
     if about_trial:
         parts.append((f"\n· {about_trial}", ""))
     parts += [
         (f"\n{visible(sentence(explained.why), charset)}", ""),
-        (f"\n→ {visible(explained.cure, charset)}.", "$text-success"),
+        (f"\n→ {visible(with_stop(explained.cure), charset)}", "$text-success"),
     ]
     where = location_text(each.finding, explained)
     if where:

@@ -10,6 +10,7 @@ from cbtui.widgets.checks import CheckRow, ChecksSheet, CheckStatus
 from lessons.checks import Check
 from lessons.judge import JudgedCheck
 from lessons.lesson import Lesson
+from sim.diagnosis import with_stop
 from sim.quantities.nanoseconds import SECOND
 from sim.quantities.plural import counted
 from sim.trace.model import Nanoseconds
@@ -48,7 +49,7 @@ class ExerciseTexts:
     def judged(self, checked: CheckedFile) -> ChecksSheet:
         """Return the sheet with the results of a run."""
         if checked.run.trouble is not None:
-            news = f"{checked.run.trouble.rstrip('.')}. {self._way_on}"
+            news = f"{with_stop(checked.run.trouble)} {self._way_on}"
             return ChecksSheet(news, CheckStatus.FAILED, self._open, asks=self._asks)
         rows = tuple(map(_row, checked.judged))
         if checked.good:
