@@ -35,6 +35,8 @@ def export_command(options: argparse.Namespace) -> int:
     except (ExportError, RecordingError) as error:
         complain(str(error))
         return 2
+    for path in request.outputs.values():
+        complain(f"wrote {path}")
     if recording.damage:
         complain(f"{source}: {recording.damage}")
     return 0

@@ -66,7 +66,8 @@ def assert_all_readable(folder: Path) -> None:
 def test_one_command_writes_every_format(recording: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert cli.main(["export", str(recording), *options_for(recording.parent)]) == 0
     assert_all_readable(recording.parent)
-    assert capsys.readouterr().err == ""
+    told = [f"cbtui: wrote {recording.parent / file}" for file in OUTPUTS.values()]
+    assert capsys.readouterr().err.splitlines() == told
 
 
 def test_the_picture_shows_the_window_that_is_asked_for(recording: Path) -> None:
@@ -143,7 +144,9 @@ def test_a_cut_recording_gives_what_it_holds_and_one_sentence(
     path.write_bytes(path.read_bytes()[:-2000])
     assert cli.main(["export", str(path), *options_for(tmp_path)]) == 0
     assert_all_readable(tmp_path)
-    assert len(capsys.readouterr().err.splitlines()) == 1
+    told = capsys.readouterr().err.splitlines()
+    assert [line for line in told if ": wrote " not in line] == told[len(OUTPUTS) :]
+    assert len(told) == len(OUTPUTS) + 1
 
 
 def test_events_without_their_beginning_are_exported(tmp_path: Path) -> None:
