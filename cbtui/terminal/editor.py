@@ -11,9 +11,15 @@ from typing import Any
 from textual.app import App, SuspendNotSupported
 
 _COLON = {"code", "codium", "cursor", "hx", "helix", "subl", "zed", "windsurf"}
-"""Editors that take ``file:line``; the others take ``+line file``, as vi does."""
+"""Editors that take ``file:line``."""
 _GO_TO = {"code", "codium", "cursor", "windsurf"}
 """Those of them that take it only after ``--goto``."""
+_PLUS = {
+    *("editor", "emacs", "emacsclient", "ex", "geany", "gedit", "gvim", "jmacs", "joe", "jove", "kak"),
+    *("mcedit", "mg", "micro", "nano", "ne", "nvi", "nvim", "pico", "pluma", "rnano", "vi", "view"),
+    *("sensible-editor", "vim", "vimx", "xed", "zile"),
+}
+"""Editors that take ``+line file``, as vi does; any other one would take it for the name of a file."""
 
 
 class EditorError(Exception):
@@ -41,7 +47,7 @@ async def edit(app: App[Any], path: Path, line: int) -> None:
 
 
 def command_for(environment: Mapping[str, str], path: Path, line: int) -> list[str]:
-    """Return the command that opens a file at a line.
+    """Return the command that opens a file, at a line if the editor is known to take one.
 
     Raises:
         EditorError: the file is missing, or the variable names no editor or cannot be parsed.
@@ -55,11 +61,11 @@ def command_for(environment: Mapping[str, str], path: Path, line: int) -> list[s
         command = shlex.split(named)
     except ValueError:
         raise EditorError(f"EDITOR is {named}, whose quotes do not match; set it again") from None
-    name = Path(command[0]).name
+    name = Path(command[0]).stem
     file = str(path)
     if name in _COLON:
         return [*command, *(["--goto"] if name in _GO_TO else []), f"{file}:{line}"]
-    return [*command, f"+{line}", file]
+    return [*command, *([f"+{line}"] if name in _PLUS else []), file]
 
 
 def _run(command: list[str]) -> int:

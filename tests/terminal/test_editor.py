@@ -17,8 +17,10 @@ def path(tmp_path: Path) -> Path:
     [
         ("nano", ["nano", "+7", "{file}"]),
         ("/usr/bin/vim -n", ["/usr/bin/vim", "-n", "+7", "{file}"]),
-        ("'/opt/my editor/ed'", ["/opt/my editor/ed", "+7", "{file}"]),
+        ("'/opt/my editor/vi'", ["/opt/my editor/vi", "+7", "{file}"]),
+        ("/opt/own-editor --new", ["/opt/own-editor", "--new", "{file}"]),
         ("code --wait", ["code", "--wait", "--goto", "{file}:7"]),
+        ("vim.basic", ["vim.basic", "+7", "{file}"]),
         ("hx", ["hx", "{file}:7"]),
     ],
 )

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 from textual.screen import Screen
 from textual.widget import Widget
@@ -14,6 +15,7 @@ from cbtui.terminal.textual_internals import set_title
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.choice import ChoiceOptions
 from cbtui.widgets.code import CodeView
+from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.factory import FactoryView
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
@@ -144,13 +146,19 @@ class PaneLayout(ScreenPart):
         self.screen.query_one(LogView).focus_filter()
 
     def action_open_source(self) -> None:
-        """Open the code in the user's editor; the run continues meanwhile."""
+        """Open the code in the user's editor, at the diagnosis or the line chosen in the code.
+
+        The run continues meanwhile.
+        """
         self.screen.run_worker(self._edit(), group="editor", exclusive=True)
 
     async def _edit(self) -> None:
-        code = self.screen.query_one(CodeView)
+        code, told = self.screen.query_one(CodeView), self.screen.query_one(DiagnosisLine).diagnosis.place
+        path, line = code.place
+        if told is not None and code.picked is None and not code.has_focus:
+            path, line = Path(told.file), told.first_line
         try:
-            await edit(self.screen.app, *code.place)
+            await edit(self.screen.app, path, line)
         except EditorError as error:
             self.host.tell(str(error))
         code.check_disk()

@@ -13,10 +13,14 @@ from textual.pilot import Pilot
 from cbtui.app import CbtuiApp
 from cbtui.keys.action import PANES
 from cbtui.runs.setup.shown_program import of_file
+from cbtui.screens.parts import panes
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.code import CodeView
+from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
+from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.log import LogFilter
+from sim.diagnosis import CodeLocation
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.fake_session import FakeEngines
@@ -159,14 +163,16 @@ async def test_the_editor_is_opened_at_the_line_and_the_run_goes_on(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     told, go = tmp_path / "told", tmp_path / "go"
-    editor = tmp_path / "editor.py"
+    editor = tmp_path / "vi"
     editor.write_text(
+        f"#!{sys.executable}\n"
         "import sys, time, pathlib\n"
         f"pathlib.Path({str(told)!r}).write_text(' '.join(sys.argv[1:]))\n"
         f"while not pathlib.Path({str(go)!r}).exists(): time.sleep(0.01)\n"
     )
     monkeypatch.delenv("VISUAL", raising=False)
-    monkeypatch.setenv("EDITOR", f"{sys.executable} {editor}")
+    editor.chmod(0o755)
+    monkeypatch.setenv("EDITOR", str(editor))
     async with console() as (app, pilot):
         driver = app._driver
         assert driver is not None
@@ -189,6 +195,28 @@ async def test_the_editor_is_opened_at_the_line_and_the_run_goes_on(
         await settle(pilot)
         assert told.read_text() == f"+{line} {code.place.path}"
         assert "t 14.0" in lines_of(app)[0]
+
+
+async def test_the_editor_is_opened_at_the_diagnosis_unless_a_line_of_the_code_is_chosen(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    opened: list[tuple[Path, int]] = []
+
+    async def edit(_: object, path: Path, line: int) -> None:
+        opened.append((path, line))
+
+    monkeypatch.setattr(panes, "edit", edit)
+    async with console() as (app, pilot):
+        told = CodeLocation(str(tmp_path / "node.py"), 60, 62)
+        line, code = app.screen.query_one(DiagnosisLine), app.screen.query_one(CodeView)
+        line.diagnosis = Diagnosis("it waits", DiagnosisLevel.WAITS, place=told)
+        app.lesson_screen.panes.action_open_source()
+        await settle(pilot)
+        await press(pilot, CODE, "down")
+        line.diagnosis = Diagnosis("it waits", DiagnosisLevel.WAITS, place=told)
+        app.lesson_screen.panes.action_open_source()
+        await settle(pilot)
+        assert opened == [(tmp_path / "node.py", 60), code.place]
 
 
 @pytest.mark.slow
