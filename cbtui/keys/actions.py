@@ -157,6 +157,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("zoom_in", "greater_than_sign", "zoom", "Show a shorter stretch of time"),
         ("pan_earlier", "left", "pan", "Show an earlier stretch, and leave the cursor", _PANNING),
         ("pan_later", "right", "pan", "Show a later stretch, and leave the cursor", _PANNING),
+        ("prompt_here", "enter", "ros2", "Type a ros2 command while the shell has the focus"),
         ("select", "enter", "select", "Go to the lanes and select a bar, to see what it is"),
         ("to_code", "enter", "code", "Go from the selected bar to its code"),
         ("lane_above", "up", "lane", "Select the lane above", _LANES),
@@ -335,7 +336,8 @@ TASKS = {
     for task, names in {
         "Learn": "predict explain exercise watch hint solution lesson next_lesson leave go_back",
         "Act on the run": (
-            "call_service call_service_off prompt type reset_world run_again start_over undo take_over"
+            "call_service call_service_off prompt prompt_here type reset_world run_again start_over undo "
+            "take_over"
         ),
         "Time": (
             "pause resume step step_back narrate slower faster earlier later go_to_time live zoom_in "

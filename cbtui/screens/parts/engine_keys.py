@@ -11,7 +11,7 @@ from cbtui.runs.setup.changeable import is_set_bool
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import DrawnHost, RunHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
-from cbtui.widgets.shell import ShellView
+from cbtui.widgets.shell import ShellOutput, ShellView
 
 _GOES_ON = "Real ROS 2 goes on by itself: only the model's time can be stopped, stepped or changed."
 
@@ -158,14 +158,19 @@ class TypingKeys(ScreenPart):
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer the prompt while the engine lives, and typing while a program reads."""
         run = self.runs.run
-        if action == "prompt":
-            return run.alive
+        match action:
+            case "prompt":
+                return run.alive
+            case "prompt_here":
+                return run.alive and self.shell().query_one(ShellOutput).has_focus
         return run.asked is not None
 
     def action_prompt(self) -> None:
         """Focus the prompt for ``ros2`` lines."""
         self.panes.show("shell")
         self.shell().focus_prompt()
+
+    action_prompt_here = action_prompt
 
     def action_type(self) -> None:
         """Focus the input of the program that reads."""

@@ -75,6 +75,8 @@ class OfferedKeys:
             return False
         if action in ("submit", "interrupt"):
             return not (isinstance(focused, ProgramKeyboard) and focused.reads.takes_keys)
+        if action == "select" and self.parts.offer("prompt_here", ()):
+            return False
         return self.parts.offer(action, parameters)
 
     def show(self) -> None:

@@ -62,6 +62,14 @@ async def test_a_line_goes_to_the_engine_and_other_keys_do_not_act_while_typing(
         assert prompt(app).value == ""
 
 
+async def test_enter_on_the_shell_opens_its_prompt_while_the_engine_lives() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "6", "enter")
+        await type_text(pilot, "ros2 topic list")
+        await press(pilot, "enter")
+        assert app.engines.latest.commands == [RunLine(1, "ros2 topic list")]
+
+
 @pytest.mark.slow
 async def test_what_lines_wrote_is_shown_with_control_characters_made_visible() -> None:
     async with console() as (app, pilot):

@@ -28,6 +28,7 @@ WITH_A_PERSON = {
     "no_call_service",
     "no_call_service_off",
     "prompt",
+    "prompt_here",
     "type",
     "reset_world",
     "threads",
