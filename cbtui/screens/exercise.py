@@ -146,8 +146,12 @@ class ExerciseScreen(RunScreen[LiveRun]):
 
     @property
     def steps(self) -> tuple[LessonStep, ...]:
-        """The steps through the lesson; the last one counts the checks that pass."""
-        return self._learning.steps(self._sheet.count)
+        """The steps through the lesson; the last one counts the checks that pass.
+
+        While a run of a passed exercise is not judged yet, the exercise is still shown as done.
+        """
+        is_done = self._sheet.status is CheckStatus.OPEN and self._learning.progress.passed
+        return self._learning.steps(CheckStatus.PASSED.sign if is_done else self._sheet.count)
 
     def diagnosis(self) -> Diagnosis:
         """Return the diagnosis of the moment on screen, or the result of a finished run."""

@@ -196,6 +196,7 @@ async def test_a_file_that_passes_is_noted_and_the_next_lesson_named() -> None:
         await pilot.press("w")  # another run, of which that is not known
         await settle(pilot)
         assert "opens the next lesson" not in text_of(app)
+        assert app.exercise.steps[-1].text == "Exercise ✓"
 
 
 @pytest.mark.slow
