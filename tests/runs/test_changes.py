@@ -15,7 +15,7 @@ from cbtui.runs.setup.changeable import (
     changeable,
 )
 from cbtui.runs.setup.changes import GROUP_CHOICES, Changes, changes_in
-from cbtui.runs.setup.equivalent_code import code_of, code_of_cure, code_of_group
+from cbtui.runs.setup.equivalent_code import code_of, code_of_cure, code_of_group, edits_of
 from cbtui.runs.setup.lesson_setup import RunRequest, setup_for
 from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, BadQuantityError, Quantity
 from cbtui.runs.setup.shown_program import of_lesson
@@ -227,6 +227,14 @@ def test_changes_are_told_in_few_words(changes: Changes, words: str) -> None:
 )
 def test_changes_have_lines_of_code_that_would_make_them(changes: Changes, code: list[str]) -> None:
     assert code_of(changes, ABOUT) == code
+
+
+def test_an_edited_copy_is_told_with_the_lines_that_take_it_over(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text("threads = 1\nspin()\n")
+    comment, lines = edits_of(Changes(texts={str(path): "threads = 2\nspin()\n"}))
+    assert comment.startswith("# an edited copy of node.py is run, node.py is unchanged")
+    assert lines.splitlines()[3:] == ["-threads = 1", "+threads = 2", " spin()"]
 
 
 def test_a_program_that_takes_arguments_gets_them() -> None:

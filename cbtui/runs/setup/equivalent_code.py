@@ -2,9 +2,12 @@
 
 import re
 from collections.abc import Iterator
+from pathlib import Path
 
 from cbtui.runs.setup.changeable import ChangeableSetup
 from cbtui.runs.setup.changes import CallbackPlace, Changes
+from sim.diagnosis.edits.code_edit import diff
+from sim.files.untrusted import program_text
 from sim.quantities.nanoseconds import SECOND
 from sim.releases.distros import COMPARED_DISTROS
 from sim.releases.profile import Profile
@@ -45,6 +48,14 @@ def code_of(changes: Changes, about: ChangeableSetup) -> list[str]:
     if changes.distro is not None:
         statements.append(code_of_release(changes.distro))
     return list(dict.fromkeys(statements))
+
+
+def edits_of(changes: Changes) -> Iterator[str]:
+    """Yield a comment on each file of which an edited copy is run, and how the copy differs from the file."""
+    for file, text in changes.texts.items():
+        name = Path(file).name
+        yield f"# an edited copy of {name} is run, {name} is unchanged; to take it over, write these lines:"
+        yield diff(file, program_text(Path(file)) or "", text)
 
 
 def code_of_cure(changes: Changes, about: ChangeableSetup, source: str = "") -> list[str]:

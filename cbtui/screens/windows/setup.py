@@ -15,10 +15,10 @@ from cbtui.keys.action import Scope
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.changeable import ChangeableSetup
 from cbtui.runs.setup.changes import Changes
-from cbtui.runs.setup.equivalent_code import code_of
+from cbtui.runs.setup.equivalent_code import code_of, edits_of
 from cbtui.screens.windows.setup_rows import SettingRow, rows_of
 from cbtui.screens.windows.window import WindowScreen
-from cbtui.text.cells import fit
+from cbtui.text.cells import fit, visible
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.pageable_option_list import PageableOptionList
 
@@ -90,8 +90,9 @@ class SetupScreen(WindowScreen[Changes]):
         place = rows.highlighted
         rows.set_options([self._option(row) for row in self._rows])
         rows.highlighted = place
-        code = code_of(self._changes, self._about) or ["# nothing is changed"]
-        self.query_one(".code", Static).update(Content("\n".join(code)))
+        code = [*code_of(self._changes, self._about), *edits_of(self._changes)] or ["# nothing is changed"]
+        lines = (visible(line, self._charset) for each in code for line in each.splitlines())
+        self.query_one(".code", Static).update(Content("\n".join(lines)))
         self.query_one(KeyBar).changed()
 
     def _option(self, row: SettingRow) -> Option:

@@ -294,6 +294,19 @@ async def test_undoing_all_has_everything_as_the_program_says() -> None:
 
 
 @pytest.mark.slow
+async def test_an_edited_copy_that_runs_is_told_with_its_lines(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text("a = 1\n")
+    async with console(size=WIDE) as (app, pilot):
+        app.lesson_screen.restarts.changes = Changes(texts={str(path): "a = 2\n"})
+        await press(pilot, "p")
+        text = text_of(app)
+        assert "# an edited copy of node.py is run" in text
+        assert "+a = 2" in text
+        assert "# nothing is changed" not in text
+
+
+@pytest.mark.slow
 async def test_thinking_better_of_the_set_up_leaves_the_run_alone() -> None:
     async with console() as (app, pilot):
         await press(pilot, "g", "enter", "o", "escape")
