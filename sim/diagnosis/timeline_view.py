@@ -1,7 +1,7 @@
 """A view of the latest part of a run: what several rules query is computed once."""
 
 from bisect import bisect_left
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
@@ -130,6 +130,20 @@ class TimelineView:
         """The callbacks that spun their own executor and may hang in that; rules on waits skip them."""
         return frozenset(each.entity for each in self.timeline.spin_clashes if each.entity)
 
+    @cached_property
+    def unspun(self) -> Mapping[NodeId, LongWait]:
+        """The longest wait of each node of a running program for which nobody spins it any more, or yet."""
+        longest: dict[NodeId, LongWait] = {}
+        for entity in self.entities():
+            wait = next(reversed(self.waits(entity.id)), None)
+            if wait is None or not wait.is_open or wait.parts[-1].reason is not Reason.NOBODY_SPINS:
+                continue
+            known = longest.get(entity.node)
+            is_longer = known is None or wait.parts[-1].start < known.parts[-1].start
+            if is_longer and self.end_of_program(entity) is None:
+                longest[entity.node] = wait
+        return longest
+
     def stood_in_call(self, entity: EntityId, start: Nanoseconds, end: Nanoseconds) -> bool:
         """Whether a callback was blocked in a call between two times."""
         return any(each.entity == entity for each in self._blocked_in(Window(start, end)))
@@ -148,6 +162,22 @@ class TimelineView:
             until = last.end_at(self.end)
             if until > self.window.start:
                 yield LongWait(entity, since, until, last.end is None, parts)
+
+
+def raised_last(node: NodeId, timeline: Timeline) -> Span | None:
+    """Return the last call that the executor of a node ran, if it raised; else None.
+
+    Workers may begin one more before ``spin`` raises what a MultiThreadedExecutor kept.
+    """
+    whole = Window(0, timeline.end + 1)
+    members = (each.id for each in timeline.entities.values() if each.node == node)
+    own = [span for each in members for span in timeline.spans_of(each, whole)[-1:]]
+    if not own:
+        return None
+    thread = max(own, key=attrgetter("number")).thread
+    lanes = (timeline.spans_on(each, whole)[-2:] for each in pool_of(thread, timeline))
+    latest = sorted((span for lane in lanes for span in lane), key=attrgetter("number"), reverse=True)
+    return next((span for span in latest[: 1 + is_worker(thread, timeline)] if span.error), None)
 
 
 def pool_of(thread: ThreadId, timeline: Timeline) -> tuple[ThreadId, ...]:

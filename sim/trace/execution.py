@@ -25,7 +25,7 @@ ALWAYS = Window(-OPEN, OPEN)
 LATEST_SEARCHED = 64
 """The number of latest calls that are searched for the one that took a message with a late event."""
 
-_NONE = ("", "", False)
+_NONE = ("", "", False, ("", 0))
 """The exception of a call that raised none."""
 
 
@@ -65,7 +65,7 @@ class Spans(Intervals):
 
     def fail(self, row: RowId, event: CallbackFailed) -> None:
         """Set the exception of a span."""
-        failure = event.error, event.exception, event.no_response
+        failure = event.error, event.exception, event.no_response, (event.file, event.line)
         if failure not in self._failure_of:
             self._failure_of[failure] = len(self._failures)
             self._failures.append(failure)

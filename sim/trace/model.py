@@ -139,6 +139,8 @@ class Span(Lasting):
     """The class of that exception; "" if not known."""
     no_response: bool = False
     """Whether that exception stands for a service's callback that returned no response."""
+    raised_at: tuple[str, int] = ("", 0)
+    """The innermost file and line of the program's own that raised it."""
     number: int = field(default=-1, compare=False)
     """Its place among the spans of the run, in the order in which they were begun."""
 

@@ -14,7 +14,7 @@ from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.trace.events import RunEnded
 from sim.trace.timeline import Timeline
-from tests.diagnosis.findings import Diagnosed, diagnosed, executor_of, once
+from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, executor_of, once
 from tests.support.simulation import Simulation, Trace
 
 
@@ -174,3 +174,59 @@ def test_a_timer_that_was_given_what_a_call_returned_is_told_with_its_own_line()
     assert told.place is not None
     line = Path(__file__).read_text().splitlines()[told.place.first_line - 1]
     assert "node.create_timer(1.0, nothing)" in line
+
+
+def spun_by_another_thread(threads: int | None, *, catches: bool = False) -> Diagnosed:
+    """``fails`` raises at 2 s on a thread that spins, ``idles`` and ``takes`` wait from then on."""
+
+    def program(simulation: Simulation) -> None:
+        node, talker = Node("n"), Node("talker")
+        group = ReentrantCallbackGroup()
+
+        def fails() -> None:
+            with suppress(*[ValueError] * catches):
+                raise ValueError("no scan")
+
+        def idles() -> None: ...
+
+        def takes(_: object) -> None: ...
+
+        node.create_timer(1.0, idles, group)
+        node.create_subscription(Int32, "numbers", takes, 2, callback_group=group)
+        once(node, 2.0, fails, group)
+        publisher = talker.create_publisher(Int32, "numbers", 2)
+        talker.create_timer(0.3, lambda: publisher.publish(Int32()))
+        executor = executor_of(threads)
+        executor.add_node(node)
+
+        def spins() -> None:
+            with suppress(ValueError):
+                executor.spin()
+
+        simulation.start(spins, "spinner")
+        rclpy.spin(talker)
+
+    return diagnosed(program)
+
+
+@pytest.mark.parametrize("threads", [None, 2])
+def test_an_exception_that_ends_the_thread_that_spins_is_the_one_problem(threads: int | None) -> None:
+    run = spun_by_another_thread(threads)
+    assert run.problems() == {("spin-raised", "fails")}
+    told = run.explained("spin-raised")
+    on = " on spinner" if threads is None else ""
+    assert told.what.startswith(f"fails raised ValueError: no scan{on}, and nobody spins its node any more: ")
+    assert "idles" in told.what
+    assert "takes" in told.what
+    assert told.place is not None
+    line = Path(__file__).read_text().splitlines()[told.place.first_line - 1]
+    assert line.strip() == 'raise ValueError("no scan")'
+
+
+def test_what_is_lost_after_an_exception_ended_the_spin_is_part_of_that() -> None:
+    run = spun_by_another_thread(None)
+    assert run.one("dropped-messages").due_to == run.trace.entity("fails")
+
+
+def test_a_thread_whose_callbacks_catch_their_exceptions_spins_on() -> None:
+    assert spun_by_another_thread(None, catches=True).told() == set()

@@ -64,8 +64,9 @@ class Naive:
                     span = self._open(entity, thread)
                     span.end = t
                     suspended[entity].append(span)
-                case CallbackFailed(_, entity, thread, error, _, _):
-                    self._open(entity, thread).error = error
+                case CallbackFailed(_, entity, thread, error, file, line):
+                    span = self._open(entity, thread)
+                    span.error, span.raised_at = error, (file, line)
                 case CallbackEnded(t, entity, thread):
                     self._open(entity, thread).end = t
 

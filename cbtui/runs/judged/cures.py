@@ -46,6 +46,7 @@ _NAMES = {
     "nobody-offers": "service that nobody offers",
     "service-never-comes": "wait for a service",
     "node-never-spins": "node that nobody spins",
+    "spin-raised": "exception that ends spin()",
 }
 """Problems whose rule has another name in sentences."""
 

@@ -3,7 +3,7 @@
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
 from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing, WaitsForLock
-from sim.diagnosis.rules.errors import ExceptionSwallowed, ProgramRaised
+from sim.diagnosis.rules.errors import ExceptionSwallowed, ProgramRaised, SpinRaised
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.leaks import NeverDestroyed
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
@@ -27,6 +27,7 @@ RULES: tuple[Rule, ...] = (
     ServiceNeverComes(),
     StaysInLoop(),
     ProgramRaised(),
+    SpinRaised(),
     NodeNeverSpins(),
     NobodyOffers(),
     QosMismatch(),

@@ -10,10 +10,11 @@ from sim.diagnosis.edits.names import rename_definition
 from sim.diagnosis.edits.replies import futures_used, use_in_done_callback
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, line_location, made_at, place_of
-from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of
-from sim.diagnosis.words import often, who
+from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of, raised_last
+from sim.diagnosis.words import listed, often, who
 from sim.files.untrusted import program_text
-from sim.trace.events import EntityKind, RunEnded
+from sim.quantities.nanoseconds import SECOND
+from sim.trace.events import EntityId, EntityKind, Reason, RunEnded
 from sim.trace.model import AxisMarkKind, EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -129,6 +130,51 @@ _KNOWN = tuple(
     )
 )
 """Exceptions that Python words alike in every program, each with the reason and the cure in rclpy's terms."""
+
+
+class SpinRaised(Rule):
+    """A callback raised, and nobody has spun its node since, though the program goes on.
+
+    So it is when a thread that spins ends by the exception. The losses that follow are part of the finding.
+    """
+
+    id = "spin-raised"
+    summary = "an exception ends a spin(), and the program goes on without it"
+    by_culprit = True
+    threshold = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each call that raised, with the first wait that it led to."""
+        found: dict[EntityId, Finding] = {}
+        taken = {clash.node for clash in view.timeline.spin_clashes}
+        for node, wait in view.unspun.items():
+            span = raised_last(node, view.timeline)
+            waited = view.end - wait.parts[-1].start
+            if span is None or span.end is None or waited < self.threshold or node in taken:
+                continue
+            if span.entity not in found or waited > found[span.entity].size:
+                found[span.entity] = Finding(
+                    self, span.end, view.end, span.entity, span.entity, size=waited, thread=span.thread
+                )
+        yield from found.values()
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        subject, thread = who(found.subject, timeline), timeline.threads[found.thread]
+        span = timeline.spans_of(found.subject, Window(0, found.at + 1))[-1]
+        on = "" if thread.executor else f" on {thread.name}"
+        waiting = listed(
+            who(each, timeline)
+            for each, wait in timeline.moment(found.until).waiting.items()
+            if wait.reason is Reason.NOBODY_SPINS
+            and (last := raised_last(timeline.entities[each].node, timeline)) is not None
+            and last.entity == found.subject
+        )
+        return Explanation(
+            f"{subject} raised {span.error}{on}, and nobody spins its node any more: {waiting} cannot run",
+            "an exception of a callback comes out of spin() and ends it, and a thread that only spins",
+            f"correct the line, or catch the exception in {subject}",
+            line_location(*span.raised_at) or place_of(found.subject, timeline),
+        )
 
 
 class ExceptionSwallowed(Rule):

@@ -18,7 +18,7 @@ from sim.diagnosis.rule import (
     loop_beside_spin,
     place_of,
 )
-from sim.diagnosis.timeline_view import LongWait, TimelineView
+from sim.diagnosis.timeline_view import LongWait, TimelineView, raised_last
 from sim.diagnosis.words import SPIN_ALWAYS, often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
@@ -51,6 +51,9 @@ class DroppedMessages(Rule):
                 count = len(times)
                 waits = view.timeline.waits_of(entity.id, Window(times[0], times[0] + 1))
                 holder = waits[-1].holder if waits else 0
+                if waits and waits[-1].reason is Reason.NOBODY_SPINS:
+                    ended = raised_last(entity.node, view.timeline)
+                    holder = ended.entity if ended else 0
                 yield Finding(
                     self, times[0], times[-1], entity.id, holder, due_to=holder, size=count, count=count
                 )

@@ -17,7 +17,7 @@ from sim.diagnosis.rule import (
     place_of,
 )
 from sim.diagnosis.rules.edits import not_reached
-from sim.diagnosis.timeline_view import LongWait, TimelineView
+from sim.diagnosis.timeline_view import LongWait, TimelineView, raised_last
 from sim.diagnosis.words import SPIN_ALWAYS, SPIN_ONCE, group_of, listed, often, only_thread, threads_for, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
@@ -162,7 +162,7 @@ class BehindOthers(_KeptWaiting):
 
 
 class NodeNeverSpins(Rule):
-    """A callback of a node is ready, and no executor spins the node."""
+    """A callback of a node is ready, and no executor spins the node, unless an exception ended that."""
 
     id = "node-never-spins"
     summary = "callbacks are ready and nobody spins their node"
@@ -171,22 +171,12 @@ class NodeNeverSpins(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield for each node the callback that has waited longest."""
         taken = {clash.node for clash in view.timeline.spin_clashes}
-        longest: dict[int, LongWait] = {}
-        for entity in view.entities():
-            wait = next(reversed(view.waits(entity.id)), None)
-            if wait is None or not wait.is_open or wait.parts[-1].reason is not Reason.NOBODY_SPINS:
-                continue
-            since = wait.parts[-1].start
-            if entity.node in taken:
-                continue
-            if view.end - since >= self.threshold and view.end_of_program(entity) is None:
-                known = longest.get(entity.node)
-                if known is None or since < known.parts[-1].start:
-                    longest[entity.node] = wait
-        for node, wait in longest.items():
+        for node, wait in view.unspun.items():
             name = view.timeline.nodes.get(node, "")
             since = wait.parts[-1].start
-            yield Finding(self, since, view.end, wait.entity, about=name, size=view.end - since)
+            is_long = view.end - since >= self.threshold
+            if is_long and node not in taken and raised_last(node, view.timeline) is None:
+                yield Finding(self, since, view.end, wait.entity, about=name, size=view.end - since)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
