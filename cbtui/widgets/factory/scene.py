@@ -17,7 +17,7 @@ from cbtui.widgets.lanes.rows import (
     never_ran,
 )
 from sim.diagnosis.words import thread_count
-from sim.trace.events import EntityKind, GroupKind, ThreadId
+from sim.trace.events import EntityKind, GroupKind, Reason, ThreadId
 from sim.trace.figures.waiting import waits_for_others
 from sim.trace.model import Blocked, EntityInfo, GroupInfo, Moment, Nanoseconds, Queue, Span, Wait, Window
 from sim.trace.roster import roster_of
@@ -39,6 +39,8 @@ class WorkerState(Enum):
     COMES = auto()
     WORKS = auto()
     LEAVES = auto()
+    STOPPED = auto()
+    """What it ran last raised, and nobody spins the node of that: the exception came out of ``spin()``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,8 +204,20 @@ class _SceneBuilder:
             return FactoryWorker(
                 name, WorkerState.LEAVES, span, self._step(self._now - span.end_at(self._now))
             )
+        if self._has_stopped(thread):
+            return FactoryWorker(name, WorkerState.STOPPED)
         ran = ever_ran(self._timeline, thread, self._now)
         return FactoryWorker(name, WorkerState.IDLE if ran else self._before_work(thread))
+
+    def _has_stopped(self, thread: ThreadId) -> bool:
+        """Whether a thread, no worker of an executor, has raised and left a node that nobody spins."""
+        entities = self._timeline.entities
+        waits = self._moment.waiting.values()
+        unspun = {entities[each.entity].node for each in waits if each.reason is Reason.NOBODY_SPINS}
+        if not unspun or self._timeline.threads[thread].executor:
+            return False
+        last = self._timeline.spans_on(thread, Window(0, self._now + 1))[-1:]
+        return any(span.error and entities[span.entity].node in unspun for span in last)
 
     def _before_work(self, thread: ThreadId = 0) -> WorkerState:
         """The state of a thread that has run nothing yet; 0 for one that has not been started."""

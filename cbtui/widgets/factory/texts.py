@@ -186,6 +186,8 @@ def activity_texts(worker: FactoryWorker, timeline: Timeline) -> tuple[str, ...]
             return ("not used yet", "unused", "unused")
         case WorkerState.IDLE:
             return ("waits for work", "waits", "waits")
+        case WorkerState.STOPPED:
+            return ("spins no more", "stopped", "stopped")
         case _:
             return (*(f"{word} {_letter(worker, timeline)}" for word in _WHERE[worker.stay]), "")
 

@@ -62,7 +62,9 @@ def _crowd(canvas: Canvas, scene: FactoryScene, line: int) -> None:
 def _counted(workers: Sequence[FactoryWorker]) -> str:
     busy = sum(worker.inside for worker in workers)
     unused = sum(worker.stay in _UNUSED for worker in workers)
-    parts = ((busy, "busy"), (len(workers) - busy - unused, "idle"), (unused, "unused"))
+    stopped = sum(worker.stay is WorkerState.STOPPED for worker in workers)
+    idle = len(workers) - busy - unused - stopped
+    parts = ((busy, "busy"), (idle, "idle"), (stopped, "stopped"), (unused, "unused"))
     return ", ".join(f"{number} {what}" for number, what in parts if number)
 
 

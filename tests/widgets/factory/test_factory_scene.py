@@ -326,3 +326,14 @@ def test_a_timer_that_was_cancelled_has_no_next_tick_until_it_is_called_again() 
         return None if belt.tick is None else belt.tick.due
 
     assert [due(at) for at in (1.02, 1.06, 2.5, 3.5)] == [ns(2.0), None, None, ns(4.0)]
+
+
+def test_a_thread_whose_callback_raised_and_whose_node_nobody_spins_waits_for_no_work() -> None:
+    run = Run()
+    worker = run.thread("Thread-1 (spin)")
+    timer = run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0)
+    run.start(timer, worker, 1.0)
+    run.fail(timer, worker, 1.0, "ValueError: no scan")
+    run.wait(timer, 2.0, reason=Reason.NOBODY_SPINS)
+    run.stop(9.0)
+    assert [each.stay for each in scene_at(told(run), 3.0).workers] == [WorkerState.STOPPED]
