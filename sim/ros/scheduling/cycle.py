@@ -160,10 +160,7 @@ class Cycle:
         return True
 
     def _find_more(self, now: int) -> None:
-        """Add what came before found work was released, if the wait that found it lasted so long.
-
-        rclpy's wait takes up to a millisecond, in which it needs no interpreter, and looks at its end.
-        """
+        """Add what came until now, if rclpy's wait, which needs no interpreter, lasts so long (to 1 ms)."""
         if self._snapshot and not self._yielded:
             found = self._awaited(self._ready(now))
             if len(found) > len(self._snapshot) and self._clock.choose(2):
@@ -174,10 +171,7 @@ class Cycle:
         return None if self.held else self._serve(now)
 
     def snapshot_ended(self, now: int) -> bool:
-        """Whether a snapshot that was served in part is now at its end. Call it once per snapshot.
-
-        If it is not, the rest stays.
-        """
+        """Whether a snapshot served in part is at its end; if not, the rest stays. Call it once for each."""
         if self._due_tasks:
             return False
         if self._following is _GATHERING:
@@ -314,9 +308,8 @@ class Cycle:
         self._due_tasks, self._tasks = self._tasks, self._due_tasks
         if self.view is not self._nodes:
             self._put_tasks_off()
-        if (
-            self._asks_tasks_again and len(self._due_tasks) > 1
-        ):  # rclpy keeps tasks in one list until they are done
+        # rclpy keeps tasks in one list until they are done.
+        if self._asks_tasks_again and len(self._due_tasks) > 1:
             self._due_tasks = deque(sorted(set(self._due_tasks), key=lambda task: task.number))
         if self._newest_task_first:
             self._due_tasks.reverse()
