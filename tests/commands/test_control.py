@@ -109,7 +109,7 @@ def test_a_line_for_a_run_whose_console_outlives_it_gets_one_sentence(
         assert cli.main(["ros2", "topic", "list"]) == 1
     finally:
         session.stop()
-    over = "cbtui: that run is over; press r in its console to run it again, or open another one\n"
+    over = "cbtui: that run is over; run it again, or open another one\n"
     assert capsys.readouterr() == ("", over)
 
 

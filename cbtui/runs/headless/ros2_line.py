@@ -51,7 +51,7 @@ def _follow_remote(line: RemoteLine) -> int:
             case LineOutput(text=said, error=error):
                 write_line(without_tabs(said), error=error)
             case LineResult(status=None):
-                complain("that run is over; press r in its console to run it again, or open another one")
+                complain("that run is over; run it again, or open another one")
                 return _ABORTED
             case LineResult(status=int() as status):
                 return status

@@ -162,13 +162,12 @@ class SpinRaised(Rule):
         subject, thread = who(found.subject, timeline), timeline.threads[found.thread]
         span = timeline.spans_of(found.subject, Window(0, found.at + 1))[-1]
         on = "" if thread.executor else f" on {thread.name}"
-        waiting = listed(
-            who(each, timeline)
-            for each, wait in timeline.moment(found.until).waiting.items()
-            if wait.reason is Reason.NOBODY_SPINS
-            and (last := raised_last(timeline.entities[each].node, timeline)) is not None
-            and last.entity == found.subject
-        )
+        waits = timeline.moment(found.until).waiting.values()
+        unspun = [each.entity for each in waits if each.reason is Reason.NOBODY_SPINS]
+        nodes = {timeline.entities[each].node for each in unspun}
+        lasts = ((node, raised_last(node, timeline)) for node in nodes)
+        ended = {node for node, last in lasts if last is not None and last.entity == found.subject}
+        waiting = listed(who(each, timeline) for each in unspun if timeline.entities[each].node in ended)
         return Explanation(
             f"{subject} raised {span.error}{on}, and nobody spins its node any more: {waiting} cannot run",
             "an exception of a callback comes out of spin() and ends it, and a thread that only spins",
