@@ -1,9 +1,10 @@
 """``cbtui``, ``cbtui open`` and ``cbtui replay``: the commands that open the console."""
 
 import argparse
+import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,7 @@ from cbtui.commands.options.targets import (
     puzzle_of,
     refuse,
 )
+from cbtui.terminal.capabilities import is_dumb
 
 
 def add_open_options(parser: argparse.ArgumentParser) -> None:
@@ -72,10 +74,8 @@ def open_console(options: argparse.Namespace) -> int:
         opened = lesson_of(target, or_file=True)
         check_seed(options.seed, opened.setup.clock)
         lesson = opened.id
-    look = appearance(options)
+    look = console_look(options, "cbtui run")
     changed = None if target is None else changes.seeded_changes_of(options)
-    if not look.screen_reader:
-        need_terminal("cbtui run")
     _read_lessons()
     return run_console(
         look, start_lesson=lesson, start_puzzle=puzzle, start_file=start_file, start_changes=changed
@@ -91,9 +91,7 @@ def _open_exercise(options: argparse.Namespace) -> int:
         refuse(
             "an exercise is run as your file says: change that, and leave out the options on threads and such"
         )
-    look = appearance(options)
-    if not look.screen_reader:
-        need_terminal("cbtui check")
+    look = console_look(options, "cbtui check")
     return run_console(look, start_exercise=lesson.id, start_changes=changed)
 
 
@@ -116,10 +114,19 @@ def _show_recording(options: argparse.Namespace, name: str) -> int:
         recording = read(Path(name))
     except (RecordingError, ValueError) as error:
         refuse(str(error))
-    look = appearance(options)
+    return run_console(console_look(options, "cbtui info"), start_recording=recording)
+
+
+def console_look(options: argparse.Namespace, instead: str) -> Appearance:
+    """Return the appearance by the options; exits with code 2 where a console cannot be drawn.
+
+    ``instead`` is the command that needs no terminal.
+    """
+    with _opening():  # the looks are Textual's, which takes a while to import
+        look = appearance(options)
     if not look.screen_reader:
-        need_terminal("cbtui info")
-    return run_console(look, start_recording=recording)
+        need_terminal(instead)
+    return look
 
 
 def run_console(look: Appearance, **begins_with: Any) -> int:
@@ -129,11 +136,10 @@ def run_console(look: Appearance, **begins_with: Any) -> int:
     """
     if look.screen_reader:
         return open_in_lines(look, **begins_with)
-    is_menu = all(each is None for each in begins_with.values())
-    with nullcontext() if is_menu else _opening():
+    with _opening():
         from cbtui.app import CbtuiApp
 
-        if not is_menu:
+        if any(each is not None for each in begins_with.values()):
             import cbtui.screens.lesson  # noqa: F401 -- here, for once the app runs the screen is empty
 
         app = CbtuiApp(
@@ -158,8 +164,9 @@ def _opening() -> Iterator[None]:
 
 def _write(text: str) -> None:
     with suppress(OSError):  # the console tells of a terminal that is gone
-        sys.stderr.write(text)
-        sys.stderr.flush()
+        if sys.stderr.isatty() and not is_dumb(os.environ):
+            sys.stderr.write(text)
+            sys.stderr.flush()
 
 
 _CLEAR_LINE = "\x1b[K"

@@ -5,8 +5,6 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from msgspec import structs
-
 from cbtui.commands.check import add_limit, exercise_of
 from cbtui.commands.options import changes, inputs, more_lessons, values
 from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, refuse
@@ -118,6 +116,8 @@ def explore(options: argparse.Namespace) -> int:
 
 def _sample(shard: "Shard", exploration: "Exploration", part: int, parts: int) -> "tuple[Shard, bool]":
     """Run one part of the seeds; returns the results, and whether Ctrl-C ended the run."""
+    from msgspec import structs
+
     numbers = range(shard.first, shard.first + shard.schedules)[part - 1 :: parts]
     usual = shard.strategy == "pos"
     seeds: list[Seed] = [number if usual else f"{shard.strategy}:{number}" for number in numbers]
@@ -128,6 +128,8 @@ def _sample(shard: "Shard", exploration: "Exploration", part: int, parts: int) -
 
 def _search(shard: "Shard", exploration: "Exploration", part: int, parts: int) -> "tuple[Shard, bool]":
     """Run all schedules within a bound, or one part of them; returns as ``_sample`` does."""
+    from msgspec import structs
+
     from cbtui.runs.judged.bounded_search import BoundedSearch
 
     assert shard.preemptions is not None

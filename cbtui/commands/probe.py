@@ -5,9 +5,9 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands.console import run_console
-from cbtui.commands.options.appearance import add_options, appearance
-from cbtui.commands.options.targets import need_terminal, refuse
+from cbtui.commands.console import console_look, run_console
+from cbtui.commands.options.appearance import add_options
+from cbtui.commands.options.targets import refuse
 from cbtui.commands.options.values import duration, port, process_or_address
 from cbtui.text.output import complain, say
 
@@ -108,9 +108,7 @@ def attach(options: argparse.Namespace) -> int:
         return 0
     watched = str(folder) if numbers or not addresses else ""
     real = RealRos(watched=watched, processes=numbers, addresses=addresses)
-    look = appearance(options)
-    need_terminal("cbtui attach --list")
-    return run_console(look, start_program=of_processes(real, found))
+    return run_console(console_look(options, "cbtui attach --list"), start_program=of_processes(real, found))
 
 
 def _process_at(address: tuple[str, int]) -> "Hello":

@@ -9,11 +9,10 @@ import time
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from cbtui.commands.console import run_console
+from cbtui.commands.console import console_look, run_console
 from cbtui.commands.options import changes, values
 from cbtui.commands.options.appearance import add_options as add_appearance
-from cbtui.commands.options.appearance import appearance
-from cbtui.commands.options.targets import need_terminal, refuse
+from cbtui.commands.options.targets import refuse
 from cbtui.commands.probe import probes_folder
 from cbtui.text.installing import install_command
 from cbtui.text.output import say
@@ -47,10 +46,9 @@ def robot(options: argparse.Namespace) -> int:
     if options.map:
         from cbtui.runs.setup.shown_program import of_robot
 
-        look = appearance(options)
-        need_terminal("cbtui robot")
         return run_console(
-            look, start_program=of_robot(probes_folder(), options.rate, changes.physics_of(options))
+            console_look(options, "cbtui robot"),
+            start_program=of_robot(probes_folder(), options.rate, changes.physics_of(options)),
         )
     from sim.real.robot import drive, transforms
 

@@ -4,11 +4,13 @@ import os
 import pty
 import subprocess
 import sys
+from io import StringIO
 from pathlib import Path
 
 import pytest
 
 from cbtui import cli
+from cbtui.commands import console
 from cbtui.commands.options.appearance import Appearance, appearance, given
 from cbtui.keys.config import read_text
 from cbtui.terminal.capabilities import BROWSER_DRIVER, charset_of
@@ -120,3 +122,27 @@ def test_a_terminal_that_cannot_place_its_cursor_is_refused_in_one_line() -> Non
         assert done.returncode == 2
         said = screen.read(4096).decode().splitlines()
     assert said == ["cbtui: this terminal (TERM=dumb) cannot place its cursor; use cbtui run"]
+
+
+@pytest.mark.parametrize(("term", "said"), [("xterm-256color", "opening ...\r"), ("dumb", "")])
+def test_that_something_is_opened_is_said_before_the_looks_are_read(
+    monkeypatch: pytest.MonkeyPatch, term: str, said: str
+) -> None:
+    """Reading them imports Textual, which takes longer than one should look at nothing."""
+    terminal = StringIO()
+    monkeypatch.setattr(terminal, "isatty", lambda: True)
+    monkeypatch.setattr(sys, "stderr", terminal)
+    monkeypatch.setenv("TERM", term)
+    written: list[str] = []
+
+    def read(_options: object) -> Appearance:
+        written.append(terminal.getvalue())
+        raise SystemExit(2)
+
+    monkeypatch.setattr(console, "appearance", read)
+    for words in ([], ["open", "split-groups"]):
+        terminal.truncate(0)
+        terminal.seek(0)
+        with pytest.raises(SystemExit):
+            cli.main(words)
+    assert written == [said, said]
