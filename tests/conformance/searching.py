@@ -1,10 +1,10 @@
 """Looks for choices of the model's threads with which it goes as a real run did."""
 
-from collections import deque
-from collections.abc import Iterable
+from collections import defaultdict, deque
+from collections.abc import Iterable, Iterator
 from functools import partial
 from heapq import heappop, heappush
-from itertools import groupby
+from itertools import groupby, islice
 from random import Random
 
 from sim.clock.moves import Moves
@@ -25,9 +25,10 @@ def searched(results: Iterable[Result], distro: str, runs: int) -> list[Result]:
 
 
 class Search:
-    """Best first: what goes longest as a real run is tried with one choice more, before it goes otherwise.
+    """Best first, mostly: what goes longest as a real run is tried with one choice more.
 
-    A thread is often left at several places in turn with the same effect, so the places within a stretch are
+    Half of the tries go on from what is alike for less long, since what is longest so may be a dead end. A
+    thread is often left at several places in turn with the same effect, so the places within a stretch are
     tried spread out, not in a row; and runs that go on alike behind their last choice are followed once.
     """
 
@@ -35,19 +36,28 @@ class Search:
         self._case = result.case
         self._real = result.real
         self._distro = distro
-        self._untried: list[tuple[int, float, float, Moves]] = [(0, 0.0, 0.0, {})]
+        self._untried: dict[int, list[tuple[float, float, Moves]]] = defaultdict(list, {0: [(0.0, 0.0, {})]})
+        """By how many lines are alike, each a heap: the cheapest first."""
         self._random = Random(1)
         self._followed: set[tuple[object, ...]] = set()
 
     def finds(self, runs: int) -> bool:
         """Whether one of so many runs of the model goes as a real one."""
         for _ in range(0, runs, _RUNS_AT_ONCE):
-            tried = [heappop(self._untried)[-1] for _ in range(min(_RUNS_AT_ONCE, len(self._untried)))]
+            tried = list(islice(self._next(), _RUNS_AT_ONCE))
             said = on_model([self._case.system] * len(tried), self._distro, tried)
             for moves, model in zip(tried, said, strict=True):
                 if model is not None and self._is_it(moves, model):
                     return True
         return False
+
+    def _next(self) -> Iterator[Moves]:
+        """What to try next, as long as there is anything."""
+        while levels := sorted((alike for alike, untried in self._untried.items() if untried), reverse=True):
+            best, *others = levels
+            while others and self._random.random() < 0.5:
+                best, *others = others
+            yield heappop(self._untried[best])[-1]
 
     def _is_it(self, moves: Moves, model: Said) -> bool:
         if outcome(self._case._replace(model=model), list(self._real)) is Outcome.SAME:
@@ -66,8 +76,8 @@ class Search:
             cost = len(moves) + 2 * preemptions + 0.1 * (place - said)
             for turn, number in enumerate(_spread_out(list(stretch))):
                 for option in range(1, options):
-                    rank = (-alike, cost + 0.15 * turn.bit_length(), self._random.random())
-                    heappush(self._untried, (*rank, {**moves, number: option}))
+                    rank = (cost + 0.15 * turn.bit_length(), self._random.random())
+                    heappush(self._untried[alike], (*rank, {**moves, number: option}))
         return False
 
     def _alike(self, model: Said, real: Said) -> tuple[int, int]:
