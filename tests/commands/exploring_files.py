@@ -78,3 +78,21 @@ def main():
     time.sleep(1)
     assert n == 2, n
 """
+
+LOOPS = f"""import time
+{_HEAD}
+
+class Mine(Node):
+    def __init__(self):
+        super().__init__("loops")
+        self.seen = False
+        self.create_timer(0.1, self.wait)
+        self.create_timer(0.5, self.see)
+
+    def wait(self):
+        while not self.seen:
+            time.sleep(0.1)
+
+    def see(self):
+        self.seen = True
+"""

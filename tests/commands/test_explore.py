@@ -20,7 +20,7 @@ from cbtui.runs.judged.exploring import Exploration, ScheduleFailure, ScheduleRe
 from cbtui.runs.judged.shards import Shard
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
-from tests.commands.exploring_files import CHECK_THEN_ACT, IN_ONE_GROUP, LOCK_ORDER, LOST_UPDATE
+from tests.commands.exploring_files import CHECK_THEN_ACT, IN_ONE_GROUP, LOCK_ORDER, LOOPS, LOST_UPDATE
 from tests.support.processes import descendants, wait_until_gone
 
 
@@ -60,6 +60,15 @@ def test_locks_that_are_taken_in_two_orders_are_found(file: Path) -> None:
     assert "    deadlock\n" in explored.stdout
     assert "in forth" in explored.stdout
     assert "in back" in explored.stdout
+
+
+@pytest.mark.slow
+def test_a_callback_that_never_leaves_its_loop_has_failed_and_is_told_in_words(file: Path) -> None:
+    file.write_text(LOOPS)
+    explored = cbtui("explore", str(file), "--schedules", "2", "--for", "5")
+    assert explored.returncode == 1
+    assert "✗ all of them, such as seed 1\n    a callback does not leave its loop\n" in explored.stdout
+    assert "    diagnosis: wait has been in the loop of line 29 for 4." in explored.stdout
 
 
 @pytest.mark.slow

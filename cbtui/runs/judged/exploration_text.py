@@ -119,9 +119,9 @@ def _result(result: ScheduleResult, shown: ScheduleResult) -> Iterator[str]:
         yield from _steps(shown)
     for note in shown.notes:
         yield _wrapped(f"note: {note}", 4)
-    if result.problems:
-        yield _wrapped(f"diagnosis: {', '.join(result.problems)}", 4)
-    elif result.well:
+    for problem in shown.told or result.problems:
+        yield _wrapped(f"diagnosis: {problem}", 4)
+    if result.well and not result.problems:
         yield "    no problem"
 
 

@@ -1,7 +1,7 @@
 """Runs a program under many thread schedules, several at once, and returns the result of each."""
 
 import os
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import closing
 from dataclasses import dataclass, field
@@ -22,14 +22,20 @@ from cbtui.runs.recorded.repeat import why_unrepeatable
 from lessons.checks import problems
 from lessons.judge import Judge
 from sim.clock.schedule import Seed
+from sim.diagnosis import Finding
+from sim.diagnosis.text import location_text
 from sim.engine.setup import RunSetup
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import NoticeKind, Severity, ThreadChosen
 from sim.trace.model import Window
+from sim.trace.timeline import Timeline
 
 PRELOADED = ["cbtui.cli_commands", "sim.engine.preloaded"]
 """Modules of an engine, imported once in the server that every run is forked from."""
 _STUCK = ("self-made-deadlock", "needs-one-more-worker", "still-computing", "service-never-comes")
 """Ids of the diagnosis rules on callbacks that wait for ever."""
+_IN_LOOP, _LONG = "stays-in-loop", 3 * SECOND
+"""The id of the rule on callbacks that do not leave a loop, and how long that lasts if it is a failure."""
 
 
 Judged = TypeVar("Judged")
@@ -90,6 +96,8 @@ class ScheduleResult:
 
     failures: tuple[ScheduleFailure, ...] = ()
     problems: tuple[str, ...] = ()
+    told: tuple[str, ...] = field(default=(), compare=False)
+    """These problems in words, each with its line."""
     notes: tuple[str, ...] = field(default=(), compare=False)
     """Warnings of the engine."""
     repeatable: bool = field(default=True, compare=False)
@@ -146,24 +154,27 @@ class Exploration:
         return each_schedule(self.setup, self.name, self.limit, seeds, self._result, processes)
 
     def _result(self, observed: ObservedRun) -> ScheduleResult:
-        found = tuple(dict.fromkeys(each.rule.id for each in problems(observed.timeline)))
+        found: dict[str, Finding] = {}
+        for problem in problems(observed.timeline):
+            found.setdefault(problem.rule.id, problem)
         failures = tuple(dict.fromkeys(self._failures(observed, found)))
         repeatable = why_unrepeatable(observed.timeline.notices) is None
         return ScheduleResult(
             failures,
-            found,
+            tuple(found),
+            tuple(_told(each, observed.timeline) for each in found.values()),
             tuple(dict.fromkeys(_warnings(observed))),
             repeatable,
             tuple(map(step_text, filter(attrgetter("chosen"), observed.timeline.choices))),
             tuple(conflict_text(each, observed.timeline) for each in observed.timeline.conflicts),
         )
 
-    def _failures(self, observed: ObservedRun, found: tuple[str, ...]) -> Iterator[ScheduleFailure]:
+    def _failures(self, observed: ObservedRun, found: Mapping[str, Finding]) -> Iterator[ScheduleFailure]:
         raised = [*_raised(observed)]
         yield from raised
-        for rule in found:
-            if rule in _STUCK:
-                yield ScheduleFailure(f"deadlock: {rule}")
+        for rule, problem in found.items():
+            if rule in _STUCK or (rule == _IN_LOOP and problem.lasted >= _LONG):
+                yield ScheduleFailure(problem.rule.summary)
         kinds = {each.kind for each in observed.timeline.notices}
         for notice in observed.timeline.notices:
             if notice.kind is NoticeKind.DEADLOCK:
@@ -180,6 +191,12 @@ class Exploration:
             for each in self.judge.verdicts(observed.timeline):
                 if not each.verdict.passed:
                     yield ScheduleFailure(f"check failed: {each.check.asks}", verdict_line(each))
+
+
+def _told(found: Finding, timeline: Timeline) -> str:
+    explanation = found.rule.explain(found, timeline)
+    where = location_text(found, explanation)
+    return f"{explanation.what} ({where})" if where else explanation.what
 
 
 def _warnings(observed: ObservedRun) -> Iterator[str]:
