@@ -55,8 +55,14 @@ def test_an_exception_that_comes_when_the_program_ends_is_told_with_what_main_sh
     assert told.cure.startswith("catch exceptions in fails and log them; let main() wait for fails")
 
 
-def test_an_exception_that_a_later_callback_brings_out_is_well() -> None:
-    assert raising(2, ticks_on=True).problems() == set()
+@pytest.mark.parametrize("threads", [None, 2])
+def test_an_exception_that_comes_out_and_is_caught_is_worth_a_remark_at_its_line(threads: int | None) -> None:
+    run = raising(threads, ticks_on=True)
+    assert run.problems() == set()
+    told = run.explained("exception-caught")
+    assert told.what == "fails raised ValueError: no scan, and the program went on"
+    assert told.place is not None
+    assert Path(__file__).read_text().splitlines()[told.place.first_line - 1].strip().startswith("raise")
 
 
 def test_a_single_threaded_executor_swallows_nothing() -> None:

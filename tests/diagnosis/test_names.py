@@ -7,8 +7,9 @@ import pytest
 from sim.diagnosis.rules.names import nearest
 from sim.interfaces import message, service
 from sim.ros.node.node import Node
+from sim.trace.events import ArenaShown
 from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, spin
-from tests.support.simulation import Simulation
+from tests.support.simulation import Simulation, Trace
 
 Bool = message("std_msgs", "Bool")
 Trigger = service("std_srvs", "Trigger")
@@ -31,6 +32,24 @@ def talk(published: str, heard: str, until: float = 3.0) -> Diagnosed:
         spin(node, None)
 
     return diagnosed(program, until)
+
+
+def drive(published: str, also: str = "odom") -> Diagnosed:
+    """A timer that publishes on two topics, in a run with a robot."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        publishers = [node.create_publisher(Int32, name, 10) for name in (published, also)]
+
+        def tick() -> None:
+            for publisher in publishers:
+                publisher.publish(Int32(data=1))
+
+        node.create_timer(0.5, tick)
+        spin(node, None)
+
+    trace = diagnosed(program, 3.0).trace
+    return Diagnosed(Trace([ArenaShown(0, (), (0.9, 0.0, 0.2), 0.1), *trace.events]))
 
 
 def ask(offered: tuple[type, str], called: tuple[type, str]) -> Diagnosed:
@@ -134,3 +153,20 @@ def test_a_service_that_nothing_resembles_is_to_be_started() -> None:
     told = ask((SetBool, "lamp"), (SetBool, "door")).explained("nobody-offers")
     assert "start the node that offers it" in told.cure
     assert told.remedies == ()
+
+
+def test_a_misspelt_topic_of_the_robot_is_told_at_the_callback_that_publishes() -> None:
+    run = drive("cmd_vell")
+    assert run.problems() == {("misspelt-topic", "")}
+    told = run.explained("misspelt-topic")
+    assert told.what == (
+        "the robot hears nothing: nobody publishes on /cmd_vel, and nobody hears /cmd_vell, "
+        "on which tick publishes"
+    )
+    assert told.place is not None
+    assert told.place.first_line == line_with("for publisher in publishers:") - 1
+
+
+def test_a_robot_that_is_told_where_to_go_or_that_nobody_means_is_well() -> None:
+    assert drive("cmd_vell", also="cmd_vel").problems() == set()
+    assert drive("speed").problems() == set()

@@ -229,3 +229,38 @@ def test_a_node_that_is_spun_after_a_while_is_well() -> None:
         rclpy.spin(node)
 
     assert diagnosed(program).told() == set()
+
+
+def kept_late(period: float, length: float, every: float) -> Diagnosed:
+    """``often`` is due each period; ``slow`` of the same group works so long, each so many seconds."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def often() -> None: ...
+
+        def slow() -> None:
+            simulation.sleep(length)
+
+        node.create_timer(period, often)
+        node.create_timer(every, slow)
+        spin(node, 4)
+
+    return diagnosed(program, 20.0)
+
+
+def test_a_timer_that_misses_ticks_at_most_calls_is_starved() -> None:
+    run = kept_late(0.05, 0.3, 0.31)
+    assert ("group-starvation", "often") in run.problems()
+    assert "often waited 290 ms: group A was held by slow (" in run.explained("group-starvation").what
+
+
+@pytest.mark.parametrize(
+    ("period", "length", "every"),
+    [(0.05, 0.3, 5.0), (0.2, 0.3, 0.31), (0.001, 0.04, 0.041)],
+    ids=["at few calls", "by less than two periods", "for a moment"],
+)
+def test_a_timer_that_is_late_now_and_then_or_for_a_moment_is_well(
+    period: float, length: float, every: float
+) -> None:
+    assert kept_late(period, length, every).problems() == set()

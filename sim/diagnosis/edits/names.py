@@ -1,16 +1,28 @@
 """Edits of names: of topics and services, and of what a class defines."""
 
 import ast
+from collections.abc import Iterable
 
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, name_of
 
 
 def rename(source: SourceEditor, line: int, name: str, new: str) -> None:
     """Change the topic or service of the endpoint that is created at a line, if a string names it."""
+    calls = (each for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0))
+    _rename(source, calls, name, new)
+
+
+def rename_publisher(source: SourceEditor, _line: int, name: str, new: str) -> None:
+    """Change the topic of the one publisher that a file creates for it, if a string names it."""
+    calls = source.nodes(ast.Call)
+    made = (each for each in calls if ast.unparse(each.func).endswith(".create_publisher"))
+    _rename(source, made, name, new)
+
+
+def _rename(source: SourceEditor, calls: Iterable[ast.Call], name: str, new: str) -> None:
     texts = [
         argument
-        for call in source.nodes(ast.Call)
-        if call.lineno <= line <= (call.end_lineno or 0)
+        for call in calls
         for argument in (*call.args, *(each.value for each in call.keywords))
         if isinstance(argument, ast.Constant)
         and isinstance(argument.value, str)

@@ -3,7 +3,7 @@
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
 from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing, WaitsForLock
-from sim.diagnosis.rules.errors import ExceptionSwallowed, ProgramRaised, SpinRaised
+from sim.diagnosis.rules.errors import ExceptionCaught, ExceptionSwallowed, ProgramRaised, SpinRaised
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.leaks import NeverDestroyed
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
@@ -34,6 +34,7 @@ RULES: tuple[Rule, ...] = (
     MisspeltTopic(),
     ParameterOverruled(),
     ExceptionSwallowed(),
+    ExceptionCaught(),
     UnreturnedResponse(),
     NeverDestroyed(),
     GroupStarvation(),

@@ -234,3 +234,40 @@ class ExceptionSwallowed(Rule):
             if (span.entity, span.start) != (found.subject, found.at)
         ]
         return None if any(start >= found.until for start in starts) else Weight.PROBLEM
+
+
+class ExceptionCaught(Rule):
+    """A callback raised, and its node was spun on: the program caught what came out of its executor.
+
+    Whether the program says anything of it is unknown.
+    """
+
+    id = "exception-caught"
+    summary = "a callback raises, and the program catches it and goes on"
+    weight = Weight.REMARK
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each call that raised, if a callback of its node began since."""
+        if not any(mark.kind is AxisMarkKind.ERROR for mark in view.timeline.marks(view.window)):
+            return
+        for entity in view.entities():
+            for span in view.spans(entity.id):
+                raised = span.error and span.end is not None and not span.no_response
+                if raised and _is_spun_since(span.end_at(view.end), entity, view):
+                    end = span.end_at(view.end)
+                    yield Finding(self, span.start, end, entity.id, size=span.start, detail=span.error or "")
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        subject = who(found.subject, timeline)
+        span = timeline.spans_of(found.subject, Window(found.at, found.at + 1))[0]
+        return Explanation(
+            f"{subject} raised {found.detail}{often(found.count)}, and the program went on",
+            "what an except clause around spin() or spin_once() takes, and does not log, nobody hears of",
+            f"correct the line, or catch the exception in {subject} and log it there",
+            line_location(*span.raised_at) or place_of(found.subject, timeline),
+        )
+
+
+def _is_spun_since(at: Nanoseconds, entity: EntityInfo, view: TimelineView) -> bool:
+    beside = (each for each in view.entities() if each.node == entity.node)
+    return any(span.start > at for each in beside for span in view.spans(each.id)[-1:])

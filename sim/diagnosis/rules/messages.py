@@ -7,6 +7,7 @@ from operator import attrgetter
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
 from sim.diagnosis.edits.profiles import match_quality
+from sim.diagnosis.edits.shared_data import uses_what_is_set
 from sim.diagnosis.rule import (
     Explanation,
     Finding,
@@ -24,7 +25,7 @@ from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind, QosMismatched, Reason
-from sim.trace.model import Nanoseconds, Span, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
 
 
@@ -96,7 +97,10 @@ class DroppedMessages(Rule):
 
 
 class StaleData(Rule):
-    """A timer's callback ran while a newer message than its node had seen had been waiting for long."""
+    """A timer's callback ran while a newer message than its node had seen had been waiting for long.
+
+    It is not told where the source shows that the timer uses nothing that the waiting callback sets.
+    """
 
     id = "stale-data"
     summary = "a timer decides on old data while newer messages wait"
@@ -107,23 +111,24 @@ class StaleData(Rule):
         """Yield each timer call that ran while messages had waited longer than the threshold."""
         worst: dict[tuple[EntityId, Nanoseconds], Finding] = {}
         for sensor in view.entities(EntityKind.SUBSCRIPTION):
-            timers = (each.id for each in view.entities(EntityKind.TIMER) if each.node == sensor.node)
-            for found in self._of(sensor.id, tuple(timers), view):
+            timers = [each for each in view.entities(EntityKind.TIMER) if each.node == sensor.node]
+            for found in self._of(sensor, timers, view):
                 known = worst.get((found.subject, found.at))
                 if known is None or known.size < found.size:
                     worst[found.subject, found.at] = found
         yield from worst.values()
 
-    def _of(self, sensor: EntityId, timers: Sequence[EntityId], view: TimelineView) -> Iterator[Finding]:
-        for wait in view.waits(sensor):
+    def _of(self, sensor: EntityInfo, timers: Sequence[EntityInfo], view: TimelineView) -> Iterator[Finding]:
+        for wait in view.waits(sensor.id):
             is_long = wait.until - wait.since >= self.threshold
             if wait.longest_part(wait.until).reason is Reason.NOBODY_SPINS:
                 continue  # its timer is spun as rarely
-            if is_long and view.timeline.calls_of(sensor, Window(0, wait.since + 1)):
+            if is_long and view.timeline.calls_of(sensor.id, Window(0, wait.since + 1)):
                 for timer in timers:
-                    for span in self._uninformed_calls(view, timer, wait):
-                        age, keeper = span.start - wait.since, wait.longest_part(span.start).holder
-                        yield Finding(self, span.start, span.start, timer, sensor, due_to=keeper, size=age)
+                    calls = [each.start for each in self._uninformed_calls(view, timer.id, wait)]
+                    for at in calls if calls and _may_use_what_is_set(sensor, timer) else ():
+                        age, keeper = at - wait.since, wait.longest_part(at).holder
+                        yield Finding(self, at, at, timer.id, sensor.id, due_to=keeper, size=age)
 
     def _uninformed_calls(self, view: TimelineView, timer: EntityId, wait: LongWait) -> Iterator[Span]:
         spans = view.spans(timer)
@@ -150,6 +155,11 @@ class StaleData(Rule):
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
         """A remark where what keeps the messages waiting is the problem."""
         return Weight.REMARK if found.due_to else Weight.PROBLEM
+
+
+def _may_use_what_is_set(sensor: EntityInfo, timer: EntityInfo) -> bool:
+    is_known = sensor.file and sensor.file == timer.file
+    return not is_known or uses_what_is_set(timer.file, sensor.first_line, timer.first_line) is not False
 
 
 class QosMismatch(Rule):

@@ -4,7 +4,7 @@ from collections.abc import Collection, Iterable, Iterator
 from difflib import SequenceMatcher
 
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.edits.names import rename
+from sim.diagnosis.edits.names import rename, rename_publisher
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, entity_of, made_at, place_of
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import who
@@ -18,12 +18,15 @@ _SHORTEST = 4
 """The least length of a last part that counts as alike if the other begins or ends with it."""
 _MOST = 50
 """Limit for the names that are compared; a beginner's program has fewer unheard topics."""
+_ROBOTS = "/cmd_vel"
+"""The topic on which the robot is told where to go."""
 
 
 class MisspeltTopic(Rule):
     """A subscription's topic has no publisher, and a topic of nearly the same name no subscription.
 
-    If that lasts for a while, both ends are probably meant to be one topic.
+    The robot's ``/cmd_vel`` counts as a subscription's. If that lasts for a while, both ends are probably
+    meant to be one topic.
     """
 
     id = "misspelt-topic"
@@ -38,13 +41,18 @@ class MisspeltTopic(Rule):
         unheard = [name for name in timeline.names_sent if name not in heard]
         unheard = [name for name in unheard if name not in timeline.services_called][:_MOST]
         silent = [each for each in ends if each.made_at[0] and not timeline.sent_on(each.name)][:_MOST]
-        for each in silent if unheard else ():
-            near = nearest(each.name, unheard)
+        ends_of_pairs = [(each.id, each.name) for each in silent]
+        if timeline.arena is not None and not timeline.sent_on(_ROBOTS):
+            ends_of_pairs.append((0, _ROBOTS))
+        for entity, name in ends_of_pairs if unheard else ():
+            near = nearest(name, unheard)
             since = timeline.sent_on(near)[0].at if near else view.end
             if view.end - since >= self.threshold:
-                yield Finding(self, since, view.end, each.id, about=near)
+                yield Finding(self, since, view.end, entity, about=near)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        if not found.subject:
+            return _explain_robot(found.about, timeline)
         end = entity_of(found, timeline)
         first = timeline.sent_on(found.about)[0].sender
         by = "" if first is None else f" by {who(first.entity, timeline)}"
@@ -56,6 +64,20 @@ class MisspeltTopic(Rule):
             made_at(end) or place_of(end.id, timeline),
             remedies=renaming(end, found.about, "subscribe to"),
         )
+
+
+def _explain_robot(published: str, timeline: Timeline) -> Explanation:
+    sender = timeline.sent_on(published)[0].sender
+    by = "the program" if sender is None else who(sender.entity, timeline)
+    place = None if sender is None else place_of(sender.entity, timeline)
+    return Explanation(
+        f"the robot hears nothing: nobody publishes on {_ROBOTS}, and nobody hears {published}, "
+        f"on which {by} publishes",
+        f"the robot does what it is told on {_ROBOTS}, letter by letter, and hears no other topic",
+        f"if the robot is meant, publish on {_ROBOTS}",
+        place,
+        remedies=by_edit(place, f"publish on {_ROBOTS}", rename_publisher, published, _ROBOTS),
+    )
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

@@ -26,22 +26,31 @@ from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 HALF_A_SECOND = SECOND // 2
+_SOON: Nanoseconds = SECOND // 20
+"""A timer's wait that is shorter is never long, however short its period."""
+_HABIT = 3
+"""The number of waits from which on their share of a timer's calls counts."""
 
 
 class _KeptWaiting(Rule):
-    """Others kept a ready callback waiting longer than the threshold in total, for one reason."""
+    """Others kept a ready callback waiting longer than the threshold in total, for one reason.
+
+    A timer that misses a tick meanwhile waits long, too, if that happens at most of its calls.
+    """
 
     is_effect = by_culprit = True
-    threshold = HALF_A_SECOND
     reason: ClassVar[Reason]
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield such waits."""
         for entity in view.entities():
+            threshold = HALF_A_SECOND
+            if entity.kind is EntityKind.TIMER:
+                threshold = min(threshold, max(2 * entity.period, _SOON))
             for wait in view.waits(entity.id):
                 parts = wait.because(self.reason)
                 waited = sum(map(wait.length, parts))
-                if waited < self.threshold or _may_wait_for_its_caller(entity, wait, view):
+                if waited < threshold or _may_wait_for_its_caller(entity, wait, view):
                     continue
                 shares: defaultdict[EntityId, Nanoseconds] = defaultdict(int)
                 for part in parts:
@@ -49,6 +58,12 @@ class _KeptWaiting(Rule):
                 culprit = max(shares, key=shares.__getitem__)
                 if culprit not in view.nested_spinners:
                     yield Finding(self, wait.since, wait.until, entity.id, culprit, size=waited)
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant if it is a timer that seldom waits, and never for long."""
+        calls = timeline.calls_of(found.subject, Window(0, timeline.end + 1))
+        is_long = found.size >= HALF_A_SECOND
+        return self.weight if is_long or found.count >= max(_HABIT, calls / 2) else None
 
     def _waiting(self, found: Finding, timeline: Timeline) -> list[EntityId]:
         """Return the callbacks that waited for the culprit at the worst time, the longest wait first."""
@@ -137,7 +152,8 @@ class NoFreeWorker(_KeptWaiting):
         """Irrelevant if the culprit also kept others out of its group, which is told with this."""
         kept = _others_waiting(found, Reason.GROUP_HELD, timeline)
         asked = (EntityKind.CLIENT, EntityKind.SERVICE)
-        return None if any(timeline.entities[each].kind not in asked for each in kept) else self.weight
+        is_told = any(timeline.entities[each].kind not in asked for each in kept)
+        return None if is_told else super().weigh(found, timeline)
 
 
 class BehindOthers(_KeptWaiting):
@@ -226,6 +242,7 @@ class NodeNeverSpins(Rule):
 def _others_waiting(found: Finding, reason: Reason, timeline: Timeline) -> list[EntityId]:
     """Return the callbacks but a finding's own that waited long for its culprit then, for a reason."""
     at = Window(found.at, found.until)
+    least = HALF_A_SECOND if found.size >= HALF_A_SECOND else found.size // 2
     return [
         each
         for each in timeline.entities
@@ -233,7 +250,7 @@ def _others_waiting(found: Finding, reason: Reason, timeline: Timeline) -> list[
         and any(
             wait.holder == found.culprit
             and wait.reason is reason
-            and min(wait.end_at(timeline.end), at.end) - wait.start >= HALF_A_SECOND
+            and min(wait.end_at(timeline.end), at.end) - wait.start >= least
             for wait in timeline.waits_of(each, at)
         )
     ]

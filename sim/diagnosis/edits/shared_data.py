@@ -1,0 +1,91 @@
+"""What the methods of a class share: whether one of them uses an attribute that another one changes."""
+
+import ast
+from collections.abc import Iterator
+from functools import lru_cache
+from pathlib import Path
+
+from sim.diagnosis.edits.source_editor import Function, NotSimpleError, SourceEditor
+from sim.files.untrusted import program_text
+
+_SENDS = ("publish", "call_async", "call", "send_goal_async")
+"""Methods of an attribute that leave it as it is."""
+
+
+def uses_what_is_set(file: str, setter: int, user: int) -> bool | None:
+    """Return whether a method uses what another one of its class sets; None if the source does not tell.
+
+    ``setter`` and ``user`` are lines of theirs. What methods of the class do that they call counts as theirs.
+    """
+    return _uses_what_is_set(program_text(Path(file)) or "", setter, user)
+
+
+@lru_cache(maxsize=64)
+def _uses_what_is_set(text: str, setter: int, user: int) -> bool | None:
+    try:
+        source = SourceEditor(text)
+        one, other = _Reach(source, setter), _Reach(source, user)
+    except NotSimpleError:
+        return None
+    return one.owner is not other.owner or bool(one.changed & other.used)
+
+
+class _Reach:
+    """The attributes and global variables that the method around a line, and what it calls of its class, use.
+
+    Raises:
+        NotSimpleError: not known: it is no method of a plain node, hands ``self`` on, or sets globals.
+    """
+
+    def __init__(self, source: SourceEditor, line: int) -> None:
+        self.used: set[str] = set()
+        self.changed: set[str] = set()
+        first = source.function_at(line)
+        owner = source.owner_of(first)
+        if owner is None or [*map(ast.unparse, owner.bases)] not in (["Node"], ["rclpy.node.Node"]):
+            raise NotSimpleError
+        self.owner = owner
+        targets = (target for each in source.tree.body for target in getattr(each, "targets", ()))
+        self._globals = {each.id for target in targets for each in source.nodes(ast.Name, target)}
+        methods = {each.name: each for each in owner.body if isinstance(each, Function)}
+        known, left = {first.name}, [first]
+        while left:
+            method = left.pop()
+            called = {*self._reached_in(method)} & methods.keys() - known
+            known |= called
+            left += (methods[each] for each in called)
+
+    def _reached_in(self, method: Function) -> Iterator[str]:
+        """Note what a method uses and changes itself; yield the methods of ``self`` that it names."""
+        itself = method.args.args[0].arg if method.args.args else ""
+        parents = {child: each for each in ast.walk(method) for child in ast.iter_child_nodes(each)}
+        for each in ast.walk(method):
+            if isinstance(each, ast.Global | ast.Nonlocal):
+                raise NotSimpleError
+            if isinstance(each, ast.Name) and each.id in self._globals:
+                self.used.add(each.id)
+                self.changed.add(each.id)
+            if not (isinstance(each, ast.Name) and each.id == itself):
+                continue
+            attribute = parents[each]
+            if not isinstance(attribute, ast.Attribute):
+                raise NotSimpleError
+            yield attribute.attr
+            parent = parents[attribute]
+            if isinstance(parent, ast.Call) and parent.func is attribute:
+                continue
+            self.used.add(attribute.attr)
+            if _changes(attribute, parents):
+                self.changed.add(attribute.attr)
+
+
+def _changes(attribute: ast.expr, parents: dict[ast.AST, ast.AST]) -> bool:
+    """Return whether an attribute, or a part of it, is set, or one of its methods may change it."""
+    context = vars(attribute).get("ctx")
+    parent = parents[attribute]
+    if isinstance(context, ast.Store | ast.Del):
+        return True
+    if isinstance(parent, ast.Attribute | ast.Subscript) and parent.value is attribute:
+        return _changes(parent, parents)
+    is_method = isinstance(parent, ast.Call) and parent.func is attribute
+    return is_method and isinstance(attribute, ast.Attribute) and attribute.attr not in _SENDS
