@@ -16,7 +16,30 @@ def descendants(process: int) -> list[int]:
 def engines_of(console: int) -> list[int]:
     """Return the numbers of a console's engines, from their first moment on."""
     children = psutil.Process(console).children()
-    return [each.pid for each in children if "spawn_main" in " ".join(each.cmdline())]
+    return [each.pid for each in children if "spawn_main" in command_line(each.pid)]
+
+
+def command_line(process: int) -> str:
+    """Return the words that a process was started with; "" if it has ended."""
+    try:
+        return " ".join(psutil.Process(process).cmdline())
+    except psutil.NoSuchProcess:
+        return ""
+
+
+def environment(process: int) -> dict[str, str]:
+    """Return the environment that a process was started with; an empty one if it has ended."""
+    try:
+        return psutil.Process(process).environ()
+    except psutil.NoSuchProcess:
+        return {}
+
+
+def port_of(process: int) -> int:
+    """Return the only port on which a process listens."""
+    connections = psutil.Process(process).net_connections("tcp")
+    (port,) = (each.laddr.port for each in connections if each.status == psutil.CONN_LISTEN)
+    return port
 
 
 def alive(process: int) -> bool:

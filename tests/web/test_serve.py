@@ -7,11 +7,10 @@ import socket
 import sys
 
 import aiohttp
-import psutil
 import pytest
 
 from cbtui import cli
-from tests.support.processes import alive
+from tests.support.processes import alive, command_line
 from tests.web.serving import Serving, serving
 
 pytestmark = [
@@ -47,7 +46,7 @@ async def until_an_engine_runs(server: Serving) -> int:
     async with asyncio.timeout(60):
         while True:
             for process in server.descendants():
-                if ENGINE in " ".join(psutil.Process(process).cmdline()):
+                if ENGINE in command_line(process):
                     return process
             await asyncio.sleep(0.05)
 

@@ -1,17 +1,15 @@
 """Nothing is reached without the token, which is shown once and then kept in a cookie."""
 
 import os
-import socket
 import subprocess
 import sys
 from collections.abc import Iterator
 
 import aiohttp
-import psutil
 import pytest
 
 from cbtui.web.token import AccessToken
-from tests.support.processes import descendants
+from tests.support.processes import command_line, descendants, environment, port_of
 from tests.web.serving import Serving, serving
 
 ROUTES = ("/", "/static/js/textual.js", "/static/", "/download/some-key", "/nothing-here", "/ws")
@@ -79,12 +77,9 @@ async def test_the_token_is_left_out_of_the_address_and_kept_in_a_cookie(server:
 
 @pytest.mark.slow
 async def test_behind_https_the_cookie_is_for_https_alone() -> None:
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        here = f"http://127.0.0.1:{free.getsockname()[1]}"
-    with serving("--public-url", "https://localhost/", "--port", here.rpartition(":")[2]) as server:
+    with serving("--public-url", "https://localhost/") as server:
         assert server.address == "https://localhost"
-        way_in = server.way_in.replace(server.address, here)
+        way_in = server.way_in.replace(server.address, f"http://127.0.0.1:{port_of(server.process.pid)}")
         async with aiohttp.ClientSession() as session, session.get(way_in, allow_redirects=False) as shown:
             assert "Secure" in shown.headers["Set-Cookie"].split("; ")
 
@@ -102,9 +97,9 @@ async def test_a_token_of_ones_own_is_neither_in_the_list_of_processes_nor_hande
         async with server.visited() as session, session.ws_connect("/ws") as websocket:
             await websocket.receive(timeout=60)
             for process in (server.process.pid, *server.descendants()):
-                assert "our class" not in " ".join(psutil.Process(process).cmdline())
+                assert "our class" not in command_line(process)
             for process in server.descendants():
-                assert "our class" not in str(psutil.Process(process).environ())
+                assert "our class" not in str(environment(process))
 
 
 @pytest.mark.slow
