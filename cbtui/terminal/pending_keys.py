@@ -52,6 +52,8 @@ class PendingKeysApp(App[None]):
             deadline = monotonic() + MOUNT_TIMEOUT
             while self.is_mounting and monotonic() < deadline:
                 await asyncio.sleep(_POLL_INTERVAL)
+            if not self.screen_stack:  # the app ends
+                return
         if not (isinstance(event, MouseDown) and self._is_gone(event)):
             await super().on_event(event)
 

@@ -118,6 +118,15 @@ async def test_a_widget_that_is_never_mounted_keeps_nobody_from_leaving(
         app.told.set()
 
 
+async def test_a_click_that_comes_when_the_last_screen_is_closed_is_nobodys() -> None:
+    app = Console()
+    async with app.run_test():
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setitem(app._screen_stacks, app.current_mode, [])
+            await app.on_event(MouseDown(None, 1, 1, 0, 0, 1, False, False, False))
+        assert app.is_running
+
+
 async def test_what_a_closed_screen_left_and_could_not_end_is_a_fault() -> None:
     async def fail() -> None:
         raise OSError("as planned")
@@ -177,9 +186,9 @@ async def test_two_quick_clicks_on_the_key_that_leaves_a_lesson_leave_the_lesson
         click = Click.from_event(bar, up)
         for event in (down, up, click, click):
             bar.post_message(event)
+        await until(pilot, lambda: isinstance(app.screen, MenuScreen))
         await pilot.pause()
-        left = app.screen
-    assert isinstance(left, MenuScreen)
+        assert isinstance(app.screen, MenuScreen)
     assert app.return_code is None
 
 
