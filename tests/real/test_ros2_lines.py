@@ -205,6 +205,14 @@ def test_a_launch_file_starts_real_nodes(tmp_path: Path) -> None:
     assert not run.ending.failed
 
 
+_WHEN_TOLD = """
+import sys
+print("ready", flush=True)
+sys.stdin.read()
+"""
+"""A program that has imported all it needs, and makes its node as soon as its input ends."""
+
+
 @needs_ros
 @pytest.mark.slow
 def test_a_line_waits_until_discovery_has_found_the_nodes_that_the_run_knows(tmp_path: Path) -> None:
@@ -216,16 +224,22 @@ def test_a_line_waits_until_discovery_has_found_the_nodes_that_the_run_knows(tmp
     }
     file = tmp_path / "tried.py"
     file.write_text(
-        programs.HEAD + programs.MISSES_TICKS + programs.TAIL.format(executor="SingleThreadedExecutor()")
+        f"{programs.HEAD}{_WHEN_TOLD}{programs.MISSES_TICKS}"
+        + programs.TAIL.format(executor="SingleThreadedExecutor()")
     )
-    lines = Lines(environment)
-    lines.lines.prepare()
-    lines.lines.hear([NodeAppeared(0, 1, "/tried")])
-    lines.lines.begin(1, "ros2 param set /tried use_sim_time false")
-    until = time.monotonic() + 2.5  # what discovery takes now and then
-    lines.until(lambda: time.monotonic() > until)
-    with claim, subprocess.Popen([sys.executable, file], env=environment) as node:
+    told = subprocess.PIPE
+    with claim, subprocess.Popen([sys.executable, file], env=environment, stdin=told, stdout=told) as node:
+        assert node.stdin is not None
+        assert node.stdout is not None
+        lines = Lines(environment)
         try:
+            assert node.stdout.readline() == b"ready\n"
+            lines.lines.prepare()
+            lines.lines.hear([NodeAppeared(0, 1, "/tried")])
+            lines.lines.begin(1, "ros2 param set /tried use_sim_time false")
+            until = time.monotonic() + 2.5  # what discovery takes now and then
+            lines.until(lambda: time.monotonic() > until)
+            node.stdin.close()
             assert lines.result(1) == ([("Set parameter successful", False)], 0)
         finally:
             node.kill()
