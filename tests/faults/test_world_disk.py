@@ -49,7 +49,7 @@ def run_node(seconds: int, option: str, file: Path | str) -> "subprocess.Complet
     """Run the folder's node without a console, written to a file; what it said when it has ended."""
     words = ["run", "node.py", "--no-robot", "--clock", "virtual", "--for", str(seconds), option, str(file)]
     command = [sys.executable, "-m", "cbtui", *words]
-    return subprocess.run(command, check=False, capture_output=True, text=True, timeout=PATIENCE)
+    return subprocess.run(command, check=False, capture_output=True, text=True)
 
 
 def events_in(path: Path) -> int:

@@ -235,7 +235,7 @@ def test_a_machine_that_slept_finishes_its_run(folder: Path) -> None:
         assert comes_true(lambda: sum(map(is_stopped, [console.pid, *engines_of(console.pid)])) == 2)
         both = [console.pid, *engines_of(console.pid)]
         time.sleep(2)  # it is how long the machine sleeps, and nothing is waited for
-        for each in both:
+        for each in reversed(both):  # the engine first: a console that waits for one that stands would say so
             os.kill(each, signal.SIGCONT)
         _, complaints = console.communicate(timeout=PATIENCE)
     assert console.returncode == 0

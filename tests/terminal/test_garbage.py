@@ -28,10 +28,12 @@ class Knot:
 @pytest.fixture(autouse=True)
 def _as_before() -> Iterator[None]:
     frozen = gc.get_freeze_count()
+    gc.disable()  # which would collect at a moment that hangs on what ran before
     gc.unfreeze()
     gc.collect()
     Knot.left = 0
     yield
+    gc.enable()
     gc.unfreeze()
     if frozen:
         gc.freeze()
