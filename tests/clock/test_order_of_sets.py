@@ -101,7 +101,6 @@ def _run(program: str, layout: int) -> str:
         [sys.executable, "-c", _PRELUDE + textwrap.dedent(program), str(layout)],
         capture_output=True,
         text=True,
-        timeout=30,
         cwd=Path(__file__).parents[2],
         check=True,
     ).stdout

@@ -38,7 +38,6 @@ def run(program: str) -> None:
         [sys.executable, "-c", _PRELUDE + textwrap.dedent(program) + "\nprint('to the end')"],
         capture_output=True,
         text=True,
-        timeout=60,
         cwd=Path(__file__).parents[2],
         check=False,
     )

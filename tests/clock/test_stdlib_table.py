@@ -49,7 +49,6 @@ def came() -> dict[str, Came]:
         [sys.executable, "-c", _HARNESS, json.dumps([row.body for row in ROWS]), PRELUDE],
         capture_output=True,
         text=True,
-        timeout=60,
         cwd=Path(__file__).parents[2],
         check=False,
     )

@@ -204,7 +204,6 @@ def test_programs_in_another_order(seed: int) -> None:
             [sys.executable, "-c", _PRELUDE + textwrap.dedent(program) + "\nprint('to the end')", str(seed)],
             capture_output=True,
             text=True,
-            timeout=60,
             cwd=Path(__file__).parents[2],
             check=False,
         )

@@ -224,7 +224,7 @@ def test_a_program_that_fails_gives_exit_code_1_and_one_sentence_after_its_trace
     (tmp_path / "pybullet.py").write_text("raise ImportError('no wheel for this Python')")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     command = [sys.executable, "-m", "cbtui", "run", "single-thread", "--for", "1"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 1
     [sentence] = done.stderr.splitlines()
     assert "PyBullet" in sentence

@@ -32,7 +32,7 @@ def nobodys_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def _doctor(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "cbtui", "doctor", *arguments]
     return subprocess.run(
-        command, capture_output=True, text=True, timeout=60, check=False, env={**os.environ, **environment}
+        command, capture_output=True, text=True, check=False, env={**os.environ, **environment}
     )
 
 

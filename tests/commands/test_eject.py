@@ -152,7 +152,7 @@ def test_the_readme_names_every_executable(ejected: Path) -> None:
 def test_an_ejected_launch_file_runs_in_the_console_as_it_is(ejected: Path) -> None:
     launch_file = ejected / "unit5_pkg" / "launch" / "exclusive_2_threads.launch.py"
     command = [sys.executable, "-m", "cbtui", "run", str(launch_file), "--clock", "virtual", "--for", "3"]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "DummyServer Started with threads=2" in done.stderr
 
@@ -166,7 +166,6 @@ def test_ros2_lines_typed_in_the_ejected_folder_find_its_programs(ejected: Path,
         env={**os.environ, "XDG_RUNTIME_DIR": str(tmp_path)},
         capture_output=True,
         text=True,
-        timeout=60,
         check=False,
     )
     assert "unit5_pkg single_thread\n" in done.stdout

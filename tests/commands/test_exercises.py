@@ -220,7 +220,6 @@ def test_check_writes_plain_characters_where_the_terminal_has_no_others(here: Pa
     done = subprocess.run(
         [sys.executable, "-m", "cbtui", "check", "split-groups"],
         capture_output=True,
-        timeout=60,
         check=False,
         env={"PYTHONIOENCODING": "ascii", "XDG_STATE_HOME": str(here)},
     )

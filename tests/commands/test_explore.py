@@ -26,7 +26,7 @@ from tests.support.processes import descendants, wait_until_gone
 
 def cbtui(*words: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "cbtui", *words], capture_output=True, text=True, check=False, timeout=60
+        [sys.executable, "-m", "cbtui", *words], capture_output=True, text=True, check=False
     )
 
 
@@ -188,7 +188,6 @@ def test_who_has_read_enough_of_it_is_no_trouble(file: Path) -> None:
         capture_output=True,
         text=True,
         check=False,
-        timeout=60,
     )
     assert done.stderr == "ended with 141\n"
 

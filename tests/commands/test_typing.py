@@ -107,9 +107,7 @@ def test_what_comes_through_a_pipe_is_what_is_typed_and_its_end_is_the_inputs(tm
     path = tmp_path / "node.py"
     path.write_text(ASKING)
     command = [sys.executable, "-m", "cbtui", "run", str(path), "--clock", "virtual", "--no-robot"]
-    ran = subprocess.run(
-        command, input="1\n2\n", capture_output=True, text=True, check=False, timeout=PATIENCE
-    )
+    ran = subprocess.run(command, input="1\n2\n", capture_output=True, text=True, check=False)
     assert ran.returncode == 1
     assert "speed? the speed is 1.0\nspeed? the speed is 2.0\nspeed? \n" in ran.stdout
     assert "EOFError" in ran.stderr

@@ -46,7 +46,7 @@ def shown_by_browser(text: str, moment: str, folder: Path) -> str:
     file.write_text(text, encoding="utf-8")
     command = [str(PROGRAM), "--headless", "--no-sandbox", "--disable-gpu", "--dump-dom"]
     address = f"{file.as_uri()}#{moment}"
-    return subprocess.run([*command, address], capture_output=True, text=True, check=True, timeout=60).stdout
+    return subprocess.run([*command, address], capture_output=True, text=True, check=True).stdout
 
 
 @pytest.mark.slow

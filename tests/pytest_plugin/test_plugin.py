@@ -70,12 +70,10 @@ def project(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def pytest_in(folder: Path, *words: str, timeout: float = 100) -> subprocess.CompletedProcess[str]:
+def pytest_in(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
     command = [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *words]
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTEST_")}
-    return subprocess.run(
-        command, cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=timeout
-    )
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
 @pytest.mark.parametrize("workers", first_daily("0", "2"))
@@ -98,6 +96,7 @@ def test_a_fresh_project_has_a_green_a_red_and_an_equal_test(project: Path, work
     assert "/parts" in {topic.name for topic in read(recorded).topics()}
 
 
+@pytest.mark.timeout(1500)
 @pytest.mark.parametrize("times", first_slow(10, 1000))
 def test_all_repeats_are_equal(project: Path, times: int) -> None:
     (project / "test_line.py").write_text(
@@ -108,7 +107,7 @@ def test_all_repeats_are_equal(project: Path, times: int) -> None:
         "    with open(f'digests-{repeat % 2}', 'a') as file:\n"
         "        print(cbtui('line.py').digest, file=file)\n"
     )
-    run = pytest_in(project, "-q", "-n", "2", timeout=1500)
+    run = pytest_in(project, "-q", "-n", "2")
     assert run.returncode == 0, run.stdout
     digests = "".join((project / f"digests-{half}").read_text() for half in (0, 1)).split()
     assert len(digests) == times

@@ -116,7 +116,7 @@ def test_a_terminal_that_cannot_place_its_cursor_is_refused_in_one_line() -> Non
         command = [sys.executable, "-m", "cbtui", "open", "split-groups"]
         environment = os.environ | {"TERM": "dumb"}
         done = subprocess.run(
-            command, stdin=theirs, stdout=theirs, stderr=theirs, env=environment, timeout=60, check=False
+            command, stdin=theirs, stdout=theirs, stderr=theirs, env=environment, check=False
         )
         os.close(theirs)
         assert done.returncode == 2

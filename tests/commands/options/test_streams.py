@@ -26,7 +26,7 @@ _CBTUI = f"{sys.executable} -m cbtui"
 
 def _shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        ["/bin/sh", "-c", line], capture_output=True, text=True, timeout=60, check=False, env=environment
+        ["/bin/sh", "-c", line], capture_output=True, text=True, check=False, env=environment
     )
 
 

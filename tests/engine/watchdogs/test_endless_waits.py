@@ -145,7 +145,6 @@ def test_only_threads_that_never_go_on_are_told_to_be_in_a_deadlock_and_none_is_
             [sys.executable, "-c", _RANDOM_THREADS, seed, "150"],
             capture_output=True,
             text=True,
-            timeout=60,
             cwd=Path(__file__).parents[3],
             check=False,
         )

@@ -47,7 +47,6 @@ def test_real_rclpy_keeps_the_measured_order(order: Order, tmp_path: Path) -> No
         [sys.executable, program],
         capture_output=True,
         text=True,
-        timeout=60,
         check=False,
         cwd=tmp_path,
         env={**os.environ, **alone},
