@@ -91,23 +91,21 @@ async def test_an_engine_that_is_killed_is_told_of_and_can_be_run_again(folder: 
         os.kill(engine(), signal.SIGKILL)
         await console.until(lambda live: live.state is RunState.LOST)
         assert await console.answers() < ANSWERED
-        assert console.said == "engine lost: killed by signal 9; r runs again"
+        await console.until(lambda _: console.said == "engine lost: killed by signal 9; r runs again")
         await console.pilot.press("r")
         await console.until(still_here)
 
 
 @pytest.mark.slow
-async def test_an_engine_that_is_stopped_is_told_of_and_goes_on_when_it_may(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("cbtui.engines.session.POLL_INTERVAL", 0.05)
+async def test_an_engine_that_is_stopped_is_told_of_and_goes_on_when_it_may(folder: Path) -> None:
     async with console_on(node_with(folder, "pass")) as console:
         await console.until(still_here)
         stopped = engine()
         os.kill(stopped, signal.SIGSTOP)
         await console.until(lambda live: live.state is RunState.SILENT)
         assert await console.answers() < ANSWERED
-        assert console.said == "engine does not answer: its process was stopped; r runs again"
+        said = "engine does not answer: its process was stopped; r runs again"
+        await console.until(lambda _: console.said == said)
         os.kill(stopped, signal.SIGCONT)
         await console.until(lambda live: live.state is RunState.LIVE)
         os.kill(stopped, signal.SIGSTOP)
@@ -118,14 +116,11 @@ async def test_an_engine_that_is_stopped_is_told_of_and_goes_on_when_it_may(
 
 
 @pytest.mark.slow
-async def test_an_engine_that_code_in_c_keeps_is_told_of(
-    folder: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("cbtui.engines.session.POLL_INTERVAL", 0.05)
+async def test_an_engine_that_code_in_c_keeps_is_told_of(folder: Path) -> None:
     async with console_on(node_with(folder, IN_C)) as console:
         await console.until(lambda live: live.state is RunState.SILENT)
         assert await console.answers() < ANSWERED
-        assert console.said.startswith("engine does not answer: code in C keeps it")
+        await console.until(lambda _: console.said.startswith("engine does not answer: code in C keeps it"))
 
 
 def test_a_machine_that_slept_says_nothing_of_the_engine() -> None:
