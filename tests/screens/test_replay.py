@@ -20,6 +20,7 @@ from tests.recording.files import timeline_of, write, write_in_chunks
 from tests.support.builder import ns
 from tests.support.console import WIDE, settle
 from tests.support.daily import first_slow
+from tests.support.exercises import until
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import shared_group_run
 
@@ -155,7 +156,7 @@ async def test_what_cannot_be_read_is_said_in_one_sentence_and_the_rest_is_shown
         assert 0 < screen.runs.run.timeline.end < timeline_of([events]).end
         assert screen.runs.run.damage is not None
         assert "breaks off at byte" in screen.runs.run.damage
-        assert "breaks off at byte" in text_of(pilot.app)
+        await until(pilot, lambda: "breaks off at byte" in text_of(pilot.app))
         assert "‖ REPLAY" in status(pilot)
 
 

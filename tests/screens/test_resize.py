@@ -1,5 +1,6 @@
 import pytest
 from textual.geometry import Size
+from textual.pilot import Pilot
 from textual.widgets import OptionList
 
 from cbtui.app import CbtuiApp
@@ -8,11 +9,19 @@ from cbtui.widgets.lanes import Lanes
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.daily import first_daily
+from tests.support.exercises import until
 from tests.support.fake_session import FakeEngines
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import shared_group_run
 
 EVENTS = shared_group_run().events
+
+
+async def resize(pilot: Pilot[None], columns: int, rows: int) -> None:
+    """Give the terminal a size, and wait until the screen has it."""
+    await pilot.resize_terminal(columns, rows)
+    await until(pilot, lambda: pilot.app.screen.size == (columns, rows))
+    await pilot.pause()
 
 
 @pytest.mark.parametrize(
@@ -41,10 +50,10 @@ async def test_a_small_terminal_shows_the_sentence_and_nothing_else() -> None:
     app = RecordedConsole("shared-group", EVENTS, 13.15)
     async with app.run_test(size=(60, 24)) as pilot:
         for size in ((60, 24), (80, 10), (20, 5)):
-            await pilot.resize_terminal(*size)
+            await resize(pilot, *size)
             await settle(pilot)
             assert " ".join(text_of(app).split()) == too_small(Size(*size))
-        await pilot.resize_terminal(1, 1)
+        await resize(pilot, 1, 1)
         await settle(pilot)
 
 
@@ -58,11 +67,11 @@ async def test_drawing_goes_on_when_the_terminal_is_large_enough_again() -> None
     app = RecordedConsole("shared-group", EVENTS, 2.0)
     async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)
-        await pilot.resize_terminal(60, 20)
+        await resize(pilot, 60, 20)
         app.engines.latest.play(ns(13.15))
         await settle(pilot)
         assert "this one has 60 columns" in " ".join(text_of(app).split())
-        await pilot.resize_terminal(*NARROW)
+        await resize(pilot, *NARROW)
         await settle(pilot)
         assert "t 13.15" in lines_of(app)[0]
         assert "odom_callback waits 9.1 s" in lines_of(app)[-2]
@@ -75,7 +84,7 @@ async def test_a_screen_that_grows_looks_as_if_it_had_always_been_so_large() -> 
         app = RecordedConsole("shared-group", EVENTS, 13.15)
         async with app.run_test(size=first) as pilot:
             await settle(pilot)
-            await pilot.resize_terminal(*WIDE)
+            await resize(pilot, *WIDE)
             await settle(pilot)
             await pilot.pause()
             pictures.append(lines_of(app))
@@ -87,7 +96,7 @@ async def test_lanes_diagnosis_and_keys_are_always_on_screen() -> None:
     app = RecordedConsole("shared-group", EVENTS, 13.15)
     async with app.run_test(size=NARROW) as pilot:
         for size in (NARROW, (100, 30), (119, 33), (120, 34), WIDE, (200, 60)):
-            await pilot.resize_terminal(*size)
+            await resize(pilot, *size)
             await settle(pilot)
             assert app.screen.query_one(Lanes).size.height >= 7
             assert "odom_callback waits 9.1 s" in lines_of(app)[-2]
@@ -105,5 +114,5 @@ async def test_a_window_that_opened_where_nothing_fits_has_no_pages(window: str,
         await pilot.press(window)
         await pilot.press(page)
         chosen = app.screen.query_one(OptionList).highlighted
-        await pilot.resize_terminal(*NARROW)
+        await resize(pilot, *NARROW)
         assert app.screen.query_one(OptionList).highlighted == chosen

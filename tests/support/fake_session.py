@@ -24,8 +24,8 @@ class FakeSession:
 
     def start(self) -> None:
         """Deliver what is to be there from the start."""
-        self.started = True
         self.play(self._until)
+        self.started = True
 
     def play(self, until: int) -> None:
         """Deliver the events up to a time in nanoseconds, that included."""

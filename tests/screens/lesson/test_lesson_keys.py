@@ -31,6 +31,7 @@ from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
 from tests.support.daily import first_daily, first_row_daily
+from tests.support.exercises import until
 from tests.support.fake_session import FakeSession
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import dummy_server_run, shared_group_run
@@ -218,7 +219,7 @@ async def test_n_opens_the_next_lesson_and_ends_this_run() -> None:
         predict(app, lessons()[2].id)
         await press(pilot, "n")
         assert app.lesson_screen.subject.lesson == lessons()[2]
-        assert app.engines.sessions[0].stopped
+        await until(pilot, lambda: app.engines.sessions[0].stopped)
         assert not app.engines.latest.stopped
 
 
@@ -231,7 +232,7 @@ async def test_the_next_lesson_takes_keys_while_the_engine_of_the_one_before_end
         stop = engine.stop
 
         def stop_slowly() -> None:
-            may_end.wait(timeout=30)
+            may_end.wait()
             stop()
 
         monkeypatch.setattr(engine, "stop", stop_slowly)
@@ -257,7 +258,7 @@ async def test_q_ends_the_run_and_goes_back_to_the_menu() -> None:
         engine = app.engines.latest
         await press(pilot, "q")
         assert isinstance(app.screen, MenuScreen)
-        assert engine.stopped
+        await until(pilot, lambda: engine.stopped)
 
 
 @pytest.mark.slow

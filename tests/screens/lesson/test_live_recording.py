@@ -21,6 +21,7 @@ from sim.recording import BackgroundRecorder, Recording, read
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
 from tests.support.console import WIDE, RecordedConsole, settle
+from tests.support.exercises import until
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import shared_group_run
 
@@ -162,7 +163,7 @@ async def test_leaving_ends_the_recording_cleanly(folder: Path) -> None:
         (path,) = folder.iterdir()
         count = sum(map(len, recorded(folder).batches()))
         assert app.saved == [f"Recorded {count:,} events in {path.name}"]
-        assert app.saved[0] in messages(app)
+        await until(pilot, lambda: app.saved[0] in messages(app))
     assert recorded(folder).damage is None
 
 
@@ -202,7 +203,7 @@ async def test_another_run_is_not_recorded(folder: Path) -> None:
     async with console() as (app, pilot):
         await press(pilot, "R", "t", "2")
         assert len(app.engines.sessions) == 2
-        assert any(text.startswith("Recorded ") for text in messages(app))
+        await until(pilot, lambda: any(text.startswith("Recorded ") for text in messages(app)))
         assert "REC " not in lines_of(app)[0]
         assert recorded(folder).damage is None
 

@@ -1,6 +1,5 @@
 """A learner's own file on the lesson screen."""
 
-import asyncio
 from pathlib import Path
 
 from cbtui.app import CbtuiApp
@@ -108,12 +107,9 @@ async def test_a_file_is_run_again_when_it_is_saved_and_only_then(tmp_path: Path
         await settle(pilot)
         assert len(engines.sessions) == 1
         file.write_text("after = 2\n")
-        async with asyncio.timeout(20):
-            while len(engines.sessions) < 2:
-                await pilot.pause(0.05)
+        await until(pilot, lambda: len(engines.sessions) == 2)
         await pilot.press("2")
-        await settle(pilot)
-        assert "after = 2" in text_of(app)
+        await until(pilot, lambda: "after = 2" in text_of(app))
         assert engines.sessions[0].stopped
 
 
@@ -131,9 +127,7 @@ async def test_it_is_run_again_when_a_module_with_its_callbacks_is_saved(tmp_pat
         await pilot.pause(1.5)
         assert len(engines.sessions) == 1
         module.write_text("def tick():\n    after = 2\n")
-        async with asyncio.timeout(20):
-            while len(engines.sessions) < 2:
-                await pilot.pause(0.05)
+        await until(pilot, lambda: len(engines.sessions) == 2)
         await pilot.press("2")
         await settle(pilot)
         await pilot.pause(1.5)

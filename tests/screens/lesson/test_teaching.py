@@ -386,7 +386,7 @@ async def test_a_screen_that_is_left_breaks_off_the_run_beside_it() -> None:
         assert begun.wait(_PATIENCE)
         await press(pilot, "q")
         assert top(app) is MenuScreen
-        assert over.is_set()
+        await until(pilot, over.is_set)
 
 
 def test_a_run_that_nobody_wants_any_more_comes_to_its_end() -> None:
