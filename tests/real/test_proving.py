@@ -1,6 +1,7 @@
 """What counts as a difference between the model and real rclpy, and what does not."""
 
 import random
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -194,10 +195,13 @@ def test_a_program_is_proved_on_both_grounds(tmp_path: Path, capsys: pytest.Capt
     file = tmp_path / "node.py"
     file.write_text(DIFFERS)
     assert cli.main(["prove", str(file), "--for", "3.3", "--no-robot"]) == 1
-    assert "on the model <lambda> runs 10 times more: 16 against 6" in capsys.readouterr().out
+    # A busy machine may let a call on real rclpy fall out.
+    said = capsys.readouterr().out
+    assert re.search(r"on the model <lambda> runs 1[0-3] times more: 16 against [3-6]\b", said)
     file.write_text(DIFFERS.replace("0.2", "0.5"))
     assert cli.main(["prove", str(file), "--for", "3.3", "--no-robot"]) == 0
-    assert "✓ the same on both for 3.3 s: 6 calls on the model, 6 on real rclpy" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert re.search(r"✓ the same on both for 3\.3 s: 6 calls on the model, [56] on real rclpy", said)
 
 
 @needs_ros

@@ -197,7 +197,7 @@ def test_a_launch_file_starts_real_nodes(tmp_path: Path) -> None:
         f"    return LaunchDescription([Node(executable={json.dumps(str(node))}, name=each, "
         "remappings=[('news', 'chatter')]) for each in ('one', 'two')])\n"
     )
-    run = run_to_end(msgspec.structs.replace(program_setup(path, 3.0, clock="real"), real=RealRos()))
+    run = run_to_end(msgspec.structs.replace(program_setup(path, 6.0, clock="real"), real=RealRos()))
     assert [e.label for e in run.events if isinstance(e, ProcessAppeared)] == ["tried.py-1", "tried.py-2"]
     assert set(run.timeline.nodes.values()) == {"/one", "/two"}
     assert "/chatter" in {event.topic for event in run.events if isinstance(event, Published)}

@@ -19,6 +19,7 @@ from sim.engine.commands import CallService, RunLine, Stop
 from sim.engine.setup import RealRos
 from sim.probes.on_path.cbtui_probe import PROTOCOL
 from sim.real.probe_link import ProbeLink, processes_in
+from sim.real.programs import claimed_domain
 from sim.real.wire import Hello, Left, ProbeLine
 from sim.trace.events import (
     AnyEvent,
@@ -90,7 +91,7 @@ def test_a_process_is_watched_and_goes_on_when_nobody_watches_any_more(tmp_path:
                 assert isinstance(events[-1], RunEnded)
                 assert process.poll() is None
             process.terminate()
-            process.wait(timeout=30)
+            process.wait(timeout=60)
             assert processes_in(folder) == []
         finally:
             process.kill()
@@ -120,7 +121,8 @@ def watched(folder: Path, found: list[Hello]) -> list[AnyEvent]:
 def test_lines_and_calls_act_on_the_graph_of_what_is_watched(
     tmp_path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv("ROS_DOMAIN_ID", "93")
+    domain, claim = claimed_domain()
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     file = tmp_path / "tried.py"
     body = programs.CALLS_ITSELF.replace("self.client.call(", "self.client.call_async(")
@@ -133,12 +135,12 @@ def test_lines_and_calls_act_on_the_graph_of_what_is_watched(
     called: set[str] = set()
     moved = 0
     is_there = has_ended = False
-    with subprocess.Popen(probe, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+    with claim, subprocess.Popen(probe, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
         try:
             while isinstance(batch := news.get(timeout=60), list):
                 if not is_there and any(isinstance(event, EntityAppeared) for event in batch):
                     is_there = True
-                    session.send(RunLine(1, "ros2 topic pub -w 1 -t 3 -r 5 /cmd_vel geometry_msgs/Twist"))
+                    session.send(RunLine(1, "ros2 topic pub -w 1 -t 30 -r 10 /cmd_vel geometry_msgs/Twist"))
                     session.send(CallService("/switch", data=True))
                 said += [event.text for event in batch if isinstance(event, LineSaid)]
                 called |= {e.service for e in batch if isinstance(e, ServiceCalled) and e.entity == 0}
@@ -150,9 +152,9 @@ def test_lines_and_calls_act_on_the_graph_of_what_is_watched(
             session.stop()
             process.kill()
     assert batch is None
-    assert sum(each.startswith("publishing #") for each in said) == 3
+    assert sum(each.startswith("publishing #") for each in said) == 30
     # Each side of a connection is told of the other at its own time: what is said before is lost.
-    assert 1 <= moved <= 3
+    assert 1 <= moved <= 30
     assert called == {"/switch"}
 
 
