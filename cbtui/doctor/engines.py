@@ -13,7 +13,7 @@ from sim.trace.events import RunEnded
 _LESSON = "single-thread"
 _RUN = 0.1
 """Seconds that the run lasts in its own time."""
-_TIMEOUT = 20.0
+_TIMEOUT = 60.0
 """Seconds without events after which the engine has failed."""
 _SLOW = 3.0
 """Seconds from which on the engine's start is reported as slow."""

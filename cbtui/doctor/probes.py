@@ -6,7 +6,7 @@ import subprocess
 import sys
 from typing import NamedTuple
 
-_TIMEOUT = 20.0
+_TIMEOUT = 60.0
 """Limit of a probe process in seconds."""
 
 _IMPORTS = {"backports-zstd": "backports.zstd", "pyyaml": "yaml"}

@@ -6,6 +6,7 @@ import signal
 import sys
 import tempfile
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, redirect_stderr, suppress
 from multiprocessing import resource_tracker
@@ -64,6 +65,8 @@ _LONGEST_BATCH = 1 << 30
 """Bytes; the length comes from the program's process and cannot be trusted."""
 _REPORT_TIMEOUT = 0.2
 """Seconds that an engine has to write a dump of its threads' stacks."""
+_LATE_REPORT_TIMEOUT = 1.0
+"""Seconds after which a dump that a busy machine delays is given up."""
 _stderr_lock = threading.Lock()
 """Guards ``sys.stderr``, which is redirected while an engine starts."""
 
@@ -213,7 +216,10 @@ class ProcessSession:
 
     def _request_stack_dump(self) -> None:
         os.kill(self._tree.pid, ASKED)
-        self._tree.wait_for_end(_REPORT_TIMEOUT)
+        given_up_at = time.monotonic() + _LATE_REPORT_TIMEOUT
+        while not (self._tree.wait_for_end(_REPORT_TIMEOUT) or os.fstat(self._stack_dump.fileno()).st_size):
+            if time.monotonic() > given_up_at:
+                break
 
     def _loss(self) -> str:
         """Why the engine was lost, and at which line of the program."""

@@ -31,7 +31,7 @@ from tests.support.console import WIDE
 
 News: TypeAlias = "list[AnyEvent] | str | None"
 
-PATIENCE = 60.0
+PATIENCE = 240.0
 """Real seconds after which what was to happen counts as not happening."""
 ANSWERED = 0.2
 """Seconds within which a key is to be answered."""

@@ -1,6 +1,8 @@
 """Nodes that take more than there is: memory and processes are watched from outside, and all are ended."""
 
+import os
 from pathlib import Path
+from threading import Timer
 
 import pytest
 
@@ -8,6 +10,7 @@ from cbtui import cli
 from cbtui.engines import resource_guard
 from cbtui.engines.memory_limit import MEMORY_LIMIT, memory_limit
 from cbtui.runs.live.live_run import RunState
+from sim.engine.failures.crash_dump import ASKED
 from tests.faults.support import FIRST, node_with, provoked, still_here
 from tests.support.daily import first_daily
 from tests.support.processes import wait_until_gone
@@ -32,6 +35,25 @@ def test_a_node_that_takes_memory_without_end_is_ended_and_told_with_its_place(
         assert run.live.loss.startswith("the node used more than 0.3 GB of memory and was ended (node.py:")
         assert run.live.loss.endswith("in fault)")
         assert run.live.state is RunState.LOST
+
+
+def test_the_place_is_told_though_a_busy_machine_delays_the_dump_of_the_stacks(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(MEMORY_LIMIT, LITTLE)
+    kill = os.kill
+
+    def kill_later(process: int, number: int) -> None:
+        if number == ASKED:
+            Timer(0.5, kill, (process, number)).start()
+        else:
+            kill(process, number)
+
+    with provoked(node_with(folder, "self.kept = [b'x' * 1_000_000_000]\ntime.sleep(100)")) as run:
+        monkeypatch.setattr(os, "kill", kill_later)
+        run.to_its_end()
+        assert run.live.loss is not None
+        assert run.live.loss.endswith("in fault)")
 
 
 def test_the_memory_of_what_a_node_starts_counts(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
