@@ -38,14 +38,14 @@ class Lesson(Description, frozen=True, kw_only=True, forbid_unknown_fields=True)
 
     @property
     def guide(self) -> str:
-        """The Markdown text of the guide."""
-        return untrusted.read_text(self.folder / GUIDE_FILE)
+        """The Markdown text of the guide; bytes that are not UTF-8 are replaced."""
+        return untrusted.read_text(self.folder / GUIDE_FILE, errors="replace")
 
     @property
     def explanation(self) -> str:
-        """The Markdown text to be read after the run; empty if there is none."""
+        """The Markdown text to be read after the run, as ``guide``; empty if there is none."""
         path = self.folder / EXPLANATION_FILE
-        return untrusted.read_text(path) if path.is_file() else ""
+        return untrusted.read_text(path, errors="replace") if path.is_file() else ""
 
     @property
     def checks_path(self) -> Path:
@@ -116,6 +116,8 @@ def _table(path: Path) -> dict[str, Any]:
         return plain_toml.load(untrusted.read_text(path))
     except OSError as error:
         raise BadLesson(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise BadLesson(f"{path}:{untrusted.decoding_fault(error)}") from error
     except ValueError as error:  # errors of the parser, and of its conversion of numbers and texts
         raise BadLesson(f"{path}: is not valid TOML: {error}") from error
 

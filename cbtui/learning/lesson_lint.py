@@ -47,10 +47,10 @@ def faults_in_texts(lesson: Lesson) -> Iterator[str]:
     """Yield the faults of a lesson's texts and of the names in its description."""
     if not lesson.predictions:
         yield f"{_in(lesson, DESCRIPTION_FILE)}: there is no [[prediction]]; a lesson asks one or two"
-    guide = lesson.guide
-    if guide.partition("\n")[0] != f"# {lesson.title}":
+    if lesson.guide.partition("\n")[0] != f"# {lesson.title}":
         yield f"{_in(lesson, GUIDE_FILE)}:1: the first line is not the title, '# {lesson.title}'"
-    for file, text in ((GUIDE_FILE, guide), (EXPLANATION_FILE, lesson.explanation)):
+    for file, text in ((GUIDE_FILE, lesson.guide), (EXPLANATION_FILE, lesson.explanation)):
+        yield from _decoding_faults(lesson.folder / file)
         for number, line in enumerate(text.splitlines(), start=1):
             if len(line) > WIDTH:
                 yield f"{_in(lesson, file)}:{number}: the line is {len(line)} characters long; {WIDTH} fit"
@@ -65,6 +65,15 @@ def faults_in_texts(lesson: Lesson) -> Iterator[str]:
     for rule in (*declared.node, *declared.starter, *declared.solution):
         if rule not in known:
             yield f"{_in(lesson, DESCRIPTION_FILE)}: the diagnosis has no rule {rule!r}"
+
+
+def _decoding_faults(path: Path) -> Iterator[str]:
+    try:
+        untrusted.read_text(path)
+    except FileNotFoundError:  # there need not be an explanation
+        return
+    except UnicodeDecodeError as error:
+        yield f"{path}:{untrusted.decoding_fault(error)}"
 
 
 def _drift(lesson: Lesson) -> Iterator[str]:
@@ -83,7 +92,7 @@ def _drift(lesson: Lesson) -> Iterator[str]:
 
 
 def _lines(lesson: Lesson, file: str) -> list[str]:
-    return [line.strip() for line in untrusted.read_text(lesson.folder / file).splitlines()]
+    return [line.strip() for line in untrusted.read_text(lesson.folder / file, errors="replace").splitlines()]
 
 
 def _texts(lesson: Lesson) -> str:

@@ -58,6 +58,16 @@ def read_text(path: Path, most: int = MAX_BYTES, errors: str = "strict") -> str:
     return TextIOWrapper(BytesIO(read_bytes(path, most)), encoding="utf-8", errors=errors).read()
 
 
+def decoding_fault(error: UnicodeDecodeError) -> str:
+    """Return the line at which a text cannot be decoded, and why.
+
+    As ``12: the byte 0xff is not UTF-8; save the file as UTF-8``.
+    """
+    line = error.object.count(b"\n", 0, error.start) + 1
+    byte = error.object[error.start]
+    return f"{line}: the byte 0x{byte:02x} is not {error.encoding.upper()}; save the file as UTF-8"
+
+
 def program_text(path: Path) -> str | None:
     """Return the text of a program; None if it cannot be read. Bytes that are not UTF-8 are replaced."""
     try:

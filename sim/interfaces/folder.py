@@ -5,7 +5,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from sim.files.untrusted import read_bytes, read_text
+from sim.files.untrusted import decoding_fault, read_bytes, read_text
 from sim.interfaces.interface_definition import Definition, DefinitionError, Kind
 from sim.interfaces.notation import parse, require_interface_name, require_package_name
 
@@ -102,10 +102,7 @@ class DefinitionFolder:
         try:
             return content.decode("utf-8-sig")
         except UnicodeDecodeError as error:
-            line = content.count(b"\n", 0, error.start) + 1
-            raise DefinitionError(
-                f"{path}:{line}: the byte 0x{content[error.start]:02x} is not UTF-8; save the file as UTF-8"
-            ) from None
+            raise DefinitionError(f"{path}:{decoding_fault(error)}") from None
 
 
 def is_package(folder: Path) -> bool:

@@ -217,10 +217,12 @@ def test_a_file_that_is_not_toml_is_said_to_be_so(kitchen: Kitchen) -> None:
     assert "(at line 2, " in sentence
 
 
-def test_a_file_that_is_not_utf8_is_said_not_to_be_toml(kitchen: Kitchen) -> None:
+def test_a_file_that_is_not_utf8_is_said_to_be_so_with_its_line(kitchen: Kitchen) -> None:
     folder = kitchen(WHOLE)
-    (folder / "lesson.toml").write_bytes(b'id = "\xff"')
-    assert sentence_about(folder).startswith("is not valid TOML: ")
+    (folder / "lesson.toml").write_bytes(b'# Two cooks\nid = "\xff"')
+    with pytest.raises(BadLesson) as caught:
+        read_lesson(folder)
+    assert str(caught.value) == f"{folder}/lesson.toml:2: the byte 0xff is not UTF-8; save the file as UTF-8"
 
 
 def test_a_missing_file_is_said_to_be_unreadable(kitchen: Kitchen) -> None:
@@ -355,3 +357,11 @@ def test_a_question_needs_the_checks_that_answer_it(kitchen: Kitchen) -> None:
     folder = kitchen(WHOLE + COURSE)
     (folder / "checks.py").unlink()
     assert sentence_about(folder) == "there is no file 'checks.py' beside it"
+
+
+def test_texts_that_are_not_utf8_can_be_shown(kitchen: Kitchen) -> None:
+    folder = kitchen(WHOLE)
+    (folder / "guide.md").write_bytes(b"# Two cooks\n\nCaf\xe9\n")
+    (folder / "explain.md").write_bytes(b"Caf\xe9\n")
+    lesson = read_lesson(folder)
+    assert (lesson.guide, lesson.explanation) == ("# Two cooks\n\nCaf\ufffd\n", "Caf\ufffd\n")

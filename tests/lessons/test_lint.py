@@ -196,3 +196,18 @@ def test_a_line_that_starter_and_solution_share_and_the_node_lacks_is_a_fault_un
     described = description.read_text().replace("[exercise]\n", '[exercise]\nbeyond_node = "A spare."\n')
     description.write_text(described)
     assert list(faults_in_texts(read_lesson(folder))) == []
+
+
+@pytest.mark.parametrize("file", ["guide.md", "explain.md", "lesson.toml"])
+def test_a_text_that_is_not_utf8_is_told_with_file_and_line(folder: Path, file: str) -> None:
+    path = folder / file
+    before = path.read_bytes()
+    path.write_bytes(before + b"# caf\xe9\n")
+    line = before.count(b"\n") + 1
+    assert next(faults_of(folder)) == f"{path}:{line}: the byte 0xe9 is not UTF-8; save the file as UTF-8"
+
+
+def test_a_starter_that_is_not_utf8_does_not_stop_the_search_for_faults(folder: Path) -> None:
+    with (folder / "starter.py").open("ab") as file:
+        file.write(b"# caf\xe9\n")
+    assert list(faults_in_texts(read_lesson(folder))) == []

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import CodeType
 
-from sim.files.untrusted import MAX_PROGRAM_BYTES, read_bytes
+from sim.files.untrusted import MAX_PROGRAM_BYTES, decoding_fault, read_bytes
 
 
 class NothingToRunError(Exception):
@@ -52,18 +52,15 @@ def read_source(path: Path) -> str:
     try:
         return importlib.util.decode_source(data)
     except UnicodeDecodeError as error:
-        raise NothingToRunError(_on_undecodable(path.name, data, error)) from None
+        raise NothingToRunError(_on_undecodable(path.name, error)) from None
     except SyntaxError as error:
         try:
             data.decode()
         except UnicodeDecodeError as undecodable:
-            raise NothingToRunError(_on_undecodable(path.name, data, undecodable)) from None
+            raise NothingToRunError(_on_undecodable(path.name, undecodable)) from None
         raise NothingToRunError(f"{path.name}:1: {error.msg}; name a coding that Python knows") from None
 
 
-def _on_undecodable(name: str, data: bytes, error: UnicodeDecodeError) -> str:
-    line = data.count(b"\n", 0, error.start) + 1
-    return (
-        f"{name}:{line}: the byte 0x{data[error.start]:02x} is not {error.encoding.upper()}; save the file "
-        "as UTF-8, or name its coding in its first line, such as # -*- coding: latin-1 -*-"
-    )
+def _on_undecodable(name: str, error: UnicodeDecodeError) -> str:
+    coding = "name its coding in its first line, such as # -*- coding: latin-1 -*-"
+    return f"{name}:{decoding_fault(error)}, or {coding}"
