@@ -2,6 +2,7 @@
 
 import importlib.util
 import sys
+import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -57,7 +58,8 @@ class Judge:
         try:
             answer = self._shown[prediction.shown](run)
         except Exception as error:
-            raise BadLesson(f"{self._path}: {prediction.shown} raised {_named(error)}") from error
+            where = _place(self._path, error)
+            raise BadLesson(f"{where}: {prediction.shown} raised {_named(error)}") from error
         if type(answer) is not int or not 0 <= answer < len(prediction.answers):
             numbers = f"0 to {len(prediction.answers) - 1}"
             raise BadLesson(f"{self._path}: {prediction.shown} returned {answer!r}; an answer is {numbers}")
@@ -84,7 +86,17 @@ def _verdict(check: Check, run: Timeline) -> Verdict:
 
 
 def _named(error: Exception) -> str:
-    return f"{type(error).__name__}: {' '.join(str(error).split())}"
+    message = error.msg if isinstance(error, SyntaxError) else str(error)
+    return f"{type(error).__name__}: {' '.join(message.split())}"
+
+
+def _place(path: Path, error: Exception) -> str:
+    """Return the file, with the line of it at which the error came up if that is known."""
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        return f"{path}:{error.lineno}"
+    frames = traceback.extract_tb(error.__traceback__)
+    lines = [frame.lineno for frame in frames if frame.filename == str(path)]
+    return f"{path}:{lines[-1]}" if lines else str(path)
 
 
 def _imported(path: Path) -> ModuleType:
@@ -98,7 +110,7 @@ def _imported(path: Path) -> ModuleType:
     try:
         spec.loader.exec_module(module)
     except Exception as error:
-        raise BadLesson(f"{path}: cannot be imported: {_named(error)}") from error
+        raise BadLesson(f"{_place(path, error)}: cannot be imported: {_named(error)}") from error
     finally:
         del sys.modules[name]
     return module

@@ -62,7 +62,7 @@ def faults_in_texts(lesson: Lesson) -> Iterator[str]:
     yield from _drift(lesson)
     known = {rule.id for rule in RULES}
     declared = lesson.diagnoses
-    for rule in (*declared.node, *declared.starter, *declared.solution):
+    for rule in dict.fromkeys((*declared.node, *declared.starter, *declared.solution)):
         if rule not in known:
             yield f"{_in(lesson, DESCRIPTION_FILE)}: the diagnosis has no rule {rule!r}"
 
