@@ -6,7 +6,7 @@ in that folder would run in place of Python's own, before any code of cbtui.
 
 import os
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 
 _VARIABLE = "PYTHONSAFEPATH"
@@ -37,3 +37,8 @@ def forget() -> None:
     """Undo the setting for processes that are started from here on."""
     if os.environ.get(_VARIABLE) == _OURS:
         del os.environ[_VARIABLE]
+
+
+def left_out(environment: Mapping[str, str]) -> dict[str, str]:
+    """Return an environment without the setting, for users' programs: these import what lies beside them."""
+    return {name: value for name, value in environment.items() if (name, value) != (_VARIABLE, _OURS)}

@@ -21,6 +21,7 @@ from typing import NamedTuple
 from sim.engine.failures.cause import Cause
 from sim.engine.failures.failure import Failure
 from sim.engine.setup import RunSetup
+from sim.interpreter.safe_path import left_out
 from sim.probes.on_path.cbtui_probe import CHANGES, FOLDER, PORT, TOKEN
 from sim.real.probe_link import LineReader, ProbeLink
 from sim.real.wire import Uncaught
@@ -151,7 +152,7 @@ class Program:
         """The last signal that it was sent."""
         self._process = subprocess.Popen(
             start.command,
-            env=start.environment,
+            env=left_out(start.environment),
             cwd=start.folder,
             stdin=subprocess.DEVNULL if start.terminal is None else start.terminal,
             stdout=subprocess.PIPE,

@@ -1,13 +1,17 @@
 """How programs on real ROS 2 end, of which no probe need tell."""
 
 import os
+import shlex
+import sys
 import time
 from collections.abc import Callable
+from pathlib import Path
 from selectors import DefaultSelector
 
 import pytest
 
 from sim.engine.failures.cause import Cause
+from sim.interpreter.safe_path import without_current_folder
 from sim.real.programs import Program, Start
 
 _LIMIT = 30.0
@@ -50,3 +54,12 @@ def test_only_what_a_program_did_by_itself_counts_as_its_failure(
     script: str, do: Callable[[Program], object], outcome: Cause
 ) -> None:
     assert outcome_of(script, do) == outcome
+
+
+def test_a_program_imports_the_modules_beside_it(tmp_path: Path) -> None:
+    (tmp_path / "beside.py").touch()
+    program = tmp_path / "program.py"
+    program.write_text("import beside\n")
+    with without_current_folder():  # as an engine is started
+        outcome = outcome_of(shlex.join([sys.executable, str(program)]), id)
+    assert outcome == Cause("the program returned", failed=False)
