@@ -1,5 +1,8 @@
 """An exception as text, also when its own ``__str__`` fails."""
 
+UNREADABLE = ("SyntaxError", "IndentationError", "TabError")
+"""The exceptions that come before a file runs."""
+
 
 def error_line(error: BaseException) -> str:
     """Return an exception as the trace has it: ``ValueError: no scan``."""

@@ -5,6 +5,7 @@ import fcntl
 import json
 import os
 import random
+import re
 import signal
 import socket
 import subprocess
@@ -21,8 +22,10 @@ from typing import NamedTuple
 from sim.engine.failures.cause import Cause
 from sim.engine.failures.failure import Failure
 from sim.engine.setup import RunSetup
+from sim.interpreter.exception_text import UNREADABLE
 from sim.interpreter.safe_path import left_out
 from sim.probes.on_path.cbtui_probe import CHANGES, FOLDER, PORT, TOKEN
+from sim.real.printed_traceback import PrintedTraceback
 from sim.real.probe_link import LineReader, ProbeLink
 from sim.real.wire import Uncaught
 
@@ -30,8 +33,12 @@ ON_PATH = Path(__file__).parents[1] / "probes" / "on_path"
 """The folder that a probed program has on its path."""
 _LAST_WORDS = 0.5
 """Seconds to wait for the output of a program that has ended."""
+_RAISED = 1
+"""The exit status of a Python program that an exception ended."""
 _BOOTSTRAPPED = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 """The environment variable that ROS's wheels set once they have found their libraries."""
+_OF_TEXT = re.compile(r"\(.*, line \d+\)$")
+"""The end of a syntax error's message if the text at fault is not the file that was given."""
 _DOMAINS = range(1, 102)
 """The ROS domains whose ports are free on every system."""
 _LOG_BEGINS, _LOG_ENDS = "\x1e", "\x1f"
@@ -145,8 +152,7 @@ class Program:
         """Also gets every line of output, log lines included; set by a launch file."""
         self.reads = start.terminal is not None
         """Whether it has the keyboard."""
-        self._last_error = ""
-        """The last line on stderr: the class and text of an exception raised before rclpy was imported."""
+        self._traceback = PrintedTraceback()
         self._ended_at = 0.0
         self._sent: signal.Signals | None = None
         """The last signal that it was sent."""
@@ -193,6 +199,8 @@ class Program:
     def outcome(self) -> Cause:
         """How it ended."""
         uncaught, status = self.link.uncaught, self.status
+        if uncaught is None and status == _RAISED and self.link.hello is None:
+            uncaught = self._traceback.uncaught()
         if uncaught is not None:
             return ended_by(uncaught, "the program", self._advice(uncaught.error))
         if status == -signal.SIGINT or (self._sent is not None and status == -self._sent):
@@ -200,7 +208,7 @@ class Program:
         if status < 0:
             return Cause(f"the program crashed with {signal.Signals(-status).name}", failed=True)
         reason = "the program returned" if status == 0 else f"the program ended with exit code {status}"
-        advice = self._advice(self._last_error)
+        advice = self._advice(self._traceback.error)
         return Cause(f"{reason}; {advice}" if advice else reason, failed=status != 0)
 
     def _advice(self, error: str) -> str:
@@ -241,16 +249,18 @@ class Program:
         if error and self.link.hello is not None:
             text = _without_log(text)
         for line in _lines(text):
-            self._last_error = line if error else self._last_error
+            if error:
+                self._traceback.take(line)
             self._show(line, error, self.number)
 
 
 def ended_by(uncaught: Uncaught, name: str, advice: str = "") -> Cause:
     """The end by an exception of the program that people know as ``name``."""
+    is_unreadable = uncaught.exception in UNREADABLE and not _OF_TEXT.search(uncaught.error)
     failure = Failure(
         uncaught.file,
         uncaught.line,
-        f"{name} raised {uncaught.error}",
+        uncaught.error.partition(": ")[2] if is_unreadable else f"{name} raised {uncaught.error}",
         uncaught.advice or advice,
         uncaught.exception,
     )

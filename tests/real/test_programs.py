@@ -63,3 +63,22 @@ def test_a_program_imports_the_modules_beside_it(tmp_path: Path) -> None:
     with without_current_folder():  # as an engine is started
         outcome = outcome_of(shlex.join([sys.executable, str(program)]), id)
     assert outcome == Cause("the program returned", failed=False)
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ("x = 1\nx = {", "program.py:2: '{' was never closed"),
+        ("import os\nos.nothing()", "program.py:2: the program raised AttributeError: module 'os' has no "),
+        ("import json\njson.loads('')", "program.py:2: the program raised json.decoder.JSONDecodeError: "),
+        ("import sys\nsys.exit('no robot: none')", "the program ended with exit code 1"),
+    ],
+)
+def test_an_exception_before_rclpy_is_imported_is_told_with_its_line(
+    tmp_path: Path, text: str, sentence: str
+) -> None:
+    program = tmp_path / "program.py"
+    program.write_text(text)
+    outcome = outcome_of(shlex.join([sys.executable, str(program)]), id)
+    assert outcome.failed
+    assert outcome.reason.startswith(sentence)

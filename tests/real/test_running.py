@@ -199,6 +199,19 @@ def test_what_makes_rclpy_raise_is_told_at_its_definition_as_on_the_model(progra
     assert (real.place, real.advice) == (model.place, model.advice)
 
 
+def test_a_module_with_a_syntax_error_is_told_at_its_line_as_on_the_model(tmp_path: Path) -> None:
+    (tmp_path / "broken.py").write_text("x = 1\nx = {\n")
+    program = tmp_path / "program.py"
+    program.write_text("import rclpy\nimport broken\n")
+    setup = program_setup(program, 3.0)
+    real, model = (
+        run_to_end(each).ending
+        for each in (msgspec.structs.replace(setup, clock="real", real=RealRos()), setup)
+    )
+    assert real.reason == "broken.py:2: '{' was never closed"
+    assert (real.reason, real.place, real.exception) == (model.reason, model.place, model.exception)
+
+
 def test_a_wait_for_a_reply_by_await_is_told_at_its_line(tmp_path: Path) -> None:
     body = programs.AWAITS.replace("ReentrantCallbackGroup()", "MutuallyExclusiveCallbackGroup()")
     timeline = programs.run(tmp_path, body, "SingleThreadedExecutor()", seconds=2.3).timeline

@@ -13,6 +13,7 @@ from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, line
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of, raised_last
 from sim.diagnosis.words import listed, often, who
 from sim.files.untrusted import program_text
+from sim.interpreter.exception_text import UNREADABLE
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, Reason, RunEnded
 from sim.trace.model import AxisMarkKind, EntityInfo, Nanoseconds, Window
@@ -48,7 +49,7 @@ class ProgramRaised(Rule):
         place = line_location(*ended.place)
         why = "an exception that no except clause takes ends the program, and spin() with it"
         cure = "correct the line, or catch the exception there"
-        if ended.exception in _UNREADABLE:
+        if ended.exception in UNREADABLE:
             why, cure = "Python could not read the file, so nothing of it ran", "correct the line"
         for pattern, its_why, its_cure in _KNOWN:
             if known := pattern.fullmatch(ended.error or ""):
@@ -94,9 +95,6 @@ def _called_too_soon(ended: RunEnded, timeline: Timeline) -> EntityInfo | None:
 
 
 _NO_ATTRIBUTE = re.compile(r"AttributeError: 'NoneType' object has no attribute '(\w+)'")
-
-_UNREADABLE = ("SyntaxError", "IndentationError", "TabError")
-"""The exceptions that come before a file runs."""
 
 _NODE_PROPERTIES = (
     "clients|context|default_callback_group|guards|handle|publishers|services|subscriptions|timers|waitables"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from pathlib import Path
 from typing import Any
 
 from .callbacks import is_own, raised_at
@@ -90,6 +91,8 @@ def _watch_end(recorder: Recorder) -> None:
         leave_out_probe(error)
         if not issubclass(kind, KeyboardInterrupt):
             text, *place = raised_at(error)
+            if isinstance(error, SyntaxError) and Path(error.filename or "").is_file():
+                text, place = f"{type(error).__name__}: {error.msg}", [error.filename, error.lineno or 0]
             *place, advice = culprit_of(error, is_own) or (*place, "")
             recorder.put("uncaught", now(), text, *place, type(error).__name__, advice)
         report(kind, error, error.__traceback__)
