@@ -4,6 +4,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from sim.probes.on_path.cbtui_probe import CHANGES
 from sim.real.programs import watched_environment
 from tests.real.programs import HEAD, needs_ros
 
@@ -62,3 +63,18 @@ def test_the_probe_is_not_in_the_tracebacks_of_a_program(tmp_path: Path) -> None
 
     assert printed() == printed(PYTHONPATH="")
     assert printed().count("Traceback") == 7
+
+
+@needs_ros
+def test_the_interrupt_that_ends_a_run_of_the_console_has_no_traceback(tmp_path: Path) -> None:
+    program = tmp_path / "tried.py"
+    program.write_text("import rclpy\nraise KeyboardInterrupt\n")
+
+    def printed(**environment: str) -> str:
+        command = [sys.executable, str(program)]
+        env = watched_environment(sys.executable, tmp_path) | environment
+        done = subprocess.run(command, env=env, capture_output=True, text=True, check=False)
+        return done.stderr
+
+    assert printed().endswith("\nKeyboardInterrupt\n")
+    assert printed(**{CHANGES: "{}"}) == ""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from typing import Any
 
+from . import CHANGES
 from .callbacks import is_own, raised_at
 from .clients import watch_clients, watch_services
 from .entities import Entities
@@ -89,7 +91,10 @@ def _watch_end(recorder: Recorder) -> None:
 
     def report_known(kind: Any, error: Any, _trace: Any) -> None:
         leave_out_probe(error)
-        if not issubclass(kind, KeyboardInterrupt):
+        if issubclass(kind, KeyboardInterrupt):
+            if CHANGES in os.environ:  # that is how a run of the console's own ends
+                return
+        else:
             text, *place = raised_at(error)
             if isinstance(error, SyntaxError) and Path(error.filename or "").is_file():
                 text, place = f"{type(error).__name__}: {error.msg}", [error.filename, error.lineno or 0]
