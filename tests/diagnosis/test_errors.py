@@ -10,6 +10,7 @@ import pytest
 
 import sim.ros.rclpy as rclpy
 from sim.diagnosis import Explanation, diagnose
+from sim.quantities.nanoseconds import SECOND
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.trace.events import RunEnded
@@ -102,6 +103,15 @@ def test_an_exception_that_ended_the_run_is_well_and_one_beside_it_is_lost() -> 
 def test_a_timeline_without_errors_is_asked_nothing() -> None:
     assert Diagnosed(Trace([])).findings == ()
     assert Timeline().end == 0
+
+
+def test_an_exception_is_told_at_its_own_time_though_the_run_went_on_with_others() -> None:
+    events = [each for each in raising(None, ticks_on=False).trace.events if not isinstance(each, RunEnded)]
+    error = "ValueError: no scan"
+    ended = RunEnded(60 * SECOND, error, failed=True, error=error, exception="ValueError", problem=error)
+    run = Diagnosed(Trace([*events, ended]))
+    found = run.one("program-raised")
+    assert (found.at, run.problems()) == (1 * SECOND, {("program-raised", "fails")})
 
 
 def explained_end(add_to: Callable[[Node], None], threads: int | None = None) -> Explanation:

@@ -36,8 +36,9 @@ class ProgramRaised(Rule):
         if any(span.no_response and span.error == ended.error for span in last):
             return
         latest = (span for each in view.entities() for span in view.spans(each.id)[-1:])
-        raised = (span.entity for span in latest if span.error and span.error == ended.error)
-        yield Finding(self, ended.t, ended.t, next(raised, 0))
+        raised = next((span for span in latest if span.error and span.error == ended.error), None)
+        at = ended.t if raised is None or raised.end is None else raised.end  # others may have gone on
+        yield Finding(self, at, at, raised.entity if raised else 0)
 
     def kind(self, found: Finding) -> str:
         """Distinguish exceptions of callbacks from those of the rest of the program."""
