@@ -60,18 +60,23 @@ def diagnosis_on_screen(
     run: ShownRun, playhead: Playhead, concurrency: Concurrency, keymap: Keymap = STANDARD
 ) -> Diagnosis:
     """Return the diagnosis of the moment on screen; at a run's end, how it ended and how to continue."""
-    timeline = run.timeline
+    timeline, real = run.timeline, run.setup.real
+    is_watched = real is not None and real.is_watched
     if playhead.at is None:
         if run.loss is not None:
             return _diagnosis_of_loss(run.loss, _key("run_again", keymap))
         if run.state is RunState.SILENT:
             return _diagnosis_of_silence(timeline, _key("run_again", keymap))
         if run.state is RunState.ENDED:
-            return _diagnosis_of_end(timeline, f"press {_key('run_again', keymap)} to run again")
+            again = "watch those that come" if is_watched else "run again"
+            return _diagnosis_of_end(timeline, f"press {_key('run_again', keymap)} to {again}")
         if run.state is RunState.REPLAY_STANDS and timeline.ended is not None:
             return _diagnosis_of_end(timeline, f"{_key('resume', keymap)} plays it from its beginning")
     at = playhead.now(timeline.end)
     moment = diagnosis_at(timeline, at, concurrency, keymap, can_type=run.alive)
+    if is_watched and not (timeline.processes or moment.stays):
+        text = "no process to watch yet: start one with cbtui probe -- COMMAND"
+        moment = Diagnosis(text, DiagnosisLevel.FINE)
     notice = _latest_notice(timeline, at)
     if playhead.at is None and run.alive and notice is not None and notice.kind is NoticeKind.NO_PROGRESS:
         return replace(moment, text=f"{moment.text}; {_key('start_over', keymap)} starts over")

@@ -17,9 +17,9 @@ from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
 from sim.diagnosis import RULES, CodeLocation, Explanation, Finding
 from sim.diagnosis import Weight as RuleWeight
 from sim.diagnosis.words import threads_needed
-from sim.engine.setup import ProgramSetup, RunSetup
+from sim.engine.setup import ProgramSetup, RealRos, RunSetup
 from sim.trace.descriptions import executor_label
-from sim.trace.events import Reason, Severity
+from sim.trace.events import Reason, RunEnded, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -44,9 +44,9 @@ def said(run: Run, at: float) -> Diagnosis:
     return diagnosis_at(timeline, ns(at), Concurrency(timeline))
 
 
-def live_run(run: Run, until: float) -> LiveRun:
+def live_run(run: Run, until: float, real: RealRos | None = None) -> LiveRun:
     live = LiveRun(
-        RunSetup(title="x", programs=(ProgramSetup("node.py"),)),
+        RunSetup(title="x", programs=(ProgramSetup("node.py"),), real=real),
         FakeEngines([], 0),
         lambda _: None,
         lambda _: None,
@@ -57,6 +57,14 @@ def live_run(run: Run, until: float) -> LiveRun:
 
 def verdict_of(live: LiveRun, playhead: Playhead | None = None) -> Diagnosis:
     return diagnosis_on_screen(live, playhead or Playhead(), Concurrency(live.timeline))
+
+
+def test_who_watches_is_told_how_a_process_comes_and_what_a_key_does_once_all_are_gone() -> None:
+    live = live_run(Run(), 0.0, RealRos(watched="/run/probes"))
+    assert verdict_of(live).text == "no process to watch yet: start one with cbtui probe -- COMMAND"
+    live.take([RunEnded(ns(1.0), "every process that was watched is gone", failed=False)])
+    live.over(None)
+    assert verdict_of(live).text.endswith(" is gone; press r to watch those that come")
 
 
 def test_the_longest_wait_is_named_with_its_reason() -> None:
