@@ -1,6 +1,7 @@
 """``cbtui new``: writes a small node as a starting point for a program of one's own."""
 
 import argparse
+import shlex
 from pathlib import Path
 
 from cbtui.text.output import complain, say
@@ -28,5 +29,6 @@ def new(options: argparse.Namespace) -> int:
     except OSError as error:
         complain(f"{path} cannot be written: {error.strerror}")
         return 1
-    say(f"{path} is yours now: a timer, a subscription and a service.\nSee it run: cbtui open {path}\n")
+    say(f"{path} is yours now: a timer, a subscription and a service.\n")
+    say(f"See it run: {shlex.join(['cbtui', 'open', str(path)])}\n")
     return 0

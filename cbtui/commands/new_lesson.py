@@ -1,6 +1,7 @@
 """``cbtui new-lesson``: creates a small, valid lesson as a starting point."""
 
 import argparse
+import shlex
 from pathlib import Path
 
 from cbtui.text.output import complain, say
@@ -22,8 +23,9 @@ def new_lesson(options: argparse.Namespace) -> int:
         complain(str(error))
         return 1
     say("".join(f"{folder / file.name}\n" for file in files))
+    where = shlex.quote(str(folder))
     say(
-        f"Prove it: cbtui lint-lesson {folder}\n"
-        f"See it: cbtui --lessons {folder} open {folder.absolute().name}\n"
+        f"Prove it: cbtui lint-lesson {where}\n"
+        f"See it: cbtui --lessons {where} open {folder.absolute().name}\n"
     )
     return 0

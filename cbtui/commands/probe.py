@@ -57,6 +57,8 @@ def probe(options: argparse.Namespace) -> int:
 
     program = shutil.which(command[0])
     if program is None:
+        if Path(command[0]).is_file():
+            refuse(f"{command[0]} is not executable; for a Python file give python3 {command[0]}")
         refuse(f"there is no program {command[0]}")
     from sim.real.programs import watched_environment
 
@@ -98,7 +100,8 @@ def attach(options: argparse.Namespace) -> int:
         there = processes_in(folder)
         unknown = [each for each in numbers if each not in {hello.process for hello in there}]
         if unknown:
-            refuse(f"no process {unknown[0]} can be watched; cbtui attach --list tells which can")
+            why = "it was not started with cbtui probe, or has ended"
+            refuse(f"process {unknown[0]} cannot be watched: {why}; cbtui attach --list tells which can")
         found += [hello for hello in there if not numbers or hello.process in numbers]
     if not found:
         refuse("no process can be watched: start one with cbtui probe -- COMMAND")
@@ -113,7 +116,7 @@ def attach(options: argparse.Namespace) -> int:
 
 def _process_at(address: tuple[str, int]) -> "Hello":
     """Return the process whose probe listens there; exits with code 2 and one line if there is none."""
-    from sim.real.probe_link import process_at
+    from sim.real.probe_link import has_token, process_at
 
     where = f"{address[0]}:{address[1]}"
     try:
@@ -124,7 +127,8 @@ def _process_at(address: tuple[str, int]) -> "Hello":
             "start one with cbtui probe --tcp PORT -- COMMAND"
         )
     if hello is None:
-        refuse(f"the probe at {where} wants the token that cbtui probe --tcp printed: give it by --token")
+        wanted = "has another token" if has_token() else "wants a token"
+        refuse(f"the probe at {where} {wanted}: give the one that cbtui probe --tcp printed by --token")
     return hello
 
 

@@ -137,6 +137,11 @@ def say_token(token: str) -> None:
     os.environ[TOKEN] = token
 
 
+def has_token() -> bool:
+    """Whether this process sends a token."""
+    return bool(os.environ.get(TOKEN))
+
+
 def process_at(place: Place) -> Hello | None:
     """Ask the probe at an address for its process; None if it does not reply, as without its token.
 

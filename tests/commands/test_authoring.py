@@ -11,9 +11,9 @@ from cbtui import cli
 def test_a_new_node_runs_well_and_is_never_written_over(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file = tmp_path / "mine.py"
+    file = tmp_path / "my own.py"
     assert cli.main(["new", str(file)]) == 0
-    assert f"See it run: cbtui open {file}\n" in capsys.readouterr().out
+    assert f"See it run: cbtui open '{file}'\n" in capsys.readouterr().out
     assert cli.main(["run", str(file), "--clock", "virtual", "--for", "5", "--call", "2"]) == 0
     told = capsys.readouterr().out
     assert "longest waits: none" in told

@@ -135,6 +135,7 @@ def test_a_file_is_told_by_its_name_before_or_behind_the_learners(tmp_path: Path
     ("words", "sentence"),
     [
         (["grade", "nowhere"], "there is no folder nowhere"),
+        (["grade", __file__], f"{__file__} is not a folder"),
         (["grade", "."], ". has no learners' folders and no Python files in it"),
         (["grade", ".", "--lesson", "single-thread"], "the lesson single-thread has no exercise"),
     ],

@@ -4,6 +4,7 @@ import os
 import socket
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 from queue import Queue
@@ -17,7 +18,7 @@ from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.shown_program import of_processes, of_robot
 from sim.engine.commands import CallService, RunLine, Stop
 from sim.engine.setup import RealRos
-from sim.probes.on_path.cbtui_probe import PROTOCOL
+from sim.probes.on_path.cbtui_probe import PROTOCOL, TOKEN
 from sim.real.probe_link import ProbeLink, processes_in
 from sim.real.programs import claimed_domain
 from sim.real.wire import Hello, Left, ProbeLine
@@ -55,7 +56,15 @@ def folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyP
         (["attach"], "no process can be watched: start one with cbtui probe -- COMMAND"),
         (["attach", "localhost:1"], "argument PID|HOST:PORT: 1 is not a port for a program"),
         (["attach", "localhost:65500"], "no probe listens at localhost:65500 (Connection refused)"),
-        (["attach", "4711"], "no process 4711 can be watched; cbtui attach --list tells which can"),
+        (
+            ["attach", "4711"],
+            "process 4711 cannot be watched: it was not started with cbtui probe, or has ended",
+        ),
+        (
+            ["probe", "--", __file__],
+            f"{__file__} is not executable; for a Python file give python3 {__file__}",
+        ),
+        (["probe", "python3", "node.py"], "unrecognized arguments: python3 node.py; put -- before python3"),
     ],
 )
 def test_what_cannot_be_watched_is_told_in_a_sentence(
@@ -65,6 +74,26 @@ def test_what_cannot_be_watched_is_told_in_a_sentence(
         cli.main(words)
     assert ended.value.code == 2
     assert said in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("token", "wanted"), [("", "wants a token"), ("x" * 20, "has another token")])
+def test_a_probe_that_does_not_reply_lacks_its_token(
+    token: str, wanted: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv(TOKEN, token)
+    with socket.create_server(("127.0.0.1", 0)) as server:
+
+        def hang_up() -> None:
+            server.accept()[0].close()
+
+        threading.Thread(target=hang_up, daemon=True).start()
+        where = f"127.0.0.1:{server.getsockname()[1]}"
+        with pytest.raises(SystemExit, match="2"):
+            cli.main(["attach", where])
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(
+        f"cbtui: the probe at {where} {wanted}: give the one that cbtui probe --tcp printed"
+    )
 
 
 @needs_ros

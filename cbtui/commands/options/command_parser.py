@@ -20,6 +20,8 @@ class CommandParser(argparse.ArgumentParser):
         found, unknown = super().parse_known_args(args, namespace)
         if unknown:
             near = _nearest(unknown[0].partition("=")[0], self._options())
+            if "-- " in (self.usage or "") and not unknown[0].startswith("-"):
+                near = f"; put -- before {unknown[0]}"
             self.error(f"unrecognized arguments: {' '.join(unknown)}{near}")
         return found, unknown
 

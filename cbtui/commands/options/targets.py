@@ -118,8 +118,9 @@ def folder_of(name: str) -> Path:
     """Return the folder of that name; exits with code 2 and one line if there is none."""
     path = Path(name)
     try:
-        if not S_ISDIR(mode_of(path)):
-            refuse(f"there is no folder {name}")
+        mode = mode_of(path)
+        if not S_ISDIR(mode):
+            refuse(f"{name} is not a folder" if mode else f"there is no folder {name}")
     except OSError as error:
         refuse(f"{name} cannot be opened: {error.strerror}")
     return path
