@@ -21,13 +21,15 @@ def make_lesson(folder: Path) -> list[Path]:
     """Create a folder with a lesson of its name; returns the lesson's files.
 
     Raises:
-        CannotScaffoldError: the name is not a valid id, or the folder exists or cannot be created.
+        CannotScaffoldError: the name is no id or is taken, or the folder exists or cannot be created.
     """
     folder = folder.absolute()
     if not _ID.fullmatch(folder.name):
         raise CannotScaffoldError(
             f"{folder.name!r} cannot be a lesson's id; take small letters and digits, joined by '-'"
         )
+    if any(ROOT.glob(f"unit*/{folder.name}/{DESCRIPTION_FILE}")):
+        raise CannotScaffoldError(f"cbtui has a lesson {folder.name!r} already; take another name")
     try:
         folder.mkdir(parents=True)
     except FileExistsError:

@@ -68,6 +68,7 @@ def test_a_folder_that_is_no_lesson_is_said_to_be_none(
     [
         ("Two Belts", "'Two Belts' cannot be a lesson's id; take small letters and digits, joined by '-'"),
         ("there", "there is there already; nothing was written"),
+        ("split-groups", "cbtui has a lesson 'split-groups' already; take another name"),
         ("file/new", "cannot be made: Not a directory"),
     ],
 )
