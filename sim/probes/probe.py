@@ -230,6 +230,20 @@ class Probe:
             events.Notice(self._now(), Severity.WARN, text, entity, kind=kind, problem=problem, advice=advice)
         )
 
+    def cancel_ignored(self, entity: TracedEntity, seconds: int) -> None:
+        """Warn that an execute callback has gone on so long after the cancel of its goal was accepted."""
+        callback = entity.shown_callback()
+        name = entity.name if callback is None else callback_name(callback)
+        problem = (
+            f"{name} goes on {seconds} s after the cancel of its goal was accepted, and has not looked at "
+            "is_cancel_requested"
+        )
+        advice = "look at it in each round, and if it is set, call canceled() and return a result"
+        text, own, kind = f"{problem}; {advice}", entity.trace_id, events.NoticeKind.CANCEL_IGNORED
+        self._sink(
+            events.Notice(self._now(), Severity.WARN, text, own, kind=kind, problem=problem, advice=advice)
+        )
+
     def spin_clashed(self, node: int = 0, *, refused: bool = False) -> None:
         """Record that the calling thread spins what is being spun; ``node`` was taken from that executor."""
         here, endless = self._here.entity, not has_timeout()

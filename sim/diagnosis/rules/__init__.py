@@ -1,6 +1,7 @@
 """All rules, in the order in which their findings are listed: those that stop a program come first."""
 
 from sim.diagnosis.rule import Rule
+from sim.diagnosis.rules.cancelling import CancelIgnored
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
 from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing, WaitsForLock
 from sim.diagnosis.rules.errors import ExceptionCaught, ExceptionSwallowed, ProgramRaised, SpinRaised
@@ -36,6 +37,7 @@ RULES: tuple[Rule, ...] = (
     ExceptionSwallowed(),
     ExceptionCaught(),
     UnreturnedResponse(),
+    CancelIgnored(),
     NeverDestroyed(),
     GroupStarvation(),
     NoFreeWorker(),

@@ -49,7 +49,7 @@ class EndlessWait(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each wait that the engine reported."""
         for notice in view.timeline.notices:
-            if not notice.entity or notice.kind is NoticeKind.OVERRULED:
+            if not notice.entity or notice.kind in (NoticeKind.OVERRULED, NoticeKind.CANCEL_IGNORED):
                 continue
             if notice.kind is not NoticeKind.NO_PROGRESS or not _computes(notice, view):
                 stuck, until = frozenset([notice.entity]), _until(notice, view)

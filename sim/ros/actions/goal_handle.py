@@ -5,11 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
+from sim.quantities.nanoseconds import SECOND
 from sim.ros.actions.goal_states import TERMINAL, GoalEvent, GoalState, next_state
 from sim.ros.scheduling.task import Future
 
 if TYPE_CHECKING:
     from sim.ros.actions.server import ActionServer
+
+PATIENCE = 2
+"""Seconds after an accepted cancel in which an execute callback should ask for it."""
 
 
 class ServerGoalHandle:
@@ -26,6 +30,8 @@ class ServerGoalHandle:
         self._action_server = action_server
         self._goal_request = goal_request
         self._state = GoalState.ACCEPTED
+        self._is_executed = False
+        self._was_asked = False
         self._host = action_server.node.context.host
         self._accepted_at: int | None = self._host.clock.now()
 
@@ -52,6 +58,7 @@ class ServerGoalHandle:
     @property
     def status(self) -> int:
         """The goal's state, a number of ``action_msgs/msg/GoalStatus``."""
+        self._was_asked = True
         return int(self._state)
 
     @property
@@ -62,6 +69,7 @@ class ServerGoalHandle:
     @property
     def is_cancel_requested(self) -> bool:
         """Whether a cancel request was accepted, and the goal has not ended yet."""
+        self._was_asked = True
         return self._state is GoalState.CANCELING
 
     def execute(self, execute_callback: Callable[[ServerGoalHandle], Any] | None = None) -> None:
@@ -72,9 +80,15 @@ class ServerGoalHandle:
         """
         # A goal that is cancelled before its execution is executed as well, so that its callback can
         # report the cancellation.
-        if not self.is_cancel_requested:
+        if self._state is not GoalState.CANCELING:
             self.change(GoalEvent.EXECUTE)
         self._action_server.notify_execute(self, execute_callback)
+
+    def begin(self) -> None:
+        """Note that the execute callback begins."""
+        with self._host.lock:
+            self._is_executed = True
+            self._watch_cancel()
 
     def publish_feedback(self, feedback: Any) -> None:
         """Send feedback to the clients; TypeError if the feedback does not have the action's type."""
@@ -120,9 +134,21 @@ class ServerGoalHandle:
                 return
             self._state = next_state(self._state, event)
             self._action_server.publish_status()
+            self._watch_cancel()
             if not self.is_active:
                 self.done_at = self._host.clock.now()
                 self._action_server.notify_goal_done()
+
+    def _watch_cancel(self) -> None:
+        """Look later whether the execute callback has asked for its cancel. With the host's lock held."""
+        if self._is_executed and self._state is GoalState.CANCELING:
+            self._was_asked = False
+            self._host.clock.call_at(self._host.clock.now() + PATIENCE * SECOND, self._check_cancel)
+
+    def _check_cancel(self) -> None:
+        with self._host.lock:
+            if self._state is GoalState.CANCELING and not self._was_asked:
+                self._action_server.notify_cancel_ignored(PATIENCE)
 
     def set_result(self, result: Any) -> None:
         """Set the result, and answer the requests for it; a result that was set before stays.
@@ -131,7 +157,7 @@ class ServerGoalHandle:
             AssertionError: it does not have the action's type, as when an execute callback returns nothing.
         """
         get_result = self._action_server.action_type.Impl.GetResultService
-        response = get_result.Response(status=self.status, result=result)
+        response = get_result.Response(status=int(self._state), result=result)
         with self._host.lock:
             if self.result_response.done():
                 return

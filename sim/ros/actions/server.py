@@ -229,6 +229,7 @@ class ActionServer(ActionWaitable):
     ) -> None:
         uuid = goal_handle.goal_id.uuid
         self._logger.debug(f"Executing goal with ID {uuid}")
+        goal_handle.begin()
         try:
             result = await self._execution.run(executor, execute_callback, goal_handle)
         except Exception as error:  # noqa: BLE001 -- the client gets an empty result
@@ -286,6 +287,10 @@ class ActionServer(ActionWaitable):
             self._logger.debug(f"Failed to cancel goal in cancel callback: {error}")
             return False
         return True
+
+    def notify_cancel_ignored(self, seconds: int) -> None:
+        """An execute callback has not asked for so long for its cancel. Called with the host's lock held."""
+        self._node.context.probe.cancel_ignored(self._execution, seconds)
 
     # Results
 
@@ -348,7 +353,7 @@ class ActionServer(ActionWaitable):
         """Publish the states of all goals. Called with the host's lock held."""
         if not self.destroyed:
             statuses = [
-                self._goal_status(goal_info=goal.info, status=goal.status)
+                self._goal_status(goal_info=goal.info, status=int(goal.state))
                 for goal in self._goal_handles.values()
             ]
             self._status.publish(self._action_type.Impl.GoalStatusMessage(status_list=statuses))

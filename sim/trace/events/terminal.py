@@ -76,6 +76,8 @@ class NoticeKind(StrEnum):
     """Threads wait without a timeout for what can no longer come."""
     OVERRULED = "overruled"
     """A parameter callback sets the parameter that is being set; the requested value is stored after that."""
+    CANCEL_IGNORED = "cancel ignored"
+    """An execute callback goes on after the cancel of its goal was accepted, and has not asked for that."""
     FORGED = "forged"
     """A program records events that only the run may record."""
 

@@ -1,0 +1,87 @@
+"""The rule on execute callbacks that do not ask whether their goal is cancelled."""
+
+from pathlib import Path
+
+import pytest
+
+from sim.diagnosis import Explanation, diagnose
+from sim.diagnosis.edits.code_edit import diff
+from tests.support.engine_runs import run_program
+
+PROGRAM = """
+import time
+import rclpy
+from example_interfaces.action import Fibonacci
+from rclpy.action import ActionClient, ActionServer, CancelResponse
+from rclpy.executors import MultiThreadedExecutor
+
+def execute(goal):
+    for each in range(8):
+        LOOK
+        time.sleep(0.5)
+    goal.succeed()
+    return Fibonacci.Result()
+
+def ask():
+    timer.cancel()
+    client.send_goal_async(Fibonacci.Goal()).add_done_callback(accepted)
+
+def accepted(future):
+    time.sleep(WAIT)
+    future.result().cancel_goal_async()
+
+rclpy.init()
+node = rclpy.create_node("node")
+ActionServer(node, Fibonacci, "fib", execute, cancel_callback=lambda goal: CancelResponse.ACCEPT)
+client = ActionClient(node, Fibonacci, "fib")
+timer = node.create_timer(0.5, ask)
+executor = MultiThreadedExecutor(3)
+executor.add_node(node)
+executor.spin()
+"""
+
+
+def told(folder: Path, look: str = "pass", wait: float = 1.0, seconds: float = 6.0) -> list[Explanation]:
+    text = PROGRAM.replace("LOOK", look).replace("WAIT", str(wait))
+    timeline = run_program(folder, text, seconds=seconds).timeline
+    found = (each for each in diagnose(timeline) if each.rule.id == "cancel-ignored")
+    return [each.rule.explain(each, timeline) for each in found]
+
+
+def test_a_goal_that_goes_on_after_its_cancel_is_told_with_the_line_and_an_edit(tmp_path: Path) -> None:
+    (found,) = told(tmp_path)
+    assert found.what == (
+        "execute went on for 3.0 s after the cancel of its goal was accepted, without a look at "
+        "is_cancel_requested in the first 2.0 s"
+    )
+    assert found.place is not None
+    assert found.place.first_line == 11
+    (remedy,) = found.remedies
+    assert remedy.edit is not None
+    text = PROGRAM.replace("LOOK", "pass")
+    edited = remedy.edit.applied(text) or ""
+    assert diff("node.py", text, edited).splitlines()[4:-1] == [
+        "+        if goal.is_cancel_requested:",
+        "+            goal.canceled()",
+        "+            return Fibonacci.Result()",
+    ]
+    after = diagnose(run_program(tmp_path, edited, seconds=6.0).timeline)
+    assert "cancel-ignored" not in {each.rule.id for each in after}
+
+
+def test_a_goal_that_still_goes_on_is_told_already(tmp_path: Path) -> None:
+    (found,) = told(tmp_path, seconds=4.0)
+    assert found.what.startswith("execute has gone on for 2.5 s")
+
+
+@pytest.mark.parametrize("look", ["goal.is_cancel_requested", "goal.status == 3"])
+def test_a_callback_that_looks_is_not_told(tmp_path: Path, look: str) -> None:
+    assert told(tmp_path, look) == []
+
+
+def test_a_goal_that_ends_soon_after_its_cancel_is_not_told(tmp_path: Path) -> None:
+    assert told(tmp_path, wait=2.5) == []
+
+
+def test_a_goal_whose_cancel_comes_after_its_end_is_not_told(tmp_path: Path) -> None:
+    assert told(tmp_path, wait=4.5, seconds=9.0) == []
