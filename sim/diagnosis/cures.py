@@ -38,11 +38,13 @@ def remedy_for_waits(
     """Return the remedy for callbacks that waited in a window; empty if groups and threads do not help.
 
     A group of its own for ``mover`` helps if another callback held the group; more threads help if no worker
-    was free, which is always so with one thread.
+    was free, as always with one thread: for long at a time, or for half of the waits, however short.
     """
     waits = [wait for each in waited for wait in _waits(each, window, timeline)]
     crowded = [wait for wait in waits if wait.workers_busy]
-    is_crowded = _length(crowded, window) >= min(_LONG, _length(waits, window) / 2) > 0
+    is_crowded = any(_length([wait], window) >= _LONG for wait in crowded) or (
+        _length(crowded, window) >= _length(waits, window) / 2 > 0
+    )
     return Remedy(
         (mover,) if any(wait.reason is Reason.GROUP_HELD for wait in waits) else (),
         _threads_needed(crowded, window, timeline) if is_crowded else 0,

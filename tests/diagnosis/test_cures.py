@@ -148,3 +148,42 @@ def test_no_thread_is_counted_for_the_callbacks_of_another_executor(tmp_path: Pa
     path = tmp_path / "node.py"
     path.write_text(TWO_EXECUTORS)
     check_cures(program_setup(path, 13.0), {("quick", 2)})
+
+
+BESIDE_SHORT = """
+import threading
+import time
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+
+
+def wait():
+    threading.Event().wait()
+
+
+def quick():
+    pass
+
+
+def short():
+    time.sleep(0.02)
+
+
+rclpy.init()
+node = rclpy.create_node("node")
+node.create_timer(1.0, wait)
+node.create_timer(0.5, quick)
+node.create_timer(0.2, short, MutuallyExclusiveCallbackGroup())
+executor = MultiThreadedExecutor(2)
+executor.add_node(node)
+executor.spin()
+"""
+
+
+def test_no_thread_is_counted_for_callbacks_that_take_one_for_moments(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(BESIDE_SHORT)
+    cures = {cure_in(each) for each in complaints(run_to_end(program_setup(path, 13.0)).timeline).values()}
+    assert ("wait", None) in cures
+    assert ("wait", 3) not in cures
