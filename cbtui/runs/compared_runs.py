@@ -145,11 +145,13 @@ def compare_runs(
         return 2
     one, other = found.first, found.second
     compared = compare(one.timeline, other.timeline, found.window)
-    problems = ComparedProblems(one.timeline, other.timeline).told()
+    problems = ComparedProblems(one.timeline, other.timeline)
+    told, is_cured = problems.told(), problems.is_cured()
     if in_lines:
-        say("".join(f"{line}\n" for line in comparison_lines(compared, one.name, other.name, problems)))
+        lines = comparison_lines(compared, one.name, other.name, told, is_cured=is_cured)
+        say("".join(f"{line}\n" for line in lines))
     else:
-        say(comparison_text(compared, one.name, other.name, problems))
+        say(comparison_text(compared, one.name, other.name, told, is_cured=is_cured))
     failures = [side.failure for side in (one, other) if side.failure is not None]
     for sentence in dict.fromkeys([one.damage, other.damage, *failures]):
         if sentence is not None:

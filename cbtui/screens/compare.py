@@ -256,11 +256,13 @@ class CompareScreen(SizedScreen[None]):
             return f"{self._what}: nothing that both runs have; {_shorter(first, second)}", ()
         compared = yield from compare_incrementally(first.timeline, second.timeline, asked)
         self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
-        self._verdict, self._is_tie = verdict(compared), is_tie(compared)
-        self._ended_early = ended_early(compared)
+        is_cured = False
         if self._whole:
             yield
-            self._gone_or_new = self._problems.told()
+            self._gone_or_new, is_cured = self._problems.told(), self._problems.is_cured()
+        self._verdict, self._is_tie = verdict(compared, is_cured=is_cured), is_tie(compared)
+        self._ended_early = ended_early(compared)
+        if self._whole:
             return self._extent(asked), sections(compared)
         cut = asked.end < min(self._asked.end, self._end)
         after = f"; {_shorter(first, second)}" if cut else ""

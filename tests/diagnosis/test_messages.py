@@ -252,7 +252,31 @@ def test_a_subscription_of_another_program_that_does_not_match_is_told() -> None
 
     run = diagnosed(program)
     assert run.told() == {("qos-mismatch", "")}
-    assert run.explained("qos-mismatch").what.startswith("a subscription outside the program hears nothing")
+    told = run.explained("qos-mismatch")
+    assert told.what.startswith("a subscription outside the program hears nothing")
+    assert told.cure.startswith(f"let the publisher of {Path(__file__).name}:")
+    assert told.cure.endswith("offer ReliabilityPolicy.RELIABLE: the subscription is outside the program")
+
+
+@pytest.mark.parametrize(
+    ("offered", "requested", "change"),
+    [
+        (BEST_EFFORT, RELIABLE, "request ReliabilityPolicy.BEST_EFFORT"),
+        (RELIABLE, LATCHED, "request DurabilityPolicy.VOLATILE"),
+    ],
+)
+def test_only_the_programs_own_end_of_a_topic_is_to_be_changed(
+    offered: QoSProfile, requested: QoSProfile, change: str
+) -> None:
+    def program(simulation: Simulation) -> None:
+        simulation.outside_node().create_publisher(Int32, "t", offered)
+        node = Node("n")
+        node.create_subscription(Int32, "t", lambda _: None, requested)
+        spin(node, None)
+
+    told = diagnosed(program).explained("qos-mismatch")
+    assert told.cure.startswith(f"let the subscription of {Path(__file__).name}:")
+    assert told.cure.endswith(f"{change}: the publisher is outside the program")
 
 
 def test_old_data_is_laid_to_what_kept_the_messages_until_then() -> None:

@@ -45,6 +45,15 @@ def test_other_problems_are_gone_or_new_too() -> None:
     assert told(run_of("call_in_timer"), deaf) == "The deadlock is gone. New in run B: QoS mismatch."
 
 
+def test_a_run_is_cured_if_problems_are_gone_and_none_is_new() -> None:
+    stuck, starved, well = run_of("call_in_timer"), run_of("held_group"), well_run()
+    assert ComparedProblems(stuck, well).is_cured()
+    assert not ComparedProblems(well, stuck).is_cured()
+    assert not ComparedProblems(stuck, stuck).is_cured()
+    assert not ComparedProblems(starved, run_of("qos_mismatch")).is_cured()
+    assert not ComparedProblems(stuck, run_of("sleep_in_service", seconds=0.2)).is_cured()
+
+
 CAMERA = """
 import time
 import rclpy

@@ -307,6 +307,22 @@ def test_a_run_that_an_error_ends_and_one_that_hears_nothing_are_worse() -> None
     assert told == "run B is better: runs that an error ends 0 instead of 1"
 
 
+def test_collisions_of_a_robot_that_drives_do_not_outweigh_what_was_cured() -> None:
+    window = Window(0, ns(4.0))
+    deaf = QosMismatched(ns(1.0), "/odom", 1, 1, "RELIABILITY")
+    clumsy = run(
+        [ODOM], [touch for t in (1.0, 2.0) for touch in (moved(t, 0.5, touching=True), moved(t + 0.5, 0.5))]
+    )
+    still = [moved(0.0, 0.0), moved(3.0, 0.0)]
+    told = verdict(compare(run([ODOM], [*still, deaf]), clumsy, window))
+    assert told == (
+        "run B is better: subscriptions that hear nothing 0 instead of 1; but collisions 2 instead of 0"
+    )
+    cured = compare(run([ODOM], [*still]), clumsy, window)
+    assert verdict(cured, is_cured=True) == ("run B is better by what is gone; but collisions 2 instead of 0")
+    assert verdict(cured) == "run B is worse: collisions 2 instead of 0"
+
+
 def test_a_run_that_an_exception_ended_while_the_other_goes_on_is_told_instead_of_a_verdict() -> None:
     crash = RunEnded(ns(3.0), "the program raised", failed=True)
     fails, works = run([ODOM], [*called(1, 1.0, 1.1), crash]), run([ODOM], called(1, 5.0, 6.0))

@@ -47,12 +47,18 @@ class ComparedProblems:
 
         Nothing is said of a problem which the other run has not come to.
         """
-        found = (
-            _problems_of(timeline, diagnoses)
-            for timeline, diagnoses in zip((self.first, self.second), self._diagnoses, strict=True)
-        )
-        first, second = found
+        first, second = self._found()
         return " ".join(filter(None, (self._hangs(first, second), *self._others(first, second))))
+
+    def is_cured(self) -> bool:
+        """Return whether problems of the first run are gone in the second one, and none is new there."""
+        first, second = self._found()
+        gone, new = _only_in(first, second), _only_in(second, first)
+        return bool(gone) and not new and _has_come_to(self.second, *gone)
+
+    def _found(self) -> tuple[_Problems, _Problems]:
+        first, second = self._diagnoses
+        return _problems_of(self.first, first), _problems_of(self.second, second)
 
     def _hangs(self, *runs: _Problems) -> str:
         first, second = ({key: each for key, each in own.known.items() if each.hangs} for own in runs)
@@ -75,6 +81,11 @@ class ComparedProblems:
         for what, names in (("Gone", gone), ("New", new)):
             if names:
                 yield f"{what} in {RUNS[1]}: {', '.join(names)}."
+
+
+def _only_in(one: _Problems, other: _Problems) -> list[_Known]:
+    left = one.known.keys() - other.known.keys()
+    return [one.known[each] for each in left if one.known[each].name not in other.effects]
 
 
 def _has_come_to(timeline: Timeline, *problems: _Known) -> bool:

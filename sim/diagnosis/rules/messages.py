@@ -203,6 +203,11 @@ class QosMismatch(Rule):
         if found.detail == _TYPE:
             same, differs = "message type", "their message types differ"
         cure = f"give both ends of {found.about} the same {same}"
+        cure += f": {' and '.join(ends)}" if ends else ""
+        if len(ends) == 1:
+            far = "subscription" if publisher else "publisher"
+            change = _FITTING.get((found.detail, far)) or f"have the {same} of the {far}"
+            cure = f"let {ends[0]} {change}: the {far} is outside the program"
         place = subscription or publisher
         # Who requests transient-local wants what was published before: with less, that would never come.
         edited = publisher or place if found.detail == "DURABILITY" else place
@@ -211,7 +216,7 @@ class QosMismatch(Rule):
         return Explanation(
             f"{subject} hears nothing from a publisher of {found.about}{outside}: {differs}",
             _POLICY_RULES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
-            f"{cure}: {' and '.join(ends)}" if ends else cure,
+            cure,
             place or place_of(found.subject, timeline),
             remedies=by_edit(
                 edited, _PROFILE_WORDS[edited is not subscription], match_quality, found.detail, seen
@@ -228,6 +233,13 @@ class QosMismatch(Rule):
 
 _PROFILE_WORDS = ("request no more than is offered", "offer what is requested")
 _ENDPOINTS = ("publisher", "subscription")
+_FITTING = {
+    ("RELIABILITY", "publisher"): "request ReliabilityPolicy.BEST_EFFORT",
+    ("RELIABILITY", "subscription"): "offer ReliabilityPolicy.RELIABLE",
+    ("DURABILITY", "publisher"): "request DurabilityPolicy.VOLATILE",
+    ("DURABILITY", "subscription"): "offer DurabilityPolicy.TRANSIENT_LOCAL",
+}
+"""What one end does to match the other end, by policy and by that other end."""
 
 
 _TYPE = "TYPE"

@@ -113,11 +113,11 @@ def ended_early(comparison: Comparison) -> str:
     return ""
 
 
-def verdict(comparison: Comparison) -> str:
+def verdict(comparison: Comparison, *, is_cured: bool = False) -> str:
     """Return which run is better and by what, in one sentence that also names what is worse.
 
-    Errors weigh most, then losses, collisions, subscriptions that do not match, waits, lateness, and the age
-    of data.
+    Errors weigh most, then subscriptions that do not match, losses, collisions, waits, lateness, and the age
+    of data; a problem that is gone in the second run (``is_cured``) weighs more than all of them.
     """
     better: list[_FigureDifference] = []
     worse: list[_FigureDifference] = []
@@ -126,6 +126,9 @@ def verdict(comparison: Comparison) -> str:
     if not better and not worse:
         return "Neither run is better: no callback fails, loses or waits more in one of them"
     is_better = min(map(_weight, better), default=_NONE) <= min(map(_weight, worse), default=_NONE)
+    if is_cured and not is_better:
+        also = f", and by {_listed(better)}" if better else ""
+        return f"{RUNS[1]} is better by what is gone{also}; but {_listed(worse)}"
     for_it, against = (better, worse) if is_better else (worse, better)
     told = f"{RUNS[1]} is {'better' if is_better else 'worse'}: {_listed(for_it)}"
     return told + (f"; but {_listed(against)}" if against else "")
@@ -134,7 +137,7 @@ def verdict(comparison: Comparison) -> str:
 class _FigureDifference(NamedTuple):
     """A figure, of which less is better, that differs enough to speak for a run; ``rank`` 0 weighs most."""
 
-    rank: int
+    rank: float
     what: str
     first: float
     second: float
@@ -166,18 +169,18 @@ def _differences(comparison: Comparison) -> Iterator[_FigureDifference]:
                 lower, higher = (first, second) if one < other else (second, first)
                 is_like = 2 * lower.figures.calls >= higher.figures.calls
                 if (is_like or wording not in _OF_CALLS) and abs(other - one) >= least:
-                    weight = rank if is_like or what != _LOST else len(_DECIDING)
+                    weight: float = rank if is_like or what != _LOST else len(_DECIDING)
                     yield _FigureDifference(weight, f"{what} of {name}", one, other, wording)
-    for rank, what, count in _DECIDING_RUNS:
+    for weight, what, count in _DECIDING_RUNS:
         one, other = count(comparison.first), count(comparison.second)
         if one != other:
-            yield _FigureDifference(rank, what, one, other, _LOSSES)
+            yield _FigureDifference(weight, what, one, other, _LOSSES)
 
 
 _NONE = (math.inf, 0.0)
-_DECIDING_RUNS: tuple[tuple[int, str, Callable[[RunFigures], int]], ...] = (
+_DECIDING_RUNS: tuple[tuple[float, str, Callable[[RunFigures], int]], ...] = (
     (0, "runs that an error ends", lambda run: run.crashes),
-    (1, "subscriptions that hear nothing", lambda run: run.mismatches),
+    (0.5, "subscriptions that hear nothing", lambda run: run.mismatches),
     (1, "collisions", lambda run: run.collisions),
 )
 _OF_CALLS = (_LATENESS, _AGES)

@@ -17,10 +17,12 @@ from sim.trace.figures.comparison_rows import (
 _GAP = "  "
 
 
-def comparison_text(comparison: Comparison, first: str, second: str, before: str = "") -> str:
+def comparison_text(
+    comparison: Comparison, first: str, second: str, before: str = "", *, is_cured: bool = False
+) -> str:
     """The whole comparison, ending in a newline; ``first`` and ``second`` are the runs' names.
 
-    ``before`` is a sentence that comes before the verdict.
+    ``before`` is a sentence that comes before the verdict; ``is_cured`` is said in ``verdict()``.
     """
     shown = sections(comparison)
     head = ComparisonRow("", RUNS, DIFFERENCE)
@@ -34,7 +36,7 @@ def comparison_text(comparison: Comparison, first: str, second: str, before: str
         f"{RUNS[0]}  {first}",
         f"{RUNS[1]}  {second}",
         extent(comparison.window, comparison.first.end, comparison.second.end),
-        f"{before} {ended_early(comparison) or verdict(comparison)}.".lstrip(),
+        f"{before} {ended_early(comparison) or verdict(comparison, is_cured=is_cured)}.".lstrip(),
         "",
         _line(head, widths),
     ]
@@ -62,10 +64,12 @@ def _line(row: ComparisonRow, widths: tuple[int, int, int]) -> str:
     return _GAP.join(cells).rstrip()
 
 
-def comparison_lines(comparison: Comparison, first: str, second: str, before: str = "") -> Iterator[str]:
+def comparison_lines(
+    comparison: Comparison, first: str, second: str, before: str = "", *, is_cured: bool = False
+) -> Iterator[str]:
     """Yield the whole comparison as lines that can be listened to; the same, for the rest."""
     yield from (f"{run}: {name}" for run, name in zip(RUNS, (first, second), strict=True))
-    yield f"{before} {ended_early(comparison) or verdict(comparison)}.".lstrip()
+    yield f"{before} {ended_early(comparison) or verdict(comparison, is_cured=is_cured)}.".lstrip()
     yield extent(comparison.window, comparison.first.end, comparison.second.end)
     for section in sections(comparison):
         yield section.title
