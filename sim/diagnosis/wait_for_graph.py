@@ -21,8 +21,8 @@ from typing import TypeAlias
 from sim.diagnosis.rule import WaitedFor, is_models
 from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import pool_of
-from sim.diagnosis.words import group_of, listed, who
-from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, Reason, ThreadId
+from sim.diagnosis.words import group_of, listed, threads_for, who
+from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, NoticeKind, Reason, ThreadId
 from sim.trace.model import Call, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.timeline import Timeline
 
@@ -84,12 +84,22 @@ class StuckCallback:
 
 
 def stands(position: Position, timeline: Timeline, at: Nanoseconds) -> bool:
-    """Return whether a callback has been at its line, or in the loop around it, for ``SETTLES`` at ``at``."""
-    if at - position.start >= SETTLES:
+    """Return whether a callback has been at its line, or in the loop around it, for ``SETTLES`` at ``at``.
+
+    Virtual time stands still while a loop computes: then the engine tells that it does not come back.
+    """
+    if at - position.start >= SETTLES or _stops_time(position, timeline):
         return True
     before = timeline.positions_on(position.thread, Window(max(0, at - SETTLES), at + 1))
     is_here = ((each.entity, each.loop) == (position.entity, position.loop) for each in before)
     return position.loop[0] != "" and before[0].start <= at - SETTLES and all(is_here)
+
+
+def _stops_time(position: Position, timeline: Timeline) -> bool:
+    return any(
+        each.kind is NoticeKind.NO_PROGRESS and each.entity == position.entity and each.t >= position.start
+        for each in timeline.notices
+    )
 
 
 class WaitForGraph:
@@ -217,8 +227,27 @@ class WaitForGraph:
             pending = (call for call in self._outstanding() if call.caller == span.entity)
             for call in pending:
                 if call.sent >= span.start:
-                    return self._obstacle(call)
+                    computes = position.doing is not Doing.WAITS
+                    return self._obstacle(call) or (self._busy_obstacle(call, span) if computes else None)
         return None
+
+    def _busy_obstacle(self, call: Call, span: Span) -> Obstacle | None:
+        """A loop that computes keeps a reply from its client, even one that is not there yet."""
+        if call.lost:
+            return None
+        me, known, by = (
+            self._timeline.entities[span.entity],
+            self._timeline.entities,
+            (OnThread(span.thread),),
+        )
+        if threads_for([me.id], self._at, self._timeline) == 1:
+            return self._worker_obstacle(by, call.service, f"the reply of {call.service}")
+        clients = (each for each in known.values() if each.kind is EntityKind.CLIENT and each.node == me.node)
+        groups = {each.group for each in clients if each.name == call.service}
+        is_mine = groups == {me.group} and self._timeline.groups[me.group].kind is GroupKind.EXCLUSIVE
+        name = group_of(me.id, self._timeline)
+        text = f"the reply of {call.service} waits for {name}, which {self._names(by)} holds"
+        return Obstacle(call.service, text, by, group=name) if is_mine else None
 
     def _waiting_of_rclpy(self, kind: EntityKind, span: Span, name: str = "") -> EntityId | None:
         """What rclpy made for the node of a call and now waits: a rate's timer, a clock's subscription."""

@@ -42,6 +42,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("call_in_script", "self-made-deadlock", "client.call(", "give ask a callback group of its own"),
         ("call_in_subscription", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("wait_for_future", "self-made-deadlock", "time.sleep(0.1)", "add_done_callback"),
+        ("busy_wait_for_future", "self-made-deadlock", "while not future.done():", "add_done_callback"),
         ("while_true", "still-computing", "while True:", "return from tick, and go on in on_ready;"),
         (
             "busy_wait_in_service",

@@ -159,9 +159,10 @@ def judged(problem: Problem, before: TriedRun, after: TriedRun) -> Verdict:
     """
     if problem not in before.problems:
         return Verdict(None)
+    if any(lasts and name == _COMPUTES for (name, *_), lasts in after.problems.items()):
+        return Verdict(None, reason=_TIME_STOOD_STILL)
     if problem in after.problems:
-        stands_still = problem[0] == _COMPUTES and after.problems[problem]
-        return Verdict(None, reason=_TIME_STOOD_STILL) if stands_still else Verdict(False)
+        return Verdict(False)
     left = {each: lasts for each, lasts in after.problems.items() if each[0] not in before.effects}
     new = sorted((each for each in left if each not in before.problems), key=lambda each: not left[each])
     instead = after.names.get(new[0], "") if new else ""

@@ -143,6 +143,7 @@ class StillComputing(Rule):
 
     id = "still-computing"
     summary = "a callback computes and does not come back"
+    is_effect = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each call that the engine reported."""
