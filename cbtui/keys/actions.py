@@ -316,6 +316,11 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("close", "escape", "close", "Close the window, and follow what was followed before"),
     ),
     Scope.HELP: (
+        ("line_up", "up", "scroll", "Scroll up by a line", "Scroll by a line"),
+        ("line_down", "down", "scroll", "Scroll down by a line", "Scroll by a line"),
+        ("page_up", "pageup", "", "Scroll up by a page", "Scroll by a page"),
+        ("page_down", "pagedown", "", "Scroll down by a page", "Scroll by a page"),
+        ("next_heading", "tab", "next heading", "Go on to the next heading"),
         ("search", "/", "search", "Show only signs and keys that have certain words"),
         ("close", "escape,q,question_mark", "close", "Go back to where you were"),
     ),

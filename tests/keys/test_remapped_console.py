@@ -83,7 +83,7 @@ async def test_footer_help_and_palette_show_the_keys_in_force() -> None:
         assert "f1 help" in footer(app)
         await pilot.press("f1")
         assert isinstance(app.screen, HelpScreen)
-        text = app.screen.query_one("VerticalScroll > Static", Static).render()
+        text = app.screen.query_one("#beside", Static).render()
         assert "f5  Pause" in str(text)
         await pilot.press("escape")
         palette = ActionsProvider(app.screen)

@@ -1,11 +1,11 @@
 """The help: the signs of the screen, then every key by what it is for, with a search."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
 from textual import on
 from textual.app import ComposeResult
-from textual.containers import VerticalScroll
+from textual.containers import Horizontal, VerticalScroll
 from textual.content import Content
 from textual.widgets import Input, Static
 
@@ -15,7 +15,9 @@ from cbtui.keys.keymap import Keymap, keymap_of
 from cbtui.keys.signs import signs_of
 from cbtui.learning.stage import Stage, meaning_of
 from cbtui.looks.theme import GLYPHS, Charset
+from cbtui.screens.layout import Layout
 from cbtui.screens.windows.window import WindowScreen
+from cbtui.text.cells import lines_of_text
 from sim.trace.events import Reason
 
 _SHOWN = (
@@ -33,6 +35,8 @@ _SHOWN = (
     Scope.EVERYWHERE,
 )
 """The scopes that follow the lesson's tasks."""
+_WIDEST = 160
+"""The most columns of the window."""
 
 
 class _HelpRow(NamedTuple):
@@ -53,8 +57,19 @@ class _Section(NamedTuple):
     rows: Sequence[_HelpRow]
 
 
+class _HelpPage(NamedTuple):
+    """The sections of the help: what comes first, the keys by task, and those of other places."""
+
+    first: Sequence[_Section]
+    tasks: Sequence[_Section]
+    others: Sequence[_Section]
+
+
 class HelpScreen(WindowScreen[None]):
-    """Lists signs and keys; a search leaves the rows that contain all of its words."""
+    """Lists signs and keys; a search leaves the rows that contain all of its words.
+
+    A wide window has the keys by task beside the signs.
+    """
 
     SCOPE = Scope.HELP
     HAS_HELP = False
@@ -63,8 +78,9 @@ class HelpScreen(WindowScreen[None]):
     def content(self) -> ComposeResult:
         """Lay out the search and the list."""
         yield Input(placeholder="words to look for", compact=True)
-        with VerticalScroll():
+        with VerticalScroll(), Horizontal():
             yield Static(id="found")
+            yield Static(id="beside")
 
     def on_mount(self) -> None:
         """Show everything."""
@@ -78,10 +94,16 @@ class HelpScreen(WindowScreen[None]):
                 and below.check_action("no_time", (action.name,)) is True
             )
 
-        self._sections = tuple(_sections(scope, keymap_of(self.app), self._charset, is_refused))
+        self._page = _page(scope, keymap_of(self.app), self._charset, is_refused)
+        self._headings: list[tuple[int, str]] = []
+        """The headings, and the rows on which they stand."""
         self.query_one(Input).display = False
         self.query_one(VerticalScroll).focus()
-        self._show("")
+        self.watch(self.query_one(VerticalScroll), "scroll_y", self._name_what_follows, init=False)
+
+    def laid_out(self) -> None:
+        """Break the lines for the new size."""
+        self.call_next(self._show)
 
     def action_search(self) -> None:
         """Let words be typed."""
@@ -89,28 +111,63 @@ class HelpScreen(WindowScreen[None]):
         search.display = True
         search.focus()
 
+    def action_line_up(self) -> None:
+        """Scroll up by a line."""
+        self.query_one(VerticalScroll).scroll_up(animate=False)
+
+    def action_line_down(self) -> None:
+        """Scroll down by a line."""
+        self.query_one(VerticalScroll).scroll_down(animate=False)
+
+    def action_next_heading(self) -> None:
+        """Scroll to the next heading, from the end to the start."""
+        scroll = self.query_one(VerticalScroll)
+        below = (row for row, _ in sorted(self._headings) if row > scroll.scroll_y)
+        scroll.scroll_to(
+            y=0 if scroll.scroll_y >= scroll.max_scroll_y else next(below, 0), animate=False, immediate=True
+        )
+
     @on(Input.Changed)
-    def _search_for(self, event: Input.Changed) -> None:
-        self._show(event.value)
+    def _show(self) -> None:
+        wanted = self.query_one(Input).value.casefold().split()
+        first, tasks, others = (_with(wanted, sections) for sections in self._page)
+        is_wide = self.layout_now is Layout.GRID
+        columns = ([*first, *others], tasks) if is_wide else ([*first, *tasks, *others], [])
+        found, beside = self.query_one("#found", Static), self.query_one("#beside", Static)
+        beside.display = is_wide and bool(tasks)
+        frame = 5
+        width = (min(self.app.size.width, _WIDEST) - frame) // 2 - 2 if beside.display else 80 - frame - 2
+        self._headings = []
+        for column, sections in zip((found, beside), columns, strict=True):
+            rows: list[Content] = []
+            for section in sections:
+                self._headings.append((len(rows), section.heading))
+                rows += _shown(section, width, self._charset)
+            column.update(Content("\n").join(rows))
+        if not any(columns):
+            found.update("No sign or key has all of these words.")
+        self.query_one(VerticalScroll).scroll_home(animate=False)
+        self.call_after_refresh(self._name_what_follows)
+
+    def _name_what_follows(self) -> None:
+        """Say in the frame which headings come below what is in sight."""
+        scroll = self.query_one(VerticalScroll)
+        bottom = scroll.scroll_y + scroll.scrollable_content_region.height
+        below = [heading for row, heading in sorted(self._headings) if row >= bottom]
+        self.query_one(".window").border_subtitle = f"below: {', '.join(below)}" if below else ""
 
     @on(Input.Submitted)
     def _read(self) -> None:
         self.query_one(VerticalScroll).focus()
 
-    def _show(self, words: str) -> None:
-        wanted = words.casefold().split()
-        found = [
-            _Section(each.heading, rows)
-            for each in self._sections
-            if (rows := [row for row in each.rows if _has(row, each.heading, wanted)])
-        ]
-        text = (
-            Content("\n").join(map(_shown, found))
-            if found
-            else Content("No sign or key has all of these words.")
-        )
-        self.query_one("#found", Static).update(text)
-        self.query_one(VerticalScroll).scroll_home(animate=False)
+
+def _with(wanted: Sequence[str], sections: Iterable[_Section]) -> list[_Section]:
+    """Return the rows that have all of some words, under their headings."""
+    return [
+        _Section(each.heading, rows)
+        for each in sections
+        if (rows := [row for row in each.rows if _has(row, each.heading, wanted)])
+    ]
 
 
 def _has(row: _HelpRow, heading: str, words: Sequence[str]) -> bool:
@@ -118,29 +175,31 @@ def _has(row: _HelpRow, heading: str, words: Sequence[str]) -> bool:
     return all(word in text for word in words)
 
 
-def _shown(section: _Section) -> Content:
-    rows = (
-        Content.styled(f"{row.sign:>9}  {row.meaning} (not on real ROS 2)", "$text-muted")
-        if row.is_refused
-        else Content.assemble((f"{row.sign:>9}", "bold $text-accent"), f"  {row.meaning}")
-        for row in section.rows
-    )
-    heading = Content.styled(section.heading, "bold $text-primary")
-    return Content("\n").join([heading, *rows, Content("")])
+def _shown(section: _Section, width: int, charset: Charset) -> list[Content]:
+    """Return the lines of a section, and an empty one."""
+    lines = [Content.styled(section.heading, "bold $text-primary")]
+    for row in section.rows:
+        meaning = f"{row.meaning} (not on real ROS 2)" if row.is_refused else row.meaning
+        styles = ("$text-muted",) * 2 if row.is_refused else ("bold $text-accent", "$text")
+        for place, text in enumerate(lines_of_text(meaning, width - 11, charset)):
+            sign = "" if place else row.sign
+            lines.append(Content.assemble((f"{sign:>9}", styles[0]), (f"  {text}", styles[1])))
+    return [*lines, Content("")]
 
 
-def _sections(
+def _page(
     scope: Scope | None, keymap: Keymap, charset: Charset, is_refused: Callable[[KeyAction], bool]
-) -> Iterator[_Section]:
-    """Yield the signs, then the keys: first those of the screen below, of ``scope``."""
-    if scope not in (None, Scope.LESSON, *_SHOWN):
-        yield _of_scope(scope, keymap, charset)
-    in_menu = scope in (Scope.MENU, Scope.SEARCH)
-    signs = (_stages(), _lane_signs(charset)) if in_menu else (_lane_signs(charset), _stages())
-    yield from signs
-    others = [_of_scope(each, keymap, charset) for each in sorted(_SHOWN, key=lambda each: each is not scope)]
+) -> _HelpPage:
+    """Return the help over a screen of ``scope``, whose own keys come before those of others."""
     tasks = [_of_task(task, ids, keymap, charset, is_refused) for task, ids in TASKS.items()]
-    yield from [*others[:1], *tasks, *others[1:]] if scope in _SHOWN else [*tasks, *others]
+    others = {each: _of_scope(each, keymap, charset) for each in _SHOWN}
+    if scope in (Scope.MENU, Scope.SEARCH):
+        first = [_stages(), others.pop(scope), _lane_signs(charset)]
+        return _HelpPage(first, tasks, [*others.values()])
+    if scope in others:
+        tasks.insert(0, others.pop(scope))
+    own = [] if scope in (None, Scope.LESSON, *_SHOWN) else [_of_scope(scope, keymap, charset)]
+    return _HelpPage([*own, _lane_signs(charset)], tasks, [*others.values(), _stages()])
 
 
 def _stages() -> _Section:

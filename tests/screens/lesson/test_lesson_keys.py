@@ -270,7 +270,7 @@ async def test_leaving_the_console_ends_the_run() -> None:
 
 @pytest.mark.slow
 async def test_the_help_lists_every_key() -> None:
-    async with console(size=(140, 400)) as (app, pilot):
+    async with console(size=(110, 400)) as (app, pilot):
         await press(pilot, "question_mark")
         text = text_of(app)
         missing = {
@@ -322,6 +322,30 @@ async def test_the_help_begins_with_the_signs_and_finds_words() -> None:
         assert "Show a longer stretch of time" in text_of(app), "by the word that the footer has for it"
         await press(pilot, "escape")
         assert isinstance(app.screen, LessonScreen)
+
+
+async def test_the_help_says_in_its_foot_how_to_scroll_and_what_is_below() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "question_mark")
+        foot = " ".join(lines_of(app)[-2:])
+        for text in ("scroll", "tab next heading", "/ search", "esc close", "below: Learn, Act on the run"):
+            assert text in foot
+        await press(pilot, "tab")
+        assert "Learn" in lines_of(app)[1]
+        assert "below: Time" in lines_of(app)[-1]
+        await press(pilot, "down")
+        assert "Say what you expect of the run" in lines_of(app)[1]
+
+
+async def test_a_wide_help_has_the_keys_by_task_beside_the_signs() -> None:
+    async with console(WIDE) as (app, pilot):
+        await press(pilot, "question_mark")
+        assert lines_of(app)[1].split() == ["│", "Signs", "of", "the", "lanes", "Learn", "│"]
+        for text in ("the moment on screen", "Act on the run", "Pause: stop time for every thread"):
+            assert text in text_of(app)
+        await press(pilot, "slash", *"zoom")
+        assert "Show a longer stretch of time" in text_of(app)
+        assert "Learn" not in text_of(app)
 
 
 async def test_the_frame_of_the_lanes_names_no_key_of_another_pane() -> None:
