@@ -324,7 +324,11 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("search", "/", "search", "Show only signs and keys that have certain words"),
         ("close", "escape,q,question_mark", "close", "Go back to where you were"),
     ),
-    Scope.TOUR: (("close", "escape", "or any key: on with the lesson", "Leave the tour, as any key does"),),
+    Scope.TOUR: (
+        ("next", "enter,right,space", "next", "Go to the next stop"),
+        ("previous", "left,backspace", "back", "Go back to the stop before"),
+        ("close", "escape", "or another key: on with the lesson", "Leave the tour, as other keys do"),
+    ),
     Scope.JUMP: (("close", "escape", "leave, a letter goes there", "Leave without going anywhere"),),
     Scope.EVERYWHERE: (
         ("command_palette", "ctrl+p", "commands", "Find any command, and colour themes"),

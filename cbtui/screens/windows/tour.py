@@ -12,9 +12,13 @@ from cbtui.keys.keymap import keymap_of
 from cbtui.keys.named_keys import with_keys_in_force
 from cbtui.looks.theme import Charset
 from cbtui.screens.windows.window import WindowScreen
+from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.prose import Prose
 
-SECONDS_A_STOP = 6.0
+_LEAST = 6.0
+"""The seconds that a stop stays at least."""
+_WORDS_A_SECOND = 3
+"""How quickly somebody reads who looks at the place, too."""
 _TICK = 0.5
 
 
@@ -23,6 +27,11 @@ class TourStop(NamedTuple):
 
     place: str
     text: str
+
+    @property
+    def seconds(self) -> float:
+        """How long it stays unless a key goes on."""
+        return max(_LEAST, len(self.text.split()) / _WORDS_A_SECOND)
 
 
 STOPS = (
@@ -50,7 +59,10 @@ STOPS = (
 
 
 class TourScreen(WindowScreen[None]):
-    """Shows the stops one after the other, until a key or click; ``show`` brings a place to the fore."""
+    """Shows the stops one after the other, by itself or by keys; ``show`` brings a place to the fore.
+
+    Any other key, or a click, leaves it.
+    """
 
     SCOPE = Scope.TOUR
     HAS_HELP = False
@@ -58,8 +70,7 @@ class TourScreen(WindowScreen[None]):
     def __init__(self, show: Callable[[str], None], charset: Charset) -> None:
         super().__init__(charset)
         self._show = show
-        self._place = 0
-        self._left = SECONDS_A_STOP
+        self._place, self._left = 0, 0.0
 
     def content(self) -> ComposeResult:
         """Lay out the text, and the time that is left for the stop."""
@@ -68,31 +79,42 @@ class TourScreen(WindowScreen[None]):
 
     def on_mount(self) -> None:
         """Begin."""
-        self._stop()
-        self.set_interval(_TICK, self._go_on)
+        self._go_to(0)
+        self.set_interval(_TICK, self._wait)
 
     def on_key(self, event: Key) -> None:
-        """Leave."""
-        event.stop()
-        self.dismiss(None)
+        """Leave, unless the key is one of the tour's."""
+        if event.key not in self.active_bindings:
+            event.stop()
+            self.dismiss(None)
 
     def on_click(self, event: Click) -> None:
-        """Leave."""
-        self.dismiss(None)
+        """Leave, unless a key of the tour is clicked."""
+        if not isinstance(event.widget, KeyBar):
+            self.dismiss(None)
 
-    def _go_on(self) -> None:
-        self._left -= _TICK
-        if self._left > 0:
-            self._show_left()
-        elif self._place + 1 < len(STOPS):
-            self._place, self._left = self._place + 1, SECONDS_A_STOP
-            self._stop()
+    def action_next(self) -> None:
+        """Go to the next stop, from the last on with the lesson."""
+        if self._place + 1 < len(STOPS):
+            self._go_to(self._place + 1)
         else:
             self.dismiss(None)
 
-    def _stop(self) -> None:
-        stop = STOPS[self._place]
-        self.query_one(".window").border_title = f"Tour {self._place + 1}/{len(STOPS)}: {stop.place}"
+    def action_previous(self) -> None:
+        """Go back to the stop before."""
+        self._go_to(max(0, self._place - 1))
+
+    def _wait(self) -> None:
+        self._left -= _TICK
+        if self._left > 0:
+            self._show_left()
+        else:
+            self.action_next()
+
+    def _go_to(self, place: int) -> None:
+        stop = STOPS[place]
+        self._place, self._left = place, stop.seconds
+        self.query_one(".window").border_title = f"Tour {place + 1}/{len(STOPS)}: {stop.place}"
         self.query_one(Prose).text = with_keys_in_force(stop.text, keymap_of(self.app))
         self._show_left()
         self._show(stop.place)

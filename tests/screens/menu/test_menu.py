@@ -14,7 +14,7 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.windows.help import HelpScreen
 from cbtui.screens.windows.prediction import PredictionScreen
-from cbtui.screens.windows.tour import TourScreen
+from cbtui.screens.windows.tour import STOPS, TourScreen
 from cbtui.terminal import pending_keys
 from cbtui.widgets.guide import Guide
 from cbtui.widgets.key_bar import KeyBar
@@ -181,6 +181,25 @@ async def test_any_key_leaves_the_tour_for_the_predictions() -> None:
         await pilot.press("x")
         await until(pilot, lambda: isinstance(app.screen, PredictionScreen))
         assert not Progress().of(lessons()[0].id).seen
+
+
+async def test_keys_turn_the_pages_of_the_tour_and_its_last_page_ends_it() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("T")
+        await until(pilot, lambda: isinstance(app.screen, TourScreen))
+        assert "⏎ next  ← back" in text_of(app)
+        for key, page in (("left", 1), ("enter", 2), ("right", 3), ("left", 2)):
+            await pilot.press(key)
+            assert f"Tour {page}/{len(STOPS)}" in text_of(app)
+        await pilot.click(KeyBar, offset=(2, 0))
+        assert f"Tour 3/{len(STOPS)}" in text_of(app)
+        await pilot.press(*["space"] * (len(STOPS) - 2))
+        await until(pilot, lambda: isinstance(app.screen, PredictionScreen))
+
+
+def test_no_page_of_the_tour_turns_faster_than_one_reads() -> None:
+    assert all(len(stop.text.split()) / stop.seconds <= 3 for stop in STOPS)
 
 
 async def test_the_number_of_no_lesson_does_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
