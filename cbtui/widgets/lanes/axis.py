@@ -13,13 +13,19 @@ _MARK = Ink(Role.MARK)
 
 
 def draw_axis(
-    row: CellRow, scale: TimeScale, cursor: int, marks: Iterable[AxisMark], calls: Iterable[Call]
+    row: CellRow,
+    scale: TimeScale,
+    cursor: int,
+    is_newest: bool,
+    marks: Iterable[AxisMark],
+    calls: Iterable[Call],
 ) -> None:
     """Draw an axis, with the person's commands except the calls that a service's lane shows.
 
-    ``cursor`` is the cursor's column, which may lie outside the picture.
+    ``cursor`` is the cursor's column, which may lie outside the picture; ``is_newest`` tells whether nothing
+    of the run comes after it.
     """
-    _draw_cursor(row, cursor)
+    _draw_cursor(row, cursor, "now" if is_newest else "cursor")
     shown = {scale.column_of(call.sent) for call in calls}
     commands = (mark for mark in marks if mark.kind is AxisMarkKind.COMMAND)
     _draw_commands(row, scale, (each for each in commands if scale.column_of(each.at) not in shown))
@@ -28,18 +34,18 @@ def draw_axis(
             row.write(column, text, _FAINT)
 
 
-def _draw_cursor(row: CellRow, column: int) -> None:
+def _draw_cursor(row: CellRow, column: int, name: str) -> None:
     """Mark the cursor, or the side of the picture on which it lies."""
     glyphs = GLYPHS[row.charset]
-    last = len(row.cells) - 1
+    last, length = len(row.cells) - 1, len(name)
     if column < 0:
-        row.write(0, f"{glyphs.back}now ", _NOW)
+        row.write(0, f"{glyphs.back}{name} ", _NOW)
     elif column > last:
-        row.write(max(0, last - 4), f" now{glyphs.forth}", _NOW)
-    elif column >= 3:
-        row.write(column - 3, f"now{glyphs.now}", _NOW)
+        row.write(max(0, last - length - 1), f" {name}{glyphs.forth}", _NOW)
+    elif column >= length:
+        row.write(column - length, f"{name}{glyphs.now}", _NOW)
     else:
-        row.write(column, f"{glyphs.now}now ", _NOW)
+        row.write(column, f"{glyphs.now}{name} ", _NOW)
 
 
 def _draw_commands(row: CellRow, scale: TimeScale, commands: Iterable[AxisMark]) -> None:

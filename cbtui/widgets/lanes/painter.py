@@ -299,7 +299,8 @@ class _LaneFrame:
         """Paint the time axis, with the number of hidden lanes at its left."""
         row = CellRow(self._layout.columns, self._charset)
         marks = self._timeline.marks(self._scale.window)
-        draw_axis(row, self._scale, self._column_at(self._now), marks, self._calls.latest)
+        is_newest = self._now >= self._edge
+        draw_axis(row, self._scale, self._column_at(self._now), is_newest, marks, self._calls.latest)
         name = more_lanes(hidden, self._painter.more_key, self._layout.names) if hidden else "seconds"
         unit = f"{duration(self._scale.per_column)}/col" if self._layout.statuses >= 15 else ""
         self._show_cursor(row)

@@ -150,12 +150,20 @@ def test_keys_of_the_person_are_marked_on_the_axis_in_words_where_there_is_room(
     assert "▲▲speed x2" in axis
 
 
-@pytest.mark.parametrize(("start", "sign"), [(6.0, "◂now"), (1.0, "now▸")])
+@pytest.mark.parametrize(("start", "sign"), [(6.0, "◂cursor"), (1.0, "cursor▸")])
 def test_an_axis_tells_on_which_side_the_cursor_is(start: float, sign: str) -> None:
     timeline = told(shared_group_run())
     window = Window(ns(start), ns(start + 2))
     axis = plain(LanePainter().paint(timeline, window, ns(4.5), 80, 7).rows).splitlines()[-1]
     assert sign in axis
+
+
+@pytest.mark.parametrize(("before", "label"), [(0, "now▲"), (1, "cursor▲"), (ns(4.5), "cursor▲")])
+def test_only_the_runs_newest_moment_is_called_now(before: int, label: str) -> None:
+    timeline = told(shared_group_run(), until=12.0)
+    cursor = timeline.end - before
+    axis = plain(LanePainter().paint(timeline, Window(ns(2), ns(12)), cursor, 80, 7).rows).splitlines()[-1]
+    assert f" {label}" in axis
 
 
 def test_the_selected_lane_is_pointed_at_and_its_bar_stands_out() -> None:

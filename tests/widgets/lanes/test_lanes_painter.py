@@ -370,7 +370,7 @@ def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
         |  odom      │                         ╱╱ A held by timer ╱╱╱╱╱╱│ queue 1/10     |
         |  scan      │                                                 ┊│ queue 0/10     |
         |  timer     │── runs 3.5 ms on MainThread ─────────────────────│ on time        |
-        |seconds     │     4.0026    4.0028    4.0030    4.0032     now▲│ 20 µs/col      |
+        |seconds     │     4.0026    4.0028    4.0030    4.0032  cursor▲│ 20 µs/col      |
         """
     )
     far = plain(LanePainter().paint(timeline, Window(0, ns(600)), ns(30), 80, 7).rows)
