@@ -107,9 +107,9 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self.navigation = TimeNavigation(
             lambda: [runs.timeline], lambda: runs.timeline.end, self.redraw, live
         )
-        self._narration = Narration(self, runs, self.navigation)
-        self.navigation.stepped = self._narration.show_step
         self.panes = PaneLayout(self, self, self.PANES_HERE, self.FIRST_PANE, lambda: self.changes.words)
+        self._narration = Narration(self, runs, self.navigation, self.panes)
+        self.navigation.stepped = self._narration.show_step
         self._sizes = SizeKeys(self, self.panes, self.tell)
         self.bars = BarSelection(lambda: [self.query_one(Lanes)], self.navigation, self.redraw)
         self.selection = LaneSelection(

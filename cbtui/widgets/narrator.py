@@ -178,11 +178,12 @@ def _begun(timeline: Timeline, at: Nanoseconds, left: Sequence[Wait]) -> Iterato
         entity = timeline.entities.get(span.entity)
         if span.start == at and entity is not None:
             thread = short_thread(timeline.threads[span.thread].name)
+            returns = ", and returns at once" if span.end == at else ""
             yield ", ".join(
                 (
                     f"{thread} is free: {entity.spoken_name} {_readiness(entity, span)}",
                     *_why_first(entity, left, timeline),
-                    f"{group_of(entity.id, timeline)} lets it in → runs",
+                    f"{group_of(entity.id, timeline)} lets it in → runs{returns}",
                 )
             )
 

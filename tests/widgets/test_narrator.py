@@ -33,6 +33,13 @@ def test_a_start_tells_the_thread_the_reason_the_order_and_the_group() -> None:
     assert "tick returns after 1.0 s, group A is free" in ended[0]
 
 
+def test_a_callback_that_takes_no_time_is_told_to_have_returned_where_its_thread_is_idle() -> None:
+    run = Run()
+    tick = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.callback(tick, run.thread("MainThread"), 1.0, 0.0)
+    assert narration(told(run, until=1.5), ns(1.0))[0].endswith("→ runs, and returns at once")
+
+
 def test_a_step_to_a_moment_without_a_decision_is_told_at_its_time() -> None:
     run = Run()
     group = run.exclusive(run.node("/n"))

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from cbtui.runs.live.live_run import LiveRun, RunState, ShownRun
 from cbtui.screens.parts.navigation import TimeNavigation
+from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.narrator import Narrator
@@ -21,6 +22,7 @@ class Narration(ScreenPart):
     host: ScreenHost
     runs: RunController[ShownRun]
     navigation: TimeNavigation
+    panes: PaneLayout
 
     def __post_init__(self) -> None:
         self.widget = Narrator()
@@ -32,17 +34,20 @@ class Narration(ScreenPart):
         self._show(True)
 
     def _show(self, shown: bool) -> None:
-        self.widget.display = shown
+        if self.widget.display is not shown:
+            self.widget.display = shown
+            self.panes.arranged()
         self.host.redraw()
 
     def draw(self) -> None:
         """Show the moment on screen, if it is shown; hide it where no step led and nobody asked for it."""
         if (
-            not self._asked_for
+            self.widget.display
+            and not self._asked_for
             and self.navigation.playhead.at is None
             and self.runs.run.state is RunState.LIVE
         ):
-            self.widget.display = False
+            self._show(False)
         if self.widget.display:
             self.widget.stepped = was_stepped(self.runs.run, self.navigation)
             self.widget.now, self.widget.timeline = self.navigation.now, self.runs.timeline

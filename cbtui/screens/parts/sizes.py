@@ -12,6 +12,7 @@ from cbtui.screens.parts.panes import LANES_ALONE, PANE_ALONE, WITHOUT_ROBOT, Pa
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.narrator import ROWS, Narrator
 from lessons.personal import state_folder
 from lessons.state_file import StateFile, StateFileTexts
 
@@ -21,6 +22,8 @@ _ACROSS, _DOWN = 24, 14
 _LEAST_ACROSS, _LEAST_DOWN = 4, 3
 _LANES_LEAST, _LANES_MOST = 12, 75
 """Per cent of the screen's height."""
+_LANES_BESIDE_NARRATOR = 5
+"""Rows that the lanes keep when the narrator takes its rows from them."""
 
 _Third = Annotated[int, Meta(ge=_LEAST_ACROSS, le=_ACROSS - 2 * _LEAST_ACROSS)]
 
@@ -75,7 +78,8 @@ class SizeKeys(ScreenPart):
     def apply(self) -> None:
         """Give the panes their sizes; to be called when the layout or the shown panes have changed."""
         sizes, screen, alone = self._sizes, self.screen, self.screen.has_class(LANES_ALONE)
-        screen.query_one(Lanes).styles.max_height = "100%" if alone else self._height * sizes.lanes // 100
+        height = max(_LANES_BESIDE_NARRATOR, self._height * sizes.lanes // 100 - self._narrated)
+        screen.query_one(Lanes).styles.max_height = "100%" if alone else height
         screen.query_one("#panes").styles.grid_rows = f"{sizes.top}fr {_DOWN - sizes.top}fr"
         spans = {"left": sizes.left, "right": sizes.right, "bottom": sizes.bottom}
         for name in self.panes.names:
@@ -121,6 +125,12 @@ class SizeKeys(ScreenPart):
         return max(1, self.screen.app.size.height - 1)
 
     @property
+    def _narrated(self) -> int:
+        """The rows that lanes give to the narrator where there are few, so that the pane keeps its own."""
+        is_shown = self.screen.query_one(Narrator).display and self.screen.layout_now is Layout.TABBED
+        return ROWS if is_shown else 0
+
+    @property
     def _has_robot(self) -> bool:
         return self.panes.current == "robot" or not self.screen.has_class(WITHOUT_ROBOT)
 
@@ -145,7 +155,7 @@ class SizeKeys(ScreenPart):
             rows = step if lanes.has_focus else -step
             if rows > 0 and lanes.shows_everything:
                 return None
-            height = lanes.outer_size.height + rows
+            height = lanes.outer_size.height + self._narrated + rows
             side, value = "lanes", ceil(100 * height / self._height)
         try:
             return convert(to_builtins(sizes) | {side: value}, PaneSizes)

@@ -10,6 +10,7 @@ from textual.widgets import Static
 
 from cbtui.app import CbtuiApp
 from cbtui.screens.windows.moment import MomentScreen, seconds_in
+from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.narrator import Narrator
 from sim.engine.commands import Pause, RunUntil, SetSpeed, Step
 from sim.trace.events import TimeHalted
@@ -77,6 +78,21 @@ async def test_a_narrator_that_came_with_a_step_goes_when_the_run_goes_on_live(k
         assert narrator.display
         await press(pilot, "space")
         assert narrator.display == stays
+
+
+async def test_a_narrow_narrator_takes_its_rows_from_the_lanes_and_gives_them_back() -> None:
+    app = RecordedConsole("shared-group", shared_group_run().events, 13.15)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+
+        def heights() -> list[int]:
+            return [app.screen.query_one(each).outer_size.height for each in (Lanes, Narrator, "#panes")]
+
+        before = heights()
+        await press(pilot, "N")
+        assert heights() == [6, 4, 10]
+        await press(pilot, "N")
+        assert heights()[::2] == before[::2]
 
 
 async def test_going_to_a_moment_that_has_passed_looks_back() -> None:
