@@ -91,7 +91,7 @@ class SizeKeys(ScreenPart):
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer the keys that have an effect."""
         if action == "usual_sizes":
-            return self._sizes != PaneSizes(self.screen.layout_now)
+            return self._chosen is not None
         return self._changed(action) is not None
 
     def action_wider(self) -> None:
@@ -115,9 +115,20 @@ class SizeKeys(ScreenPart):
         self._take(PaneSizes(self.screen.layout_now))
 
     @property
+    def _chosen(self) -> PaneSizes | None:
+        """The sizes that the user has given; None for the usual ones."""
+        usual = PaneSizes(self.screen.layout_now)
+        kept = self._kept.get(usual.layout, usual)
+        return None if kept == usual else kept
+
+    @property
     def _sizes(self) -> PaneSizes:
+        """The sizes in force; while the code is read, it usually has room for longer lines."""
+        if self._chosen is not None:
+            return self._chosen
         layout = self.screen.layout_now
-        return self._kept.get(layout, PaneSizes(layout))
+        is_read = self.panes.current == "code" and self._has_robot
+        return PaneSizes(layout, left=6, right=5) if is_read else PaneSizes(layout)
 
     @property
     def _height(self) -> int:

@@ -30,8 +30,9 @@ async def test_a_pane_takes_room_from_its_neighbours_which_a_next_console_finds(
     app = RecordedConsole("split-groups", split_groups_run().events, 9.4)
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
+        await press(pilot, "2")
         before = {pane: (width(app, pane), height(app, pane)) for pane in ("guide", "code", "robot", "log")}
-        await press(pilot, "2", "ctrl+right", "ctrl+right", "ctrl+up", "5", "ctrl+left")
+        await press(pilot, "ctrl+right", "ctrl+up", "5", "ctrl+left")
         changed = {pane: (width(app, pane), height(app, pane)) for pane in before}
         assert changed["guide"][0] == before["guide"][0]
         assert changed["code"][0] > before["code"][0]
@@ -43,8 +44,23 @@ async def test_a_pane_takes_room_from_its_neighbours_which_a_next_console_finds(
     async with again.run_test(size=WIDE) as pilot:
         await settle(pilot)
         assert {pane: (width(again, pane), height(again, pane)) for pane in before} == changed
-        await press(pilot, "equals_sign")
+        await press(pilot, "2", "equals_sign")
         assert {pane: (width(again, pane), height(again, pane)) for pane in before} == before
+
+
+async def test_the_code_has_more_room_while_it_is_read_unless_the_user_gave_other_sizes() -> None:
+    app = RecordedConsole("shared-group", EVENTS, 12.9)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        usual = width(app, "guide"), width(app, "code"), width(app, "robot")
+        await press(pilot, "2")
+        assert width(app, "code") >= 75
+        assert app.lesson_screen.check_action("usual_sizes", ()) is False
+        await press(pilot, "1")
+        assert usual == (width(app, "guide"), width(app, "code"), width(app, "robot"))
+        await press(pilot, "ctrl+right", "2")
+        assert width(app, "guide") > usual[0]
+        assert width(app, "code") < usual[1]
 
 
 async def test_rows_go_between_lanes_and_pane_on_a_small_screen() -> None:
