@@ -385,7 +385,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
     @on(LogLines.MomentPicked)
     @on(ChecksView.MomentPicked)
     def _pick_moment(self, message: LogLines.MomentPicked | ChecksView.MomentPicked) -> None:
-        self.navigation.seek(message.at)
+        self.selection.pick_moment(message.at)
 
     @on(CodeView.CallbackPicked)
     def _pick_callback(self, message: CodeView.CallbackPicked) -> None:

@@ -24,9 +24,9 @@ class InkedView(ScrollView):
 
     @dataclass
     class MomentPicked(Message):
-        """The user picked a line about the moment ``at``, in nanoseconds of the run."""
+        """The user picked a line about the moment ``at``, in nanoseconds of the run; None if it has none."""
 
-        at: Nanoseconds
+        at: Nanoseconds | None
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id)

@@ -14,6 +14,8 @@ from cbtui.runs.judged.run_budget import RunBudget
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.exercise import ExerciseScreen
 from cbtui.screens.lesson import LessonScreen
+from cbtui.widgets.checks import ChecksView
+from cbtui.widgets.code import CodeView
 from cbtui.widgets.key_bar import KeyBar
 from lessons.progress import Progress
 from sim.engine.commands import Pause
@@ -167,6 +169,26 @@ async def test_checks_that_fail_are_shown_and_enter_goes_to_their_moment() -> No
         assert "t 14.000 s" in text_of(app)
         progress = Progress().of(LESSON.id)
         assert (progress.passed, progress.seen) == (False, False)
+
+
+async def test_enter_on_a_check_goes_to_the_line_of_an_error_of_syntax(here: Path) -> None:
+    (here / FILE).write_text("import rclpy\n\ndef main(:\n")
+    async with console(judged_run(here / FILE)) as (app, _, pilot):
+        await pilot.press("enter")
+        await settle(pilot)
+        code = app.screen.query_one(CodeView)
+        assert (code.has_focus, code.picked) == (True, 3)
+
+
+async def test_enter_on_a_check_that_is_not_judged_says_that_there_is_nothing_to_show() -> None:
+    app = ExerciseConsole(Engines([]))
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        app.clear_notifications()
+        await pilot.press("enter")
+        await settle(pilot)
+        assert [each.message for each in app._notifications] == ["There is no moment to show for this check."]
+        assert app.screen.query_one(ChecksView).has_focus
 
 
 @pytest.mark.slow

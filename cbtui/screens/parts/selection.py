@@ -22,7 +22,7 @@ from cbtui.widgets.lanes.selection import neighbouring_bar
 from lessons.catalogue import lesson_on
 from lessons.lesson import Lesson
 from sim.trace.events import EntityId
-from sim.trace.model import Span
+from sim.trace.model import Nanoseconds, Span
 
 if TYPE_CHECKING:
     from cbtui.screens.parts.cures import CureTrials
@@ -149,6 +149,17 @@ class LaneSelection(ScreenPart):
         if place is not None:
             self.panes.show("code")
             self.screen.query_one(CodeView).show_line(place.file, place.first_line)
+
+    def pick_moment(self, moment: Nanoseconds | None) -> None:
+        """Go to a moment that was picked; without one, to the line that ended the program, or say why not."""
+        ended = self.runs.timeline.ended
+        if moment is not None:
+            self.navigation.seek(moment)
+        elif ended is not None and ended.problem and ended.place[1]:
+            self.panes.show("code")
+            self.screen.query_one(CodeView).show_line(*ended.place)
+        else:
+            self.host.tell("There is no moment to show for this check.")
 
     def pick_callback(self, message: CodeView.CallbackPicked) -> None:
         """Select the callback whose code was picked."""

@@ -67,12 +67,6 @@ class ChecksView(InkedView):
 
     # the keys
 
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer ``look_there`` if the check has a moment."""
-        if action == "look_there":
-            return self._moment is not None
-        return super().check_action(action, parameters)
-
     def action_check_above(self) -> None:
         """Pick the check above; above the first, scroll."""
         if not self.picked:
@@ -90,8 +84,7 @@ class ChecksView(InkedView):
 
     def action_look_there(self) -> None:
         """Tell the moment of the picked check."""
-        if self._moment is not None:
-            self.post_message(self.MomentPicked(self._moment))
+        self.post_message(self.MomentPicked(self._moment))
 
     def on_click(self, event: Click) -> None:
         """Pick the check under the pointer, and tell its moment."""
@@ -113,7 +106,8 @@ class ChecksView(InkedView):
 
     def _go_to(self, row: int) -> None:
         self._pick(row)
-        self.action_look_there()
+        if self._moment is not None:
+            self.action_look_there()
 
     @property
     def _moment(self) -> Nanoseconds | None:
