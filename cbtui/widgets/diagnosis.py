@@ -11,6 +11,7 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
+from cbtui.widgets.lanes.service_calls import LatestCalls, unanswered
 from sim.diagnosis import CodeLocation
 from sim.diagnosis.words import only_thread, thread_count, threads_needed
 from sim.quantities.durations import duration
@@ -190,12 +191,27 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
     for_itself = min(own, key=attrgetter("since"), default=None)
     in_a_call = _in_a_call(moment, timeline)
     threads, briefly = _threads_needed(timeline, peak)
+    pending = unanswered(LatestCalls(timeline).latest, moment.at)
     if for_itself is None:
-        return Diagnosis(in_a_call or f"nothing waits; {threads}", DiagnosisLevel.FINE)
-    text = f"{_overdue(for_itself, moment.at, timeline)}; {in_a_call or 'nothing else waits'}"
+        nothing = _no_reply(pending, moment.at, timeline) or "nothing waits"
+        return Diagnosis(in_a_call or f"{nothing}; {threads}", DiagnosisLevel.FINE)
+    nothing = "no other callback waits" if pending else "nothing else waits"
+    text = f"{_overdue(for_itself, moment.at, timeline)}; {in_a_call or nothing}"
     if in_a_call:
         return Diagnosis(text, DiagnosisLevel.FINE)
     return Diagnosis(f"{text}; {briefly}", DiagnosisLevel.FINE, at_length=f"{text}; {threads}")
+
+
+def _no_reply(pending: Sequence[Call], at: Nanoseconds, timeline: Timeline) -> str:
+    """The text on the oldest call without a reply, the newest first in ``pending``; "" if there is none."""
+    if not pending:
+        return ""
+    by_program = [call for call in pending if call.caller]
+    if not by_program:  # the note beside it tells of those from outside
+        return "no callback waits"
+    call = by_program[-1]
+    caller = name_of(call.caller, timeline)
+    return f"{caller} has no reply from {call.service} for {duration(at - call.sent)}; no callback waits"
 
 
 def _in_a_call(moment: Moment, timeline: Timeline) -> str:

@@ -82,8 +82,17 @@ def test_a_hand_over_is_not_a_wait() -> None:
     assert said(shared_group_run(), 4.005).level is DiagnosisLevel.FINE
 
 
+def test_a_call_without_a_reply_is_not_told_as_nothing_waits() -> None:
+    run = Run()
+    tick = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.callback(tick, run.thread("MainThread"), 1.0, 0.1)
+    run.call("/x", 1.05, None, entity=tick)
+    text = said(run, 4.05).text
+    assert text.startswith("tick has no reply from /x for 3.0 s; no callback waits; ")
+
+
 def test_where_nothing_waits_the_threads_that_were_needed_are_told() -> None:
-    assert said(dummy_server_run(), 5.2).text == "nothing waits; so far 2 of 2 threads were needed at once"
+    assert said(dummy_server_run(), 5.2).text.endswith("so far 2 of 2 threads were needed at once")
     assert said(split_groups_run(), 3.0).text == "nothing waits; so far 1 of 4 threads was needed at once"
     assert said(shared_group_run(), 3.0).text == "nothing waits; one thread does all the work"
 

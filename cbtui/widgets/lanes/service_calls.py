@@ -1,6 +1,6 @@
 """Draws service calls: when they were sent and answered, and who made them."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from itertools import islice
 
 from cbtui.looks.theme import GLYPHS, Ink, Role
@@ -41,10 +41,14 @@ class LatestCalls:
             return "not called"
         count = counted(len(sent), "call")
         last = sent[0]
-        if last.replied is None or last.replied > now:
-            oldest = [call for call in sent if call.replied is None or call.replied > now][-1]
-            return f"no reply {duration(now - oldest.sent)}"
-        return f"{count}, {duration(last.replied - last.sent)}"
+        if last.replied is not None and last.replied <= now:
+            return f"{count}, {duration(last.replied - last.sent)}"
+        return f"no reply {duration(now - unanswered(sent, now)[-1].sent)}"
+
+
+def unanswered(calls: Iterable[Call], now: Nanoseconds) -> list[Call]:
+    """Return the calls that were sent by a moment and had no reply then."""
+    return [call for call in calls if call.sent <= now and (call.replied is None or call.replied > now)]
 
 
 def draw_calls(row: CellRow, calls: Sequence[Call], scale: TimeScale, now: Nanoseconds, key: str) -> None:

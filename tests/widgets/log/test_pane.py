@@ -15,7 +15,7 @@ from tests.support.pictures import lines_of
 class PaneOnly(App[None]):
     def __init__(self) -> None:
         super().__init__()
-        self.moments: list[int] = []
+        self.moments: list[int | None] = []
 
     def compose(self) -> ComposeResult:
         yield LogView()
