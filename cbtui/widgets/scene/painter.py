@@ -1,6 +1,7 @@
 """Paints a scene at a moment: each figure as far as its callback has moved it, and the callback's state."""
 
 from collections.abc import Sequence
+from itertools import product
 from typing import NamedTuple
 
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
@@ -16,6 +17,8 @@ from sim.trace.timeline import Timeline
 
 _COLUMNS, _ROWS = 10, 2
 _GAP = 2
+_BESIDE_LARGE = 60
+"""The columns from which words stand beside a large figure."""
 _HALF_WAY: Nanoseconds = 300_000_000
 """Duration of a callback at which its figure has gone half of its way."""
 _BACK: Nanoseconds = 500_000_000
@@ -38,11 +41,15 @@ def paint_scene(
 ) -> list[list[TextRun]]:
     """Return at most ``height`` rows of ``width`` columns.
 
-    Without room for all figures, the last ones are words alone; without room for these, a number.
+    Where there is room the figures are twice as large, with the words beside or below them. Without room for
+    all figures, the last ones are words alone; without room for these, a number.
     """
     moment = timeline.moment(now)
     numbers = {group: place for place, group in enumerate(timeline.groups)}
     blank = [TextRun(" " * width, _PLAIN)]
+    large = 2 * _ROWS if width >= _BESIDE_LARGE else 2 * _ROWS + 2
+    is_large = height >= len(actors) * (large + 1) - 1
+    scale, below = 2 if is_large else 1, is_large and width < _BESIDE_LARGE
     apart = height >= len(actors) * (_ROWS + 1)
     rows: list[list[TextRun]] = []
     shown = actors if len(actors) <= height else actors[: max(0, height - 1)]
@@ -55,8 +62,12 @@ def paint_scene(
         words = TextRun(f" {state.words}", _WARN if state.is_trouble else _PLAIN)
         reason = TextRun(state.reason, _WARN if state.is_trouble else _FAINT)
         if place < height - len(actors):
-            first, second = _figure(actor.figure, state.progress, ink, charset)
-            lines = [[*first, gap, name, words], [*second, gap, reason]]
+            lines = _figure(actor.figure, state.progress, ink, charset, scale)
+            if below:
+                lines += [[name, words], [reason]]
+            else:
+                lines[scale - 1] += [gap, name, words]
+                lines[scale] += [gap, reason]
         else:
             colon = reason._replace(text=": " if state.reason else "")
             lines = [[TextRun(" " * _COLUMNS, _PLAIN), gap, name, words, colon, reason]]
@@ -67,16 +78,17 @@ def paint_scene(
     return rows[:height]
 
 
-def _figure(name: str, progress: float, ink: Ink, charset: Charset) -> list[list[TextRun]]:
-    """Return the rows of a figure that has gone a part of its way."""
-    figure, grid = FIGURES[name], DotGrid(_COLUMNS, _ROWS, charset)
-    across, down = grid.across * _COLUMNS / ACROSS, grid.down * _ROWS / DOWN
+def _figure(name: str, progress: float, ink: Ink, charset: Charset, scale: int) -> list[list[TextRun]]:
+    """Return the rows of a figure that has gone a part of its way, ``scale`` times as large as usual."""
+    figure, grid = FIGURES[name], DotGrid(_COLUMNS * scale, _ROWS * scale, charset)
+    across, down = grid.across * _COLUMNS * scale / ACROSS, grid.down * _ROWS * scale / DOWN
+    strokes = [(right / scale, under / scale) for right in range(scale) for under in range(scale)]
     parts = [((0, 0), figure.still, 1), *((by, lines, 2) for by, lines in figure.moving)]
-    for (right, below), lines, layer in parts:
-        x, y = round(right * progress), round(below * progress)
-        for left, top, end, bottom in lines:
-            start = (left + x) * across, (top + y) * down
-            grid.line(start, ((end + x) * across, (bottom + y) * down), layer)
+    for (by_x, by_y), lines, layer in parts:
+        x, y = round(by_x * progress), round(by_y * progress)
+        for (left, top, end, bottom), (right, under) in product(lines, strokes):
+            start = (left + x + right) * across, (top + y + under) * down
+            grid.line(start, ((end + x + right) * across, (bottom + y + under) * down), layer)
     return [row.runs() for row in grid.rows((_PLAIN, _FAINT, ink), " .#")]
 
 

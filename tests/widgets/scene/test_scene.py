@@ -48,6 +48,18 @@ def test_what_a_callback_does_and_why_stands_beside_its_figure() -> None:
     assert "group A held by timer_callback" in "\n".join(scene(timeline, 4.2))
 
 
+@pytest.mark.parametrize(("width", "height", "row", "column"), [(60, 10, 1, 22), (44, 14, 4, 0)])
+def test_where_there_is_room_figures_are_twice_as_large(
+    width: int, height: int, row: int, column: int
+) -> None:
+    timeline = told(shared_group_run(), 12.9)
+    rows = plain(paint_scene(ACTORS, timeline, ns(12.9), width, height, Charset.BRAILLE)).splitlines()
+    assert len(rows) == height
+    assert {len(each) for each in rows} == {width}
+    assert rows[row][column:].rstrip() == "timer_callback runs 8.9 s"
+    assert rows[row + 1 + height // 2][column:].startswith("group A held by timer_callback")
+
+
 def test_nothing_is_left_out_silently_where_not_every_figure_has_room() -> None:
     timeline = told(shared_group_run(), 12.9)
     first, _, second = scene(timeline, 12.9, height=3)
@@ -61,7 +73,7 @@ def test_nothing_is_left_out_silently_where_not_every_figure_has_room() -> None:
 
 
 @pytest.mark.parametrize("charset", Charset)
-@pytest.mark.parametrize(("width", "height"), [(60, 6), (24, 4), (11, 1), (5, 3)])
+@pytest.mark.parametrize(("width", "height"), [(60, 6), (24, 4), (11, 1), (5, 3), (60, 12), (24, 14)])
 def test_a_scene_has_exactly_its_room(charset: Charset, width: int, height: int) -> None:
     timeline = told(shared_group_run(), 12.9)
     rows = paint_scene(ACTORS, timeline, timeline.end, width, height, charset)
