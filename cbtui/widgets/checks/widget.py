@@ -67,6 +67,12 @@ class ChecksView(InkedView):
 
     # the keys
 
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer ``look_there`` unless every check passes and none is picked."""
+        if action == "look_there":
+            return self.picked is not None or self._sheet.status is not CheckStatus.PASSED
+        return super().check_action(action, parameters)
+
     def action_check_above(self) -> None:
         """Pick the check above; above the first, scroll."""
         if not self.picked:

@@ -137,6 +137,16 @@ async def test_a_click_on_the_axis_moves_the_cursor_alone() -> None:
         assert lanes_of(app).now == ns(5.0)
 
 
+async def test_enter_before_the_first_callback_says_that_there_is_nothing_to_select() -> None:
+    app = RecordedConsole("shared-group", [], 0.0)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        assert "STARTING" in lines_of(app)[0]
+        await press(pilot, "enter")
+        told = [each.message for each in app._notifications]
+        assert told == ["There is no bar to select yet: the lanes come with the first callbacks."]
+
+
 @pytest.mark.slow
 async def test_the_wheel_zooms() -> None:
     async with console() as (app, pilot):
