@@ -141,7 +141,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("prompt", "colon", "ros2", "Type a ros2 command; tab completes it"),
         ("type", "i", "type", "Type for the program that reads from the keyboard"),
         ("filter_log", "/", "filter", "Go to the log, and filter it"),
-        ("open_source", "o", "editor", "Open the code in $EDITOR; vi, nano, code … go to its line"),
+        ("open_source", "o", "editor", "Open the code in $EDITOR; vi, emacs, code … go to its line"),
         ("record", "R", "record", "Start or stop recording the run to a file"),
         ("export", "x", "export", "Export the run so far as a picture, report, table or trace"),
         ("start_over", "ctrl+r", "start over", "End this run, and run again, at any time"),

@@ -178,7 +178,10 @@ def load_runs(
         side or _run(each, terms, until, tell, given_up)
         for each, side in zip((first, second), known, strict=True)
     )
-    return RunPair(one, other, Window(nearest_ns(terms.start), until))
+    end = min(until, one.timeline.end, other.timeline.end)
+    if end <= nearest_ns(terms.start):
+        raise CannotCompareError(f"nothing is left to compare: a run ended at {end / SECOND:g} s")
+    return RunPair(one, other, Window(nearest_ns(terms.start), end))
 
 
 def _until(lengths: list[Nanoseconds], terms: ComparisonTerms, tell: Tell, given_up: Event) -> Nanoseconds:

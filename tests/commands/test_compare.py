@@ -30,6 +30,23 @@ executor.spin()
 """
 """Kilted raises TimeoutError where Jazzy returns None."""
 
+_ENDS_BY_ITSELF = """
+import rclpy
+from rclpy.node import Node
+
+rclpy.init()
+node = Node("counter")
+calls = []
+
+def tick():
+    calls.append(None)
+    if False and len(calls) == 4:
+        raise SystemExit
+
+node.create_timer(0.5, tick)
+rclpy.spin(node)
+"""
+
 
 def told(*words: str) -> str:
     done = cbtui(*words)
@@ -61,8 +78,16 @@ def test_a_program_can_be_compared_with_itself_on_another_release(tmp_path: Path
     distros = ("--distro-a", "jazzy", "--distro-b", "kilted")
     done = cbtui("compare", str(node), str(node), *distros, "--to", "3")
     assert f"run B  {node}, kilted@9.1.2" in done.stdout.splitlines()
-    assert figures(done.stdout, "tick", "calls") == ["3", "2", "1 fewer"]
+    assert "Run B ended at 1.9 s with an exception; run A goes on." in done.stdout.splitlines()
+    assert figures(done.stdout, "tick", "calls") == ["2", "2", "same"]
     assert (done.returncode, "TimeoutError" in done.stderr) == (1, True)
+
+
+def test_a_run_that_ends_early_is_compared_until_then_and_that_is_told(tmp_path: Path) -> None:
+    short, long = tmp_path / "short.py", tmp_path / "long.py"
+    long.write_text(_ENDS_BY_ITSELF)
+    short.write_text(_ENDS_BY_ITSELF.replace("if False", "if True"))
+    assert "\n0 to 2 s; run B goes on to 10 s\n" in told("compare", str(short), str(long), "--to", "10")
 
 
 @pytest.mark.slow
