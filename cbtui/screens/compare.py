@@ -1,7 +1,6 @@
 """Two runs on screen, one above the other on a common time axis, and a table of what differs."""
 
 import asyncio
-from dataclasses import dataclass
 from time import monotonic
 from typing import ClassVar
 
@@ -22,8 +21,7 @@ from cbtui.screens.parts.bars import BarSelection
 from cbtui.screens.parts.frames import FRAMES_A_SECOND
 from cbtui.screens.parts.jumps import Jumps
 from cbtui.screens.parts.navigation import MomentKey, TimeNavigation
-from cbtui.screens.parts.part import ScreenPart, ScreenParts, WindowHost
-from cbtui.screens.parts.restarts import Restarts
+from cbtui.screens.parts.part import ScreenParts
 from cbtui.screens.sized import SizedScreen
 from cbtui.screens.windows.jump import JumpScreen
 from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, HeadingLine
@@ -225,7 +223,8 @@ class CompareScreen(SizedScreen[None]):
             self.query_one("#verdict", Static).update(self._gone_or_new)
             return
         at = self._first_difference
-        where = "no call differs" if at is None else f"they differ from {timestamp(at)} on"
+        notably = " notably" if self._is_real else ""
+        where = f"no call differs{notably}" if at is None else f"they differ from {timestamp(at)} on"
         verdict = f"{where}; {self._verdict[0].lower()}{self._verdict[1:]}"
         if not self._whole:
             verdict = f"On screen: {verdict}"
@@ -256,6 +255,8 @@ class CompareScreen(SizedScreen[None]):
             return f"{self._what}: nothing that both runs have; {_shorter(first, second)}", ()
         compared = yield from compare_incrementally(first.timeline, second.timeline, asked)
         self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
+        for number, unlike in enumerate(compared.unlike):
+            self._lanes(number).kept = unlike
         is_cured = False
         if self._whole:
             yield
@@ -277,7 +278,8 @@ class CompareScreen(SizedScreen[None]):
         return "What both runs have" if self._ended_early else "Whole runs"
 
     def _extent(self, compared: Window) -> str:
-        return f"{self._what}, {extent(compared, *(side.timeline.end for side in self._sides))}"
+        ends = (side.timeline.end for side in self._sides)
+        return f"{self._what}, {extent(compared, *ends, is_real=self._is_real)}"
 
     @property
     def _asked(self) -> Window:
@@ -295,6 +297,10 @@ class CompareScreen(SizedScreen[None]):
         """The end of the axis: that of the running run, else that of the longer one."""
         going_on = [side.timeline.end for side in self._sides if side.alive()]
         return max(going_on or [side.timeline.end for side in self._sides])
+
+    @property
+    def _is_real(self) -> bool:
+        return any(side.timeline.is_real for side in self._sides)
 
     def _lanes(self, number: int) -> Lanes:
         return self.query_one(f"#lanes{number}", Lanes)
@@ -382,20 +388,3 @@ def _at_the_end_of(bounds: Window, end: Nanoseconds) -> Playhead:
     """The playhead that shows the bounds, in runs of length ``end``."""
     span = next((span for span in SPANS if span >= bounds.length), SPANS[-1])
     return Playhead(span, start=bounds.start).moved_to(bounds.end, end)
-
-
-@dataclass
-class CompareKey(ScreenPart):
-    """Compares the run with the previous one."""
-
-    host: WindowHost
-    restarts: Restarts
-
-    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer it from the second run on."""
-        return self.restarts.both is not None
-
-    def action_compare(self) -> None:
-        """Open the comparison."""
-        if self.restarts.both is not None:
-            self.host.ask(CompareScreen(*self.restarts.both, self.host.charset), None)

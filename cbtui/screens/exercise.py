@@ -20,7 +20,7 @@ from cbtui.runs.judged.checking import ObservedRun, ended_run
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import of_exercise
-from cbtui.screens.compare import CompareKey
+from cbtui.screens.compare_key import CompareKey
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TimeRefusals
 from cbtui.screens.parts.own_file import FileRead, read_when_saved
 from cbtui.screens.parts.restarts import Restarts

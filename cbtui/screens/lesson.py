@@ -14,7 +14,7 @@ from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.choosing import ChoosingScreen
-from cbtui.screens.compare import CompareKey
+from cbtui.screens.compare_key import CompareKey
 from cbtui.screens.parts.choices import TakeOver
 from cbtui.screens.parts.cures import CureTrials
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TimeRefusals, TypingKeys, WorldKeys

@@ -114,6 +114,11 @@ class Timeline:
         return self._run.started
 
     @property
+    def is_real(self) -> bool:
+        """Whether the run is on the real clock."""
+        return self.started is not None and self.started.clock != "virtual"
+
+    @property
     def ended(self) -> ev.RunEnded | None:
         """The run's last event; None while it lasts."""
         return self._run.ended

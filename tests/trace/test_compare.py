@@ -356,3 +356,55 @@ def test_on_the_real_clock_runs_differ_by_more_than_a_start_that_is_a_little_lat
 
     assert differ(called(1, 1.0, 1.1), called(1, 1.05, 1.15)) is None
     assert differ(called(1, 1.0, 1.1), called(1, 1.05, 1.9)) == ns(1.1)
+    often = [each for at in range(1, 30) for each in called(1, at / 10, at / 10 + 0.01)]
+    drifts = [each for at in range(1, 28) for each in called(1, 0.5 + at / 9.5, 0.5 + at / 9.5 + 0.01)]
+    assert differ(often, drifts) is None
+    assert differ([*often[:20], *often[40:]], drifts) is not None
+
+
+def on_the_real_clock(first: float, losses: int, wait: float = 0.0) -> Timeline:
+    """A callback that runs each 100 ms from a time on and loses so many messages, one in each call."""
+    calls = [each for at in range(30) for each in called(1, first + at / 10, first + at / 10 + 0.01)]
+    drops = [MessageDropped(ns(first + (at + 0.5) * 3 / losses), 1, 10, 5) for at in range(losses)]
+    waits = [
+        WaitStarted(ns(first), 1, ns(first), Reason.GROUP_HELD, 1, False),
+        WaitEnded(ns(first + wait), 1),
+    ]
+    return run(
+        [ODOM], [RunStarted(0, "run", "real", 0), *sorted([*calls, *drops, *waits], key=lambda e: e.t)]
+    )
+
+
+def test_runs_on_the_real_clock_are_compared_from_their_first_calls_on() -> None:
+    early, late = on_the_real_clock(0.2, 30), on_the_real_clock(1.1, 30)
+    compared = compare(early, late, Window(0, ns(2.6)))
+    (odom,) = compared.callbacks
+    assert odom.first is not None
+    assert odom.second is not None
+    assert odom.first.figures.calls == odom.second.figures.calls
+    assert odom.first.figures.drops == odom.second.figures.drops
+    assert run_to_end(first_difference(early, late, Window(0, ns(2.6)))) is None
+
+
+def test_what_differs_by_noise_on_the_real_clock_is_about_the_same() -> None:
+    window = Window(0, ns(4.0))
+    compared = compare(on_the_real_clock(1.0, 69, wait=0.03), on_the_real_clock(1.0, 74), window)
+    assert verdict(compared).startswith("Both runs are about the same")
+    rows = {row.label: (row.difference, row.assessment) for row in sections(compared)[0].rows}
+    assert rows["lost"] == ("about the same", Assessment.SAME)
+    compared = compare(on_the_real_clock(1.0, 69), on_the_real_clock(1.0, 20), window)
+    assert verdict(compared).startswith(f"run B is better: losses of {ODOM}")
+
+
+def test_a_callback_that_hardly_runs_in_one_of_the_runs_is_unlike() -> None:
+    other = run([TIMER, ODOM], [*called(1, 1.0, 1.1), *called(1, 2.0, 2.1), *called(1, 3.0, 3.1)])
+    compared = compare(healthy(), other, Window(0, ns(4.0)))
+    assert list(map(set, compared.unlike)) == [{1, 2}, {1, 2}]
+    assert not any(compare(healthy(), healthy(), Window(0, ns(4.0))).unlike)
+    alone = compare(healthy(), run([TIMER], called(1, 1.0, 1.1)), Window(0, ns(4.0)))
+    assert list(map(set, alone.unlike)) == [{2}, set()]
+
+
+def test_the_compared_part_on_the_real_clock_begins_with_the_first_calls() -> None:
+    compared = compare(on_the_real_clock(1.0, 3), on_the_real_clock(1.0, 3), Window(0, ns(3.0)))
+    assert "\n0 to 3 s; each from its first call on;" in comparison_text(compared, "a", "b")

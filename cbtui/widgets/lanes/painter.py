@@ -1,6 +1,6 @@
 """Paints lanes as rows of text in inks; needs no terminal, so that a picture can be tested as text."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from math import inf
 from operator import attrgetter
 
@@ -31,7 +31,7 @@ from cbtui.widgets.lanes.selection import Selection
 from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls, marked_columns
 from cbtui.widgets.lanes.status import LaneStatus
 from sim.quantities.durations import duration
-from sim.trace.events import EntityKind
+from sim.trace.events import EntityId, EntityKind
 from sim.trace.figures.chains import ChainStep
 from sim.trace.model import Blocked, Moment, Nanoseconds, Position, Span, ThreadInfo, Wait, Window
 from sim.trace.timeline import Timeline
@@ -86,11 +86,13 @@ class LanePainter:
         whole: Nanoseconds = 0,
         path: Sequence[ChainStep] = (),
         told: Nanoseconds | None = None,
+        kept: Collection[EntityId] = (),
     ) -> LanePicture:
         """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells.
 
         Words and figures are of the moment ``told``, ``now`` unless given. With ``whole`` there is an
-        overview, up to that end; else only where it takes no room. ``path`` stands out on its lanes.
+        overview, up to that end; else only where it takes no room. ``path`` stands out on its lanes; the
+        lanes of the callbacks ``kept`` stay longest.
         """
         if timeline is not self.cache.timeline:
             self.cache = LaneCache(timeline)
@@ -100,9 +102,8 @@ class LanePainter:
         if width < LEAST_WIDTH:
             return LanePicture(((TextRun(" " * width, PLAIN),),) * height, (), layout, scale)
         room = height - 1 - (whole > 0)
-        lanes = choose_lanes(
-            every, room, timeline, scale.window, None if selection is None else selection.lane
-        )
+        chosen = None if selection is None else selection.lane
+        lanes = choose_lanes(every, room, timeline, scale.window, chosen, kept)
         moment = timeline.moment(now if told is None else told)
         frame = _LaneFrame(self, timeline, scale, layout, now, moment, selection, path)
         rows, shown = [], list[Lane]()

@@ -1,6 +1,6 @@
 """The lanes of a run, and the choice of those to show if not all fit."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TypeAlias
@@ -107,18 +107,23 @@ def never_ran(timeline: Timeline, thread: ThreadId) -> bool:
 
 
 def choose_lanes(
-    lanes: list[Lane], room: int, timeline: Timeline, window: Window, selected: Lane | None = None
+    lanes: list[Lane],
+    room: int,
+    timeline: Timeline,
+    window: Window,
+    selected: Lane | None = None,
+    kept: Collection[EntityId] = (),
 ) -> list[Lane]:
     """Return the most important lanes of ``window`` that fit, in their order.
 
-    The selected lane and its neighbours stay, so that moving through the lanes scrolls the view. Lanes with
-    work or long waits come next; idle ones are dropped first, and threads beyond half of the room before
-    callbacks that are called: one thread works like another. The cursor's moment does not count: the choice
-    would flicker.
+    The selected lane and its neighbours stay, so that moving through the lanes scrolls the view. The
+    callbacks ``kept`` come next, then lanes with work or long waits; idle ones are dropped first, and threads
+    beyond half of the room before callbacks that are called: one thread works like another. The cursor's
+    moment does not count: the choice would flicker.
     """
     if len(lanes) <= room:
         return lanes
-    worth = _LanePriority(timeline, window)
+    worth = _LanePriority(timeline, window, kept)
     value = [worth.of(lane) for lane in lanes]
     threads = [place for place, lane in enumerate(lanes) if isinstance(lane, ThreadLane)]
     for place in sorted(threads, key=lambda place: -value[place])[room // 2 :]:
@@ -132,6 +137,8 @@ def choose_lanes(
 
 _SPARE = 4
 """The priority of a thread beyond half of the room, and the highest of a client, which only takes replies."""
+_KEPT = 10
+"""The priority of a callback that the picture is about: higher than any other."""
 _FAR = 2
 """The distance from the selected lane beyond which only priority counts."""
 _LONG_WAIT: Nanoseconds = 10_000_000
@@ -145,6 +152,7 @@ class _LanePriority:
 
     timeline: Timeline
     window: Window
+    kept: Collection[EntityId] = ()
 
     def of(self, lane: Lane) -> int:
         """Return a lane's priority."""
@@ -153,6 +161,8 @@ class _LanePriority:
                 return self._thread(thread)
             case GroupLane(group):
                 return 8 if self._group_waits(group.id) else 6
+            case MemberLane(entity) | SoleLane(entity) if entity.id in self.kept:
+                return _KEPT
             case MemberLane(entity) | SoleLane(entity):
                 of_replies = entity.kind is EntityKind.CLIENT
                 return min(_SPARE, self._entity(entity.id)) if of_replies else self._entity(entity.id)

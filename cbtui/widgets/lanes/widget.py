@@ -1,6 +1,6 @@
 """The widget of the lanes: draws what its painter paints, and reports what the pointer picks."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from textual.events import Click, MouseScrollDown, MouseScrollUp
 from textual.geometry import Offset, Size
@@ -27,6 +27,7 @@ from cbtui.widgets.lanes.selection import (
     start_of,
 )
 from cbtui.widgets.painted_widget import PaintedWidget, painted
+from sim.trace.events import EntityId
 from sim.trace.figures.chains import ChainStep
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -67,6 +68,8 @@ class Lanes(PaintedWidget, can_focus=True):
     """The end of an overview that is always shown; 0 for one that is shown if there is room."""
     hint: reactive[str] = reactive("", repaint=False)
     path: reactive[Sequence[ChainStep]] = painted(())
+    kept: reactive[Collection[EntityId]] = painted(())
+    """The callbacks whose lanes are the last to be hidden."""
     changes: reactive[str] = painted("")
     keys: reactive[LaneKeys] = reactive(USUAL_KEYS, repaint=False)
 
@@ -211,6 +214,7 @@ class Lanes(PaintedWidget, can_focus=True):
             self.whole,
             self.path,
             self.told,
+            self.kept,
         )
         self._picture = picture
         if not picture.complete:

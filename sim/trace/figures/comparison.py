@@ -1,10 +1,12 @@
 """Compares two runs: the figures of the same window of both, callback by callback."""
 
+from bisect import bisect
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
-from typing import TypeAlias
+from operator import attrgetter
+from typing import NamedTuple, TypeAlias
 
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId
@@ -55,6 +57,12 @@ class CallbackPair:
     first: CallbackInRun | None
     second: CallbackInRun | None
 
+    @property
+    def is_unlike(self) -> bool:
+        """Whether it runs in one run only, or there more than twice as often."""
+        calls = [0 if side is None else side.figures.calls for side in (self.first, self.second)]
+        return max(calls) > 2 * min(calls)
+
 
 @dataclass(frozen=True, slots=True)
 class RunFigures:
@@ -80,27 +88,40 @@ class Comparison:
     """The same window of two runs.
 
     Callbacks are in order of appearance, the first run's first, without those that are idle in both.
+    ``is_real`` is of runs on the real clock, of which what differs little is no difference.
     """
 
     window: Window
     first: RunFigures
     second: RunFigures
     callbacks: tuple[CallbackPair, ...]
+    is_real: bool = False
+
+    @property
+    def unlike(self) -> tuple[frozenset[EntityId], frozenset[EntityId]]:
+        """The callbacks of each run that run much less often in one of them, if at all."""
+        unlike = [pair for pair in self.callbacks if pair.is_unlike]
+        return (
+            frozenset(pair.first.figures.entity.id for pair in unlike if pair.first),
+            frozenset(pair.second.figures.entity.id for pair in unlike if pair.second),
+        )
 
 
 def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
     """Compare a window of two runs; callbacks match by node, kind, function and topic or service.
 
-    The others match without their node, where that is unambiguous. Takes time in proportion to the calls and
-    waits in the window.
+    The others match without their node, where that is unambiguous. On the real clock a window from the
+    beginning starts at the first call of each run, and is as long in both. Takes time in proportion to the
+    calls and waits in the window.
     """
     return run_to_end(compare_incrementally(first, second, window))
 
 
 def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> Incremental[Comparison]:
     """As ``compare``, step by step. The runs may continue: events after the window have no effect."""
-    of_first = yield from _callbacks_of(first, window)
-    of_second = yield from _callbacks_of(second, window)
+    of_first_run, of_second_run = _windows(first, second, window)
+    of_first = yield from _callbacks_of(first, of_first_run)
+    of_second = yield from _callbacks_of(second, of_second_run)
     partners = _partners(of_first, of_second)
     pairs: list[tuple[CallbackKey, CallbackInRun | None, CallbackInRun | None]] = [
         (key, callback, of_second.get(partners.get(key, key))) for key, callback in of_first.items()
@@ -111,50 +132,106 @@ def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> 
     short = Counter(_short_name(key) for key, *_ in used)
     return Comparison(
         window,
-        (yield from _run_figures(first, window)),
-        (yield from _run_figures(second, window)),
+        (yield from _run_figures(first, of_first_run)),
+        (yield from _run_figures(second, of_second_run)),
         tuple(
             CallbackPair(_short_name(key) if short[_short_name(key)] == 1 else _long_name(key), one, other)
             for key, one, other in used
         ),
+        first.is_real or second.is_real,
     )
+
+
+def _windows(first: Timeline, second: Timeline, window: Window) -> tuple[Window, Window]:
+    """The window in each run: as long in both, and from the first call if the real clock began before."""
+    if window.start or not (first.is_real or second.is_real):
+        return window, window
+    starts = [_first_call(each, window) for each in (first, second)]
+    length = window.end - max(starts)
+    return Window(starts[0], starts[0] + length), Window(starts[1], starts[1] + length)
+
+
+def _first_call(timeline: Timeline, window: Window) -> Nanoseconds:
+    of_threads = [timeline.spans_on(thread, window)[:1] for thread in tuple(timeline.threads)]
+    return min((span.start for spans in of_threads for span in spans), default=window.start)
 
 
 def first_difference(first: Timeline, second: Timeline, window: Window) -> Incremental[Nanoseconds | None]:
     """Return when the runs first differ in a window: a call begins or ends otherwise, or on one side only.
 
-    Callbacks match as for ``compare``. Times are the same that differ by less than 1 ms, on the real clock by
-    less than 100 ms. None: they do not differ.
+    Callbacks match as for ``compare``. Times are the same that differ by less than 1 ms. On the real clock
+    each call is compared with the nearest one, from the first call of each run on, and 100 ms are no
+    difference. None: they do not differ.
     """
-    is_real = any(each.started is not None and each.started.clock != "virtual" for each in (first, second))
+    real = first.is_real or second.is_real
     of_first, of_second = _entities_of(first), _entities_of(second)
     partners = _partners(of_first, of_second)
-    found: list[Nanoseconds] = []
+    windows = _windows(first, second, window)
+    start, end = windows[0].start, windows[0].length
     for key, entity in of_first.items():
         other = of_second.get(partners.get(key, key))
-        within = Window(window.start, min([window.end, *found]))
-        spans = first.spans_of(entity, within), () if other is None else second.spans_of(other, within)
-        differs = _first_different(*spans, _ALIKE if is_real else _SAME)
-        if differs is not None and differs < window.end:
-            found.append(differs)
+        one, another = (
+            [] if id_ is None else _times(run.spans_of(id_, Window(own.start, own.start + end)), own.start)
+            for run, id_, own in zip((first, second), (entity, other), windows, strict=True)
+        )
+        differs = _first_unlike(one, another, end - _ALIKE) if real else _first_different(one, another)
+        end = min(end, end if differs is None else differs)
         yield
-    return min(found, default=None)
+    return start + end if end < windows[0].length else None
 
 
 _SAME: Nanoseconds = 1_000_000
 """Times of two virtual runs that differ by less are the same."""
 _ALIKE: Nanoseconds = 100_000_000
-"""The same on the real clock, on which a program starts sooner or later and sleeps longer or shorter."""
+"""The same on the real clock, on which a program sleeps longer or shorter."""
 
 
-def _first_different(first: Sequence[Span], second: Sequence[Span], same: Nanoseconds) -> Nanoseconds | None:
+class _Call(NamedTuple):
+    """When a call began and ended, since the beginning of a window; None while it runs."""
+
+    start: Nanoseconds
+    end: Nanoseconds | None
+
+    def parts_from(self, other: "_Call", same: Nanoseconds) -> Nanoseconds | None:
+        """When this call and the other one differ by so much; None if they do not."""
+        if abs(self.start - other.start) >= same:
+            return min(self.start, other.start)
+        ends = [call.end for call in (self, other) if call.end is not None]
+        return min(ends) if ends and (len(ends) == 1 or abs(ends[0] - ends[1]) >= same) else None
+
+
+def _times(spans: Sequence[Span], zero: Nanoseconds) -> list[_Call]:
+    return [_Call(span.start - zero, None if span.end is None else span.end - zero) for span in spans]
+
+
+def _first_different(first: Sequence[_Call], second: Sequence[_Call]) -> Nanoseconds | None:
     for one, other in zip(first, second, strict=False):
-        if abs(one.start - other.start) >= same:
-            return min(one.start, other.start)
-        ends = [span.end for span in (one, other) if span.end is not None]
-        if ends and (len(ends) == 1 or abs(ends[0] - ends[1]) >= same):
-            return min(ends)
-    return next((span.start for rest in (first[len(second) :], second[len(first) :]) for span in rest), None)
+        differs = one.parts_from(other, _SAME)
+        if differs is not None:
+            return differs
+    return next((call.start for rest in (first[len(second) :], second[len(first) :]) for call in rest), None)
+
+
+def _first_unlike(first: Sequence[_Call], second: Sequence[_Call], end: Nanoseconds) -> Nanoseconds | None:
+    """When a call of one run first has none like it in the other, before ``end``."""
+    found = [end]
+    for own, others in ((first, second), (second, first)):
+        for call in own:
+            place = bisect(others, call.start, key=attrgetter("start"))
+            near = min(
+                others[max(0, place - 1) : place + 1],
+                key=lambda other: abs(other.start - call.start),
+                default=None,
+            )
+            differs = (
+                call.start
+                if near is None or abs(near.start - call.start) >= _ALIKE
+                else call.parts_from(near, _ALIKE)
+            )
+            if differs is not None:
+                found.append(differs)
+                break
+    return min(found) if min(found) < end else None
 
 
 def _partners(first: Iterable[CallbackKey], second: Iterable[CallbackKey]) -> dict[CallbackKey, CallbackKey]:

@@ -6,9 +6,22 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import NamedTuple, TypeAlias, TypeVar
 
-from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.figures.comparison import CallbackInRun, CallbackPair, Comparison, RunFigures
+from sim.trace.figures.comparison_wording import (
+    AGES,
+    ANGLES,
+    CALLS,
+    COUNTS,
+    DISTANCES,
+    ERRORS,
+    FLAWS,
+    LATENESS,
+    LOSSES,
+    WAITS,
+    Wording,
+    metres,
+)
 from sim.trace.figures.statistics import Distribution
 from sim.trace.figures.summary import RobotFigures
 from sim.trace.model import Nanoseconds, Window
@@ -57,36 +70,10 @@ class _Spread(NamedTuple):
     most: float
 
 
-class _Wording(NamedTuple):
-    """How to format figures of a kind, and to word and assess a difference."""
-
-    format: Callable[[float], str]
-    higher: str
-    lower: str
-    more_is_worse: bool = False
-
-
-def _length(nanoseconds: float) -> str:
-    return duration(round(nanoseconds))
-
-
-def _metres(metres: float) -> str:
-    return f"{metres:.2f} m"
-
-
-_COUNTS = _Wording("{:.0f}".format, "more", "fewer")
-_LOSSES = _COUNTS._replace(more_is_worse=True)
-_WAITS = _Wording(_length, "longer", "shorter", more_is_worse=True)
-_AGES = _Wording(_length, "older", "fresher", more_is_worse=True)
-_LATENESS = _Wording(_length, "later", "sooner", more_is_worse=True)
-_DISTANCES = _Wording(_metres, "farther", "less far")
-_ANGLES = _Wording("{:.1f} rad".format, "more", "less")
-
-
 def sections(comparison: Comparison) -> tuple[Section, ...]:
     """The whole comparison: callback by callback, then the threads and the robot."""
     return (
-        *(_section(pair) for pair in comparison.callbacks),
+        *(_section(pair, is_real=comparison.is_real) for pair in comparison.callbacks),
         Section("whole program", tuple(_whole(comparison.first, comparison.second))),
     )
 
@@ -124,6 +111,8 @@ def verdict(comparison: Comparison, *, is_cured: bool = False) -> str:
     for each in _differences(comparison):
         (better if each.second < each.first else worse).append(each)
     if not better and not worse:
+        if comparison.is_real:
+            return "Both runs are about the same: what differs may be the real clock's doing"
         return "Neither run is better: no callback fails, loses or waits more in one of them"
     is_better = min(map(_weight, better), default=_NONE) <= min(map(_weight, worse), default=_NONE)
     if is_cured and not is_better:
@@ -141,7 +130,7 @@ class _FigureDifference(NamedTuple):
     what: str
     first: float
     second: float
-    wording: _Wording
+    wording: Wording
 
     @property
     def text(self) -> str:
@@ -167,6 +156,8 @@ def _differences(comparison: Comparison) -> Iterator[_FigureDifference]:
             if first is not None and second is not None:
                 one, other = figure(first), figure(second)
                 lower, higher = (first, second) if one < other else (second, first)
+                if wording.on(is_real=comparison.is_real).is_noise(one, other):
+                    continue
                 is_like = 2 * lower.figures.calls >= higher.figures.calls
                 if (is_like or wording not in _OF_CALLS) and abs(other - one) >= least:
                     weight: float = rank if is_like or what != _LOST else len(_DECIDING)
@@ -174,7 +165,7 @@ def _differences(comparison: Comparison) -> Iterator[_FigureDifference]:
     for weight, what, count in _DECIDING_RUNS:
         one, other = count(comparison.first), count(comparison.second)
         if one != other:
-            yield _FigureDifference(weight, what, one, other, _LOSSES)
+            yield _FigureDifference(weight, what, one, other, FLAWS)
 
 
 _NONE = (math.inf, 0.0)
@@ -183,7 +174,7 @@ _DECIDING_RUNS: tuple[tuple[float, str, Callable[[RunFigures], int]], ...] = (
     (0.5, "subscriptions that hear nothing", lambda run: run.mismatches),
     (1, "collisions", lambda run: run.collisions),
 )
-_OF_CALLS = (_LATENESS, _AGES)
+_OF_CALLS = (LATENESS, AGES)
 """Figures of calls: lower ones of far fewer calls, as of a callback that hangs, speak for no run."""
 _LOST = "losses"
 """Fewer in far fewer calls weigh least: who hangs sends nothing that could be lost."""
@@ -195,19 +186,21 @@ def _most(values: Distribution | None) -> float:
     return 0.0 if values is None else values.most
 
 
-_DECIDING: tuple[tuple[str, Callable[[CallbackInRun], float], _Wording, float], ...] = (
-    ("errors", lambda side: side.figures.errors, _LOSSES, 1),
-    (_LOST, lambda side: side.figures.drops, _LOSSES, 1),
-    ("longest wait", lambda side: side.longest_wait, _WAITS, _NOTABLE),
-    ("worst lateness", lambda side: _most(side.figures.late), _LATENESS, _NOTABLE),
-    ("oldest data", lambda side: _most(side.figures.age), _AGES, _NOTABLE),
+_DECIDING: tuple[tuple[str, Callable[[CallbackInRun], float], Wording, float], ...] = (
+    ("errors", lambda side: side.figures.errors, ERRORS, 1),
+    (_LOST, lambda side: side.figures.drops, LOSSES, 1),
+    ("longest wait", lambda side: side.longest_wait, WAITS, _NOTABLE),
+    ("worst lateness", lambda side: _most(side.figures.late), LATENESS, _NOTABLE),
+    ("oldest data", lambda side: _most(side.figures.age), AGES, _NOTABLE),
 )
 """Figures that decide a verdict, the most important first, and by how much they must differ."""
 
 
-def extent(window: Window, *ends: Nanoseconds) -> str:
+def extent(window: Window, *ends: Nanoseconds, is_real: bool = False) -> str:
     """The compared part of runs with these ends: ``0 to 12.4 s; run A goes on to 20 s``."""
     parts = [stretch(window)]
+    if is_real and not window.start:
+        parts.append("each from its first call on")
     for name, end in zip(RUNS, ends, strict=True):
         if end > window.end:
             parts.append(f"{name} goes on to {_seconds(end)} s")
@@ -224,14 +217,14 @@ def _seconds(nanoseconds: int) -> str:
 
 
 def _whole(first: RunFigures, second: RunFigures) -> Iterator[ComparisonRow]:
-    yield _row("threads used", first.threads_used, second.threads_used, _COUNTS)
-    yield _row("at once", first.threads_at_once, second.threads_at_once, _COUNTS)
+    yield _row("threads used", first.threads_used, second.threads_used, COUNTS)
+    yield _row("at once", first.threads_at_once, second.threads_at_once, COUNTS)
     robots = [run.robot for run in (first, second) if run.robot is not None]
     if len(robots) != 1 and all(map(_stands, robots)):
         return  # it has no part in either run
     for label, figure, wording in _ROBOT_FIGURES:
         yield _row(label, _apply(figure, first.robot), _apply(figure, second.robot), wording)
-    yield _row("collisions", _collisions(first), _collisions(second), _LOSSES)
+    yield _row("collisions", _collisions(first), _collisions(second), FLAWS)
     yield _place(first.robot, second.robot)
     yield _heading(first.robot, second.robot)
 
@@ -248,10 +241,10 @@ def _collisions(run: RunFigures) -> Figure:
     return None if run.robot is None else run.collisions
 
 
-_ROBOT_FIGURES: tuple[tuple[str, Callable[[RobotFigures], Figure], _Wording], ...] = (
-    ("robot travelled", lambda robot: robot.travelled, _DISTANCES),
-    ("robot turned", lambda robot: robot.turned, _ANGLES),
-    ("turns", lambda robot: robot.turns, _COUNTS),
+_ROBOT_FIGURES: tuple[tuple[str, Callable[[RobotFigures], Figure], Wording], ...] = (
+    ("robot travelled", lambda robot: robot.travelled, DISTANCES),
+    ("robot turned", lambda robot: robot.turned, ANGLES),
+    ("turns", lambda robot: robot.turns, COUNTS),
 )
 
 
@@ -263,7 +256,7 @@ def _place(first: RobotFigures | None, second: RobotFigures | None) -> Compariso
     if figures[0] == figures[1]:
         return ComparisonRow(label, figures, "same", Assessment.SAME)
     return ComparisonRow(
-        label, figures, f"{_metres(math.hypot(first.x - second.x, first.y - second.y))} apart"
+        label, figures, f"{metres(math.hypot(first.x - second.x, first.y - second.y))} apart"
     )
 
 
@@ -295,7 +288,7 @@ def _format_both(
     return (NOTHING if first is None else write(first), NOTHING if second is None else write(second))
 
 
-def _section(pair: CallbackPair) -> Section:
+def _section(pair: CallbackPair, *, is_real: bool) -> Section:
     first, second = pair.first, pair.second
     title = pair.name
     if first is None or second is None:
@@ -305,18 +298,20 @@ def _section(pair: CallbackPair) -> Section:
         for name, side in zip(RUNS, (first, second), strict=True)
         if side and side.waits
     )
-    return Section(title, tuple(_rows(first, second)), tuple(notes))
+    return Section(title, tuple(_rows(first, second, is_real=is_real)), tuple(notes))
 
 
-def _rows(first: CallbackInRun | None, second: CallbackInRun | None) -> Iterator[ComparisonRow]:
+def _rows(
+    first: CallbackInRun | None, second: CallbackInRun | None, *, is_real: bool
+) -> Iterator[ComparisonRow]:
     for label, figure, wording in _FIGURES:
         one, other = _apply(figure, first), _apply(figure, second)
         if one is not None or other is not None:
-            yield _row(label, one, other, wording)
+            yield _row(label, one, other, wording.on(is_real=is_real))
     for label, spread, wording in _SPREADS:
         of_first, of_second = _apply(spread, first), _apply(spread, second)
         if of_first or of_second:
-            yield _spread_row(label, of_first, of_second, wording)
+            yield _spread_row(label, of_first, of_second, wording.on(is_real=is_real))
 
 
 ValueT = TypeVar("ValueT")
@@ -337,28 +332,26 @@ def _spread(values: Distribution | None) -> _Spread | None:
     return None if values is None else _Spread(values.median, values.most)
 
 
-_FIGURES: tuple[tuple[str, Callable[[CallbackInRun], Figure], _Wording], ...] = (
-    ("calls", lambda side: side.figures.calls, _COUNTS),
-    ("errors", lambda side: side.figures.errors or None, _LOSSES),
-    ("lost", lambda side: side.figures.drops if side.figures.entity.depth else None, _LOSSES),
+_FIGURES: tuple[tuple[str, Callable[[CallbackInRun], Figure], Wording], ...] = (
+    ("calls", lambda side: side.figures.calls, CALLS),
+    ("errors", lambda side: side.figures.errors or None, ERRORS),
+    ("lost", lambda side: side.figures.drops if side.figures.entity.depth else None, LOSSES),
 )
-_SPREADS: tuple[tuple[str, Callable[[CallbackInRun], _Spread | None], _Wording], ...] = (
-    ("wait med/max", _waited, _WAITS),
-    ("age med/max", lambda side: _spread(side.figures.age), _AGES),
-    ("late med/max", lambda side: _spread(side.figures.late), _LATENESS),
+_SPREADS: tuple[tuple[str, Callable[[CallbackInRun], _Spread | None], Wording], ...] = (
+    ("wait med/max", _waited, WAITS),
+    ("age med/max", lambda side: _spread(side.figures.age), AGES),
+    ("late med/max", lambda side: _spread(side.figures.late), LATENESS),
 )
 
 
-def _row(label: str, first: Figure, second: Figure, wording: _Wording) -> ComparisonRow:
+def _row(label: str, first: Figure, second: Figure, wording: Wording) -> ComparisonRow:
     figures = _format_both(wording.format, first, second)
     if first is None or second is None:
         return ComparisonRow(label, figures)
     return ComparisonRow(label, figures, *_difference(first, second, wording))
 
 
-def _spread_row(
-    label: str, first: _Spread | None, second: _Spread | None, wording: _Wording
-) -> ComparisonRow:
+def _spread_row(label: str, first: _Spread | None, second: _Spread | None, wording: Wording) -> ComparisonRow:
     """A row of two spreads; the difference is that of the maxima, or of the medians if only these differ."""
     figures = _format_both(lambda spread: _spread_text(spread, wording), first, second)
     if first is None or second is None:
@@ -373,15 +366,17 @@ def _spread_row(
     )
 
 
-def _spread_text(spread: _Spread, wording: _Wording) -> str:
+def _spread_text(spread: _Spread, wording: Wording) -> str:
     median = NOTHING if spread.median is None else wording.format(spread.median)
     return f"{median} / {wording.format(spread.most)}"
 
 
-def _difference(first: float, second: float, wording: _Wording) -> tuple[str, Assessment]:
+def _difference(first: float, second: float, wording: Wording) -> tuple[str, Assessment]:
     """The difference as text, with the precision of the figures."""
     if wording.format(first) == wording.format(second):
         return "same", Assessment.SAME
+    if wording.is_noise(first, second):
+        return "about the same", Assessment.SAME
     step = second - first
     word = wording.higher if step > 0 else wording.lower
     assessment = Assessment.OTHER

@@ -35,7 +35,7 @@ def comparison_text(
     lines = [
         f"{RUNS[0]}  {first}",
         f"{RUNS[1]}  {second}",
-        extent(comparison.window, comparison.first.end, comparison.second.end),
+        _extent(comparison),
         f"{before} {ended_early(comparison) or verdict(comparison, is_cured=is_cured)}.".lstrip(),
         "",
         _line(head, widths),
@@ -43,6 +43,10 @@ def comparison_text(
     for section in shown:
         lines += ["", *_lines(section, widths)]
     return "".join(f"{line}\n" for line in lines)
+
+
+def _extent(comparison: Comparison) -> str:
+    return extent(comparison.window, comparison.first.end, comparison.second.end, is_real=comparison.is_real)
 
 
 def _lines(section: Section, widths: tuple[int, int, int]) -> Iterator[str]:
@@ -70,7 +74,7 @@ def comparison_lines(
     """Yield the whole comparison as lines that can be listened to; the same, for the rest."""
     yield from (f"{run}: {name}" for run, name in zip(RUNS, (first, second), strict=True))
     yield f"{before} {ended_early(comparison) or verdict(comparison, is_cured=is_cured)}.".lstrip()
-    yield extent(comparison.window, comparison.first.end, comparison.second.end)
+    yield _extent(comparison)
     for section in sections(comparison):
         yield section.title
         for row in section.rows:

@@ -99,6 +99,20 @@ def test_where_lanes_are_few_threads_leave_room_for_callbacks_that_run() -> None
     assert [isinstance(each, ThreadLane) for each in lanes] == 4 * [True] + 4 * [False]
 
 
+def test_a_callback_that_the_picture_is_about_keeps_its_lane_though_it_is_idle() -> None:
+    run = Run()
+    node, thread = run.node("/n"), run.thread("MainThread")
+    group = run.exclusive(node)
+    callbacks = [run.timer(group, f"ask_{number}", 1.0) for number in range(6)]
+    for number, callback in enumerate(callbacks[:-1]):
+        run.callback(callback, thread, 0.5 * number, 0.5 * number + 0.1)
+    timeline = run_timeline(run)
+    every, window = all_lanes(timeline, ""), Window(0, ns(5.0))
+    idle = every[-1]
+    assert idle not in choose_lanes(every, 4, timeline, window)
+    assert idle in choose_lanes(every, 4, timeline, window, kept={callbacks[-1]})
+
+
 def run_timeline(run: Run) -> Timeline:
     timeline = Timeline()
     timeline.extend(run.until(5.0))
