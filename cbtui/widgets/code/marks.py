@@ -12,12 +12,15 @@ from cbtui.widgets.lanes.names import short_thread
 from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.events import Doing, EntityId
-from sim.trace.model import EntityInfo, Moment, Nanoseconds, Span, Window
+from sim.trace.model import EntityInfo, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
 
 JUST_NOW: Nanoseconds = 250_000_000
 """How long a callback stays marked after it has returned, so that short ones are visible."""
+
+_SAMPLED: Nanoseconds = 250_000_000
+"""On the real clock lines are sampled, so a callback may have come to its line by so much earlier."""
 
 _LONG: Nanoseconds = 300_000_000
 
@@ -81,11 +84,19 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
         for frame in (*calls, here):
             file = files.of(frame.file)
             if file is not None:
-                lasted = duration(at - position.start)
-                since = f"here for {lasted}" if position.doing is Doing.SLEEPS else lasted
-                texts = (f"▶ {doing_of(position)}, {since}", f"▶ {lasted}", "") if frame is here else ()
+                texts = tuple(_at_line(position, timeline, at)) if frame is here else ()
                 found[file][frame.line] = LineMark(texts, number)
     return dict(found)
+
+
+def _at_line(position: Position, timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    """Yield the texts of the innermost line; how long it has been there only if that is known."""
+    lasted, doing = at - position.start, f"▶ {doing_of(position)}"
+    if timeline.is_real and lasted < _SAMPLED:
+        yield from (doing, "▶", "")
+        return
+    since = f"here for {duration(lasted)}" if position.doing is Doing.SLEEPS else duration(lasted)
+    yield from (f"{doing}, {since}", f"▶ {duration(lasted)}", "")
 
 
 def fault_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, LineMarks]:

@@ -9,7 +9,7 @@ from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, lines_at, m
 from cbtui.widgets.code.source_files import SourceFiles
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
-from sim.trace.events import CallbackAt, Doing
+from sim.trace.events import CallbackAt, Doing, RunStarted
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.pictures import lines_of
@@ -80,6 +80,21 @@ def test_a_line_tells_how_long_a_callback_has_been_there_not_how_long_one_sleep_
     at = CallbackAt(ns(1.0), timer, thread, doing, "", ((str(path), "timer_callback", 31),))
     timeline = Timeline()
     timeline.extend(sorted([*run.events, at], key=lambda event: event.t))
+    files = SourceFiles(path)
+    assert lines_at(timeline, ns(4.5), files)[files.main][31].texts[0] == told
+
+
+@pytest.mark.parametrize(("sampled", "told"), [(1.0, "▶ sleeps, here for 3.5 s"), (4.42, "▶ sleeps")])
+def test_on_the_real_clock_a_line_that_was_sampled_just_now_gets_no_time(
+    path: Path, sampled: float, told: str
+) -> None:
+    run, timeline = sleeper(str(path))
+    thread, timer = next(iter(timeline.threads)), list(timeline.entities)[-1]
+    line = ((str(path), "timer_callback", 31),)
+    at = CallbackAt(ns(sampled), timer, thread, Doing.SLEEPS, "", line)
+    events = [event for event in run.events if not isinstance(event, RunStarted)]
+    timeline = Timeline()
+    timeline.extend([RunStarted(0, "run", "real", 0), *sorted([*events, at], key=lambda event: event.t)])
     files = SourceFiles(path)
     assert lines_at(timeline, ns(4.5), files)[files.main][31].texts[0] == told
 
