@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sim.interpreter.exception_text import error_line
 from sim.interpreter.function_marks import sends_responses
-from sim.probes.on_path.cbtui_probe.naming import callback_name, written_at
+from sim.probes.on_path.cbtui_probe.naming import written_at
 from sim.probes.on_path.cbtui_probe.own_lines import awaiting_frames
 from sim.probes.own_code import call_into_ros, has_timeout, is_own, place_of_caller, raised_at
-from sim.probes.traced import MessageContents, TracedEntity
+from sim.probes.traced import MessageContents, TracedEntity, name_of
 from sim.trace import events
 from sim.trace.events import (
     AnyEvent,
@@ -204,45 +204,38 @@ class Probe:
 
     def many_made(self, number: int, kind: str) -> None:
         """Warn that callbacks keep creating entities of one kind; the node has ``number`` of them."""
-        text = (
+        self._warn(
             f"a node has {number:,} {kind}, and its callbacks make more ({place_of_caller()}): each stays "
             "until it is destroyed; make what the node needs once, in __init__"
         )
-        self._sink(events.Notice(self._now(), Severity.WARN, text))
 
     def node_destroyed_by_itself(self, name: str, entity: TracedEntity) -> None:
         """Warn that the callback on the calling thread destroys its own node."""
-        callback = entity.shown_callback()
-        own = entity.name if callback is None else callback_name(callback)
-        text = (
-            f"{name} destroyed itself in its own callback {own} ({place_of_caller()}): this call goes on to "
-            "its end, and no callback of the node runs again; to end the program, call rclpy.shutdown() there"
+        self._warn(
+            f"{name} destroyed itself in its own callback {name_of(entity)} ({place_of_caller()}): this call "
+            "goes on to its end, and no callback of the node runs again; to end the program, call "
+            "rclpy.shutdown() there"
         )
-        self._sink(events.Notice(self._now(), Severity.WARN, text))
 
     def parameter_overruled(self, name: str) -> None:
         """Warn that a parameter callback on the calling thread sets a parameter that is being set."""
         problem = f"a parameter callback sets '{name}' while that is being set ({place_of_caller()})"
         advice = "return the value from a pre-set callback, or refuse what was asked for"
-        text = f"{problem}: what was asked for is stored last; {advice}"
-        entity, kind = self._here.entity, events.NoticeKind.OVERRULED
-        self._sink(
-            events.Notice(self._now(), Severity.WARN, text, entity, kind=kind, problem=problem, advice=advice)
-        )
+        told = {"kind": events.NoticeKind.OVERRULED, "problem": problem, "advice": advice}
+        self._warn(f"{problem}: what was asked for is stored last; {advice}", self._here.entity, **told)
 
     def cancel_ignored(self, entity: TracedEntity, seconds: int) -> None:
         """Warn that an execute callback has gone on so long after the cancel of its goal was accepted."""
-        callback = entity.shown_callback()
-        name = entity.name if callback is None else callback_name(callback)
         problem = (
-            f"{name} goes on {seconds} s after the cancel of its goal was accepted, and has not looked at "
-            "is_cancel_requested"
+            f"{name_of(entity)} goes on {seconds} s after the cancel of its goal was accepted, and has not "
+            "looked at is_cancel_requested"
         )
         advice = "look at it in each round, and if it is set, call canceled() and return a result"
-        text, own, kind = f"{problem}; {advice}", entity.trace_id, events.NoticeKind.CANCEL_IGNORED
-        self._sink(
-            events.Notice(self._now(), Severity.WARN, text, own, kind=kind, problem=problem, advice=advice)
-        )
+        told = {"kind": events.NoticeKind.CANCEL_IGNORED, "problem": problem, "advice": advice}
+        self._warn(f"{problem}; {advice}", entity.trace_id, **told)
+
+    def _warn(self, text: str, entity: int = 0, **more: Any) -> None:
+        self._sink(events.Notice(self._now(), Severity.WARN, text, entity, **more))
 
     def spin_clashed(self, node: int = 0, *, refused: bool = False) -> None:
         """Record that the calling thread spins what is being spun; ``node`` was taken from that executor."""

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from typing import Any, Protocol
 
+from sim.probes.on_path.cbtui_probe.naming import callback_name
 from sim.trace.events import AnyEvent, EntityKind, GroupKind, Reason
 
 
@@ -68,6 +69,12 @@ class TracedEntity(Protocol):
 
     def shown_callback(self) -> Callable[..., Any] | None:
         """The function that the trace names; None: it has none of its own."""
+
+
+def name_of(entity: TracedEntity) -> str:
+    """Return the name of an entity's callback; its own if it has none."""
+    callback = entity.shown_callback()
+    return entity.name if callback is None else callback_name(callback)
 
 
 class MessageContents(Protocol):

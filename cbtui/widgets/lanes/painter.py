@@ -69,8 +69,7 @@ class LanePainter:
         more_key: str = "",
     ) -> None:
         self.charset = charset
-        self.call_key = call_key
-        self.more_key = more_key
+        self.call_key, self.more_key = call_key, more_key
         self.service = service
         self.looks = looks
         self.cache = LaneCache(Timeline())
@@ -300,8 +299,8 @@ class _LaneFrame:
         """Paint the time axis, with the number of hidden lanes at its left."""
         row = CellRow(self._layout.columns, self._charset)
         marks = self._timeline.marks(self._scale.window)
-        is_newest = self._now >= self._edge
-        draw_axis(row, self._scale, self._column_at(self._now), is_newest, marks, self._calls.latest)
+        column = self._column_at(self._now)
+        draw_axis(row, self._scale, column, self._now >= self._edge, marks, self._calls.latest)
         name = more_lanes(hidden, self._painter.more_key, self._layout.names) if hidden else "seconds"
         unit = f"{duration(self._scale.per_column)}/col" if self._layout.statuses >= 15 else ""
         self._show_cursor(row)
