@@ -176,6 +176,25 @@ def test_a_subscription_that_asks_for_more_than_is_offered_is_told(
     assert str(told.place) == f"{ends[3]}:{ends[4]}"
 
 
+def test_all_policies_of_a_file_that_do_not_match_are_named() -> None:
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        publisher = node.create_publisher(
+            Int32, "t", QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+        )
+        wanted = QoSProfile(
+            depth=1,
+            reliability=ReliabilityPolicy.RELIABLE,
+            durability=DurabilityPolicy.TRANSIENT_LOCAL,
+        )
+        node.create_subscription(Int32, "t", lambda _: None, wanted)
+        node.create_timer(1.0, lambda: publisher.publish(Int32()))
+        spin(node, None)
+
+    told = diagnosed(program).explained("qos-mismatch")
+    assert told.what.endswith(": DURABILITY and RELIABILITY do not match")
+
+
 def test_a_subscription_that_waits_for_a_message_is_one_of_the_program() -> None:
     def program(_: Simulation) -> None:
         node = Node("n")

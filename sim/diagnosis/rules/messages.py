@@ -6,7 +6,7 @@ from itertools import groupby
 from operator import attrgetter
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
-from sim.diagnosis.edits.profiles import match_quality
+from sim.diagnosis.edits.profiles import match_quality, unmatched_beside
 from sim.diagnosis.edits.shared_data import uses_what_is_set
 from sim.diagnosis.rule import (
     Explanation,
@@ -20,7 +20,7 @@ from sim.diagnosis.rule import (
     place_of,
 )
 from sim.diagnosis.timeline_view import LongWait, TimelineView, raised_last
-from sim.diagnosis.words import SPIN_ALWAYS, often, who
+from sim.diagnosis.words import SPIN_ALWAYS, listed, often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import why_waiting
@@ -199,7 +199,11 @@ class QosMismatch(Rule):
             for name, place in zip(_ENDPOINTS, (publisher, subscription), strict=True)
             if place
         ]
-        same, differs = "QoSProfile", f"{found.detail} does not match"
+        also: tuple[str, ...] = ()
+        if publisher and subscription and publisher.file == subscription.file:
+            lines = (publisher.first_line, subscription.first_line)
+            also = unmatched_beside(publisher.file, found.detail, *lines)
+        same, differs = "QoSProfile", f"{listed([found.detail, *also])} do{'' if also else 'es'} not match"
         if found.detail == _TYPE:
             same, differs = "message type", "their message types differ"
         cure = f"give both ends of {found.about} the same {same}"
