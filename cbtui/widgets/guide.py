@@ -37,31 +37,32 @@ class Guide(VerticalScroll):
             self._reading = self._reading or self._read_now(parts)
             before, self._parts = self._parts, dict(parts)
             for name in before.keys() - parts.keys():
-                await self.query_one(f"#part-{name}").remove()
+                await self.query(f"#part-{name}").remove()
             for place, (name, text) in enumerate(parts.items()):
                 if name not in before:
                     await self.mount(
                         self._part(name, text), before=place if place < len(self.children) else None
                     )
                 elif text != before[name]:
-                    self.query_one(f"#part-{name}", Prose).text = self._shown(text)
+                    for part in self._parts_named(name):
+                        part.text = self._shown(text)
             self.call_after_refresh(self._keep_in_sight)
 
     def go_to(self, name: str) -> None:
         """Scroll a section to the top, if it exists."""
-        if name in self._parts:
-            self._reading = (self.query_one(f"#part-{name}", Prose), 0)
+        for part in self._parts_named(name):
+            self._reading = (part, 0)
             self.call_after_refresh(self._keep_in_sight)
 
     def is_past(self, name: str) -> bool:
         """Whether the reader has scrolled on from the top of a section."""
-        places = (part.virtual_region for part in self.query(f"#part-{name}"))
+        places = (part.virtual_region for part in self._parts_named(name))
         return any(place and place.y < self.scroll_offset.y for place in places)
 
     def _read_now(self, parts: Mapping[str, str]) -> tuple[Prose, int] | None:
         """Return the topmost section that stays, and how many of its rows are scrolled out."""
         top = self.scroll_offset.y
-        staying = (self.query_one(f"#part-{name}", Prose) for name in self._parts if name in parts)
+        staying = (part for name in self._parts if name in parts for part in self._parts_named(name))
         part = next((part for part in staying if part.virtual_region.bottom > top), None)
         return None if top == 0 or part is None else (part, max(0, top - part.virtual_region.y))
 
@@ -93,6 +94,10 @@ class Guide(VerticalScroll):
             part, above = self._reading
             self._reading = None
             self.scroll_to(y=part.virtual_region.y + above, animate=False, immediate=True)
+
+    def _parts_named(self, name: str) -> list[Prose]:
+        """Return the section of this name; none if there is none, as while the console ends."""
+        return [*self.query(f"#part-{name}").results(Prose)]
 
     def _part(self, name: str, text: str) -> Prose:
         return Prose(self._shown(text), id=f"part-{name}")

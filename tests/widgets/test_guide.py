@@ -34,3 +34,13 @@ async def test_after_a_resize_the_same_sentence_is_at_the_top(width: int) -> Non
         assert before[0] == "Sentence"
         assert (await resized(pilot, width))[0].split()[:2] == before
         assert (await resized(pilot, 40))[0].split()[:2] == before
+
+
+async def test_what_comes_to_be_shown_while_the_sections_are_taken_away_does_no_harm() -> None:
+    app = GuideOnly()
+    async with app.run_test(size=(40, 10)):
+        guide = app.query_one(Guide)
+        await guide.remove_children()
+        await guide.show({"task": "Another task."})
+        guide.go_to("task")
+        assert not guide.is_past("task")
