@@ -386,7 +386,7 @@ async def test_too_small_a_terminal_gets_a_sentence() -> None:
         assert "cbtui needs a terminal of 80 columns" in text_of(app)
         await pilot.resize_terminal(*WIDE)
         await drawn(app, pilot)
-        assert "run A  shared-group" in text_of(app)
+        await until(pilot, lambda: "run A  shared-group" in text_of(app))
 
 
 async def test_a_lesson_offers_a_comparison_once_there_is_a_run_before() -> None:

@@ -2,11 +2,11 @@ import subprocess
 import sys
 from functools import partial
 from pathlib import Path
-from time import monotonic
 
 import msgspec
 import pytest
 from textual.command import CommandList, CommandPalette
+from textual.events import Key
 
 from cbtui.app import CbtuiApp
 from cbtui.screens.choosing import ChoosingScreen
@@ -124,7 +124,10 @@ async def test_a_number_opens_its_lesson() -> None:
             await pilot.press("q")
 
 
-async def test_an_enter_after_a_number_that_opened_at_once_is_not_for_the_lesson() -> None:
+async def test_an_enter_after_a_number_that_opened_at_once_is_not_for_the_lesson(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(pending_keys, "ENTER_AFTER", 3600.0)
     app = menu()
     predict(app, lessons()[12].id)
     async with app.run_test(size=NARROW) as pilot:
@@ -135,12 +138,17 @@ async def test_an_enter_after_a_number_that_opened_at_once_is_not_for_the_lesson
         assert isinstance(app.focused, Lanes)
 
 
-async def test_such_an_enter_may_come_three_seconds_later(monkeypatch: pytest.MonkeyPatch) -> None:
+async def test_such_an_enter_may_come_three_seconds_later() -> None:
     app = menu()
     predict(app, lessons()[12].id)
     async with app.run_test(size=NARROW) as pilot:
-        monkeypatch.setattr(pending_keys, "monotonic", lambda: monotonic() - 3.0)
-        await pilot.press(*"13", "enter")
+        await pilot.press(*"13")
+        assert opened(app) == lessons()[12].id
+        enter = Key("enter", "\r")
+        enter.time = app._enter_until - pending_keys.ENTER_AFTER + 3.0
+        app.post_message(enter)
+        await until(pilot, lambda: not app._enter_until)
+        await pilot.pause()
         assert isinstance(app.focused, Guide)
 
 
