@@ -43,6 +43,7 @@ class WaitedFor(StrEnum):
     RATE = "the rate's timer"
     CLOCK = "the simulated time"
     LOCK = "a lock"
+    THREAD = "the end of a thread"
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,9 +3,10 @@
 A callback that is blocked in ``Client.call``, or suspended in ``await``, needs a reply, and so does one that
 waits for the reply in a loop or for an event. The reply needs the service's callback, then the client, then a
 worker for the future's done-callback. ``Rate.sleep`` needs the rate's timer, ``Clock.sleep_for`` on simulated
-time the subscription of ``/clock``, and a lock its holder. Each of these can wait for other callbacks: those
-that hold its group, those that occupy the threads, or the service's callback, which may be blocked itself. A
-callback is stuck if all callbacks that it waits for are stuck. With a timeout it is stuck until that is over.
+time the subscription of ``/clock``, a lock its holder, and ``Thread.join`` the thread. Each of these can wait
+for other callbacks: those that hold its group, those that occupy the threads, or the service's callback,
+which may be blocked itself. A callback is stuck if all callbacks that it waits for are stuck. With a timeout
+it is stuck until that is over.
 
 Source: the usual test of a wait-for graph in which a request for one of several equal resources waits for
 all their owners to be stuck (Holt, "Some Deadlock Properties of Computer Systems", 1972).
@@ -13,14 +14,13 @@ all their owners to be stuck (Holt, "Some Deadlock Properties of Computer System
 
 from bisect import bisect_left
 from collections.abc import Iterator
-from dataclasses import dataclass
 from operator import attrgetter
 from pathlib import Path
-from typing import TypeAlias
 
 from sim.diagnosis.rule import WaitedFor, is_models
 from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import pool_of
+from sim.diagnosis.waiters import Obstacle, OnThread, StuckCallback, Suspended, Waiter, thread_name
 from sim.diagnosis.words import group_of, listed, threads_for, who
 from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, NoticeKind, Reason, ThreadId
 from sim.trace.model import Call, Moment, Nanoseconds, Position, Span, Window
@@ -28,59 +28,6 @@ from sim.trace.timeline import Timeline
 
 SETTLES: Nanoseconds = 100_000_000
 """How long a callback must have been at its line, or in its loop, until that counts as a wait."""
-
-
-@dataclass(frozen=True, slots=True)
-class OnThread:
-    """A thread, with the callback on it."""
-
-    thread: ThreadId
-
-
-@dataclass(frozen=True, slots=True)
-class Suspended:
-    """A coroutine callback that is on no thread and keeps its group."""
-
-    entity: EntityId
-
-
-Waiter: TypeAlias = OnThread | Suspended
-
-
-@dataclass(frozen=True, slots=True)
-class Obstacle:
-    """What a callback waits for, with a clause; it ends if one of ``by`` continues.
-
-    ``wanted`` is the service, or a ``WaitedFor``; ``needs_worker``: whether a thread is missing; ``group`` is
-    the group that has to admit it, "" for none.
-    """
-
-    wanted: str
-    text: str
-    by: tuple[Waiter, ...]
-    needs_worker: bool = False
-    group: str = ""
-
-    @property
-    def kind(self) -> WaitedFor:
-        """The kind of ``wanted``."""
-        return self.wanted if isinstance(self.wanted, WaitedFor) else WaitedFor.REPLY
-
-    @property
-    def steps(self) -> tuple[str, ...]:
-        """The steps from the callback to the one that blocks it: ``/add``, ``group A``."""
-        return tuple(filter(None, (self.wanted, "a thread" if self.needs_worker else self.group)))
-
-
-@dataclass(frozen=True, slots=True)
-class StuckCallback:
-    """A callback that waits for what cannot come: since when, for what, and until when (0: for ever)."""
-
-    waiter: Waiter
-    entity: EntityId
-    since: Nanoseconds
-    obstacle: Obstacle
-    until: Nanoseconds = 0
 
 
 def stands(position: Position, timeline: Timeline, at: Nanoseconds) -> bool:
@@ -134,8 +81,10 @@ class WaitForGraph:
         return frozenset(reached)
 
     def _in_order(self, deadlock: frozenset[Waiter]) -> tuple[StuckCallback, ...]:
-        """Sort by waiting: the last to wait first, each followed by one that it waits for, if possible."""
-        left = sorted((self.stuck[waiter] for waiter in deadlock), key=lambda each: -each.since)
+        """Sort by waiting: the last callback first, each followed by one that it waits for, if possible."""
+        left = sorted(
+            (self.stuck[waiter] for waiter in deadlock), key=lambda each: (not each.entity, -each.since)
+        )
         order = [left.pop(0)]
         while left:
             keepers = [each for each in left if each.waiter in order[-1].obstacle.by]
@@ -214,6 +163,9 @@ class WaitForGraph:
         if position.holder:
             holder = OnThread(position.holder)
             me = self._name(OnThread(position.thread))
+            if not position.waits_for_lock:
+                text = f"{me} waits for {thread_name(holder, self._timeline)} to end"
+                return Obstacle(WaitedFor.THREAD, text, (holder,))
             return Obstacle(WaitedFor.LOCK, f"{me} wants the lock that {self._name(holder)} keeps", (holder,))
         if position.call == "Rate.sleep":
             timer = self._waiting_of_rclpy(EntityKind.TIMER, span)

@@ -3,6 +3,7 @@
 import ast
 import linecache
 import sys
+import threading
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from itertools import takewhile
@@ -13,7 +14,7 @@ from sim.clock import RunClock
 from sim.interpreter.function_marks import calls_the_program, waits_for_keyboard
 from sim.probes.own_code import is_library, is_own, outwards
 from sim.probes.probe import Probe, RunningCallback
-from sim.trace.events import AnyEvent, CallbackAt, Doing, EntityId
+from sim.trace.events import AnyEvent, CallbackAt, Doing, EntityId, ThreadId
 from sim.trace.events.fields import SourcePlace
 
 _WAITING = ("sim.clock.", "threading", "queue")
@@ -21,7 +22,7 @@ _WAITING = ("sim.clock.", "threading", "queue")
 
 LOCK = "Lock.acquire"
 """The name that a position gives to every way of taking a lock."""
-
+_JOIN = "Thread.join"
 
 _TIMEOUTS = ("timeout_sec", "timeout", "time_to_wait")
 """The parameters that limit a wait, in seconds; negative numbers, infinity and None do not."""
@@ -46,8 +47,9 @@ class CallbackPositions:
         if not running:
             return
         tops, now = sys._current_frames(), self._clock.now()
+        threads = self._probe.threads()
         for ident, callback in running.items():
-            found = position_of(tops.get(ident), running)
+            found = position_of(tops.get(ident), running, threads)
             if found is None:
                 continue
             position, timeout = found
@@ -64,11 +66,12 @@ class CallbackPositions:
 
 
 def position_of(
-    top: FrameType | None, running: Mapping[int, RunningCallback]
+    top: FrameType | None, running: Mapping[int, RunningCallback], threads: Mapping[int, ThreadId]
 ) -> tuple[PositionFields, int] | None:
     """Return where a thread is, inside its callback if it runs one, and the timeout of its wait.
 
-    The timeout is in nanoseconds, 0 for none. None: the thread is outside the program's code.
+    The timeout is in nanoseconds, 0 for none; who joins a thread waits no longer than that does now. None:
+    the thread is outside the program's code. ``threads`` are the recorded threads by identifier.
     """
     stack = list(takewhile(lambda frame: frame not in calls_the_program, outwards(top)))
     own = [place for place, frame in enumerate(stack) if is_own(frame) and _is_written(frame)]
@@ -82,6 +85,13 @@ def position_of(
     frames = tuple((code.co_filename, code.co_name, line) for code, line in lines)
     thread = 0 if holder is None else holder.thread
     timeout = _timeout(inside[-1]) if inside and doing is not Doing.SLEEPS else 0
+    joined = _joined(inside[-1]) if call == _JOIN else None
+    if joined is not None and joined.ident is not None:
+        thread = threads.get(joined.ident, 0)
+        there = list(
+            takewhile(lambda frame: not is_own(frame), outwards(sys._current_frames().get(joined.ident)))
+        )
+        timeout = timeout or (_timeout(there[-1]) if there else 0)
     return (doing, call, frames, next(filter(None, loops), ("", 0)), thread), timeout
 
 
@@ -105,7 +115,7 @@ def _activity(inside: list[FrameType]) -> tuple[Doing, str]:
     if module.startswith("sim.ros."):
         return Doing.CALLS_ROS, own
     if any(str(frame.f_globals.get("__name__")).startswith(_WAITING) for frame in inside):
-        return Doing.WAITS, {"acquire": LOCK, "__enter__": LOCK, "join": "Thread.join"}.get(name, own)
+        return Doing.WAITS, {"acquire": LOCK, "__enter__": LOCK, "join": _JOIN}.get(name, own)
     return Doing.COMPUTES, ""
 
 
@@ -118,6 +128,12 @@ def _timeout(function: FrameType) -> int:
     values = function.f_locals
     seconds = next((values[name] for name in _TIMEOUTS if name in values), None)
     return int(seconds * 1e9) if isinstance(seconds, int | float) and 0 < seconds <= _LONGEST else 0
+
+
+def _joined(function: FrameType) -> threading.Thread | None:
+    """Return the thread for whose end a function waits."""
+    values = (function.f_locals.get(name) for name in ("self", "thread"))
+    return next((each for each in values if isinstance(each, threading.Thread)), None)
 
 
 def _lock_holder(inside: list[FrameType]) -> int:

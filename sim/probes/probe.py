@@ -16,14 +16,7 @@ from sim.probes.on_path.cbtui_probe.own_lines import awaiting_frames
 from sim.probes.own_code import call_into_ros, has_timeout, is_own, place_of_caller, raised_at
 from sim.probes.traced import MessageContents, TracedEntity, name_of
 from sim.trace import events
-from sim.trace.events import (
-    AnyEvent,
-    CallbackEnded,
-    CallbackStarted,
-    GroupKind,
-    Reason,
-    Severity,
-)
+from sim.trace.events import AnyEvent, CallbackEnded, CallbackStarted, GroupKind, Reason, Severity
 
 if TYPE_CHECKING:
     from sim.clock import RunClock
@@ -202,6 +195,10 @@ class Probe:
             if here.get("entity") and here.get("thread")
         }
 
+    def threads(self) -> dict[int, int]:
+        """The ids of the recorded threads, by identifier; any thread may call this."""
+        return {ident: here.get("thread", 0) for ident, here in list(self._everywhere.items())}
+
     def many_made(self, number: int, kind: str) -> None:
         """Warn that callbacks keep creating entities of one kind; the node has ``number`` of them."""
         self._warn(
@@ -340,7 +337,7 @@ class SilentProbe(Probe):
     visible = False
 
     def __init__(self, clock: "RunClock") -> None:
-        super().__init__(clock, _forget)
+        super().__init__(clock, lambda _: None)
 
     def place_of_call(self) -> tuple[str, int]:
         """Return no place: the caller is no part of the program."""
@@ -388,10 +385,6 @@ class PublishingProbe(SilentProbe):
         """Record a request whose service nobody offers, if calls are recorded."""
         if self._with_calls:
             self._program.request_lost(call, service)
-
-
-def _forget(_event: AnyEvent) -> None:
-    """Drop an event."""
 
 
 def _is_missing_response(error: BaseException) -> bool:

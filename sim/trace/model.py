@@ -207,7 +207,7 @@ class Position(Lasting):
     frames: tuple[Frame, ...]
     loop: tuple[str, int] = ("", 0)
     holder: ThreadId = 0
-    """The thread whose callback has the lock that it waits for; 0 for none."""
+    """The thread whose callback has the lock that it waits for, or for whose end it waits; 0 for none."""
     until: Nanoseconds = 0
     """When the timeout of its wait is over; 0 if it has none, or does not wait."""
 

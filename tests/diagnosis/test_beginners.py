@@ -43,6 +43,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("call_in_subscription", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("wait_for_future", "self-made-deadlock", "time.sleep(0.1)", "add_done_callback"),
         ("busy_wait_for_future", "self-made-deadlock", "while not future.done():", "add_done_callback"),
+        ("join_in_timer", "self-made-deadlock", "thread.join()", "without join()"),
         ("while_true", "still-computing", "while True:", "return from tick, and go on in on_ready;"),
         (
             "busy_wait_in_service",
@@ -158,3 +159,18 @@ def test_it_is_told_who_sets_what_a_loop_waits_for() -> None:
     timeline = run_to_end(program_setup(PROGRAMS / "busy_wait_in_service.py", 2.0)).timeline
     told = [each.rule.explain(each, timeline) for each in diagnose(timeline)]
     assert told[0].why.endswith("does, and it waits for what on_closed sets")
+
+
+def test_a_circle_through_a_joined_thread_names_the_thread_and_is_over_with_its_timeout(
+    tmp_path: Path,
+) -> None:
+    text = (PROGRAMS / "join_in_timer.py").read_text()
+    found = diagnose(run_to_end(program_setup(PROGRAMS / "join_in_timer.py", 4.0)).timeline)[0]
+    assert found.ring == ("tick", "the end of a thread", "Thread-1 (work)", "/fetch", "group A", "tick")
+    for end, there in ((".join()", ".join(timeout=9.0)"), ("Request())", "Request(), timeout_sec=9.0)")):
+        program = tmp_path / "node.py"
+        program.write_text(text.replace(end, there))
+        timeline = run_to_end(program_setup(program, 4.0)).timeline
+        told = [each.rule.explain(each, timeline) for each in diagnose(timeline)]
+        assert told[0].what.startswith("tick waits in vain for the end of a thread until 9.5 s; ")
+        assert not told[0].for_ever

@@ -26,7 +26,8 @@ from sim.diagnosis.rule import (
 )
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_rounds, edits_for_steps
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.wait_for_graph import SETTLES, StuckCallback, WaitForGraph, stands
+from sim.diagnosis.wait_for_graph import SETTLES, WaitForGraph, stands
+from sim.diagnosis.waiters import StuckCallback
 from sim.diagnosis.words import awaiting, must_answer, often, threads_for, until_when, who, with_threads
 from sim.trace.events import EntityId, EntityKind, Reason
 from sim.trace.model import AWAIT, Blocked, Nanoseconds, Window
@@ -67,6 +68,8 @@ class SelfMadeDeadlock(Rule):
             cure = f"remove sleep(), and have a timer of its period do one step at each call; or {keep}"
         elif about == WaitedFor.CLOCK:
             cure = f"return, and let a timer of the node's clock do what comes later; or {apart}"
+        elif about == WaitedFor.THREAD:
+            cure = f"return from {subject} without join(), and let the thread do what comes later; or {apart}"
         stands = timeline.positions_of(found.subject, Window(found.at, found.until + 1))
         awaits = bool(stands) and stands[-1].call == AWAIT
         answers = must_answer(found.subject, timeline)
@@ -153,6 +156,7 @@ _WHY = {
         "simulated time goes on when the executor takes the messages of /clock, which needs a group that "
         "lets it in and a thread"
     ),
+    WaitedFor.THREAD: "the thread waits for what comes only once the callback that joins it has returned",
     WaitedFor.LOCK: "each keeps its lock while it waits for the other's, so neither lets go",
     _LOCK_AND_CALL: "the lock is held during a call, and whoever has to answer needs it",
 }
@@ -245,7 +249,7 @@ def _deadlocks(
     seen: set[tuple[Nanoseconds, ...]] = set()
     for moment, until in _moments(view):
         graph = WaitForGraph(view.timeline, moment)
-        stuck = frozenset(each.entity for each in graph.stuck.values())
+        stuck = frozenset(each.entity for each in graph.stuck.values() if each.entity)
         for deadlock in graph.deadlocks():
             key = tuple(each.since for each in deadlock)
             if key not in seen:
@@ -298,9 +302,10 @@ def _found(
         key = (obstacle.wanted, obstacle.by) if obstacle.needs_worker else obstacle.text
         clauses.setdefault(key, obstacle.text)
     detail = "; ".join(dict.fromkeys(clauses.values()))
-    others = [each.entity for each in deadlock if each.entity != closing.entity]
+    callbacks = [each.entity for each in deadlock if each.entity]
+    others = [each for each in callbacks if each != closing.entity]
     culprit = others[0] if others else closing.entity
-    ring = (step for each in deadlock for step in (who(each.entity, timeline), *each.obstacle.steps))
+    ring = (step for each in deadlock for step in (each.name(timeline), *each.obstacle.steps))
     return Finding(
         rule,
         closing.since,
@@ -308,7 +313,7 @@ def _found(
         closing.entity,
         culprit,
         about=closing.obstacle.wanted,
-        size=len(deadlock),
+        size=len(callbacks),
         detail=detail,
         stuck=stuck,
         ends=min((each.until for each in deadlock if each.until), default=0),
