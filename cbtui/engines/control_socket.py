@@ -26,9 +26,10 @@ _FIRST_NUMBER = 1_000_000
 
 
 class LineRequest(msgspec.Struct, frozen=True, tag="ask"):
-    """Runs a line."""
+    """Runs a line; with ``asks_who`` the run says first which one it is."""
 
     text: str
+    asks_who: bool = False
 
 
 class InterruptRequest(msgspec.Struct, frozen=True, tag="interrupt"):
@@ -83,10 +84,14 @@ def runtime_folder() -> Path:
 
 
 class ControlServer:
-    """Receives lines for one run; thread-safe. ``send`` commands its engine, ``take`` gets its events."""
+    """Receives lines for one run; thread-safe. ``send`` commands its engine, ``take`` gets its events.
 
-    def __init__(self, send: Callable[[Command], None]) -> None:
+    ``title`` is the run's name for the person who sent a line.
+    """
+
+    def __init__(self, send: Callable[[Command], None], title: str = "") -> None:
         self._send = send
+        self._title = title
         self._lock = threading.Lock()
         self._next = _FIRST_NUMBER
         self._answers: dict[LineId, SimpleQueue[ServerMessage]] = {}
@@ -157,6 +162,9 @@ class ControlServer:
         with connection, suppress(OSError, EOFError, msgspec.DecodeError):
             question = _decode_question(connection.recv_bytes())
             if isinstance(question, LineRequest):
+                if question.asks_who:
+                    who = f"cbtui: process {os.getpid()} answers: {self._title}; --engine chooses another one"
+                    connection.send_bytes(_encode(LineOutput(who, error=True)))
                 self._carry_out(connection, question.text)
 
     def _carry_out(self, connection: Connection, text: str) -> None:
@@ -210,6 +218,16 @@ def connect(process: int | None) -> Connection:
     raise NoEngine(f"no run{'' if process is None else f' of process {process}'} listens in {folder}")
 
 
+def several_listen() -> bool:
+    """Whether more than one run listens."""
+    found = 0
+    with suppress(UnusableFolderError):
+        for path in _sockets(runtime_folder()):
+            with suppress(OSError), Client(str(path), family="AF_UNIX"):
+                found += 1
+    return found > 1
+
+
 def _sockets(folder: Path) -> list[Path]:
     """The existing sockets, newest first."""
     made = dict[Path, float]()
@@ -220,11 +238,11 @@ def _sockets(folder: Path) -> list[Path]:
 
 
 class RemoteLine:
-    """A line that runs in another process."""
+    """A line that runs in another process, which says first which one it is if ``asks_who``."""
 
-    def __init__(self, connection: Connection, text: str) -> None:
+    def __init__(self, connection: Connection, text: str, *, asks_who: bool = False) -> None:
         self._connection = connection
-        connection.send_bytes(_encode(LineRequest(text)))
+        connection.send_bytes(_encode(LineRequest(text, asks_who)))
 
     def next_answer(self) -> ServerMessage:
         """Wait for its next output or its result; ``LineResult(None)`` if the run ends first."""

@@ -14,7 +14,7 @@ class ListeningSession:
         self._deliver = deliver
         self._ended = ended
         self._session = ProcessSession(setup, self._take, self._end)
-        self._control = ControlServer(self._session.send)
+        self._control = ControlServer(self._session.send, setup.title)
 
     def start(self) -> str | None:
         """Start the engine and listen; returns a sentence if the socket cannot be opened."""

@@ -38,7 +38,7 @@ def sent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> "Queue[Command]":
 @pytest.fixture
 def server(sent: "Queue[Command]") -> Iterator[ControlServer]:
     before = set(threading.enumerate())
-    server = ControlServer(sent.put)
+    server = ControlServer(sent.put, "One shared group")
     server.start()
     yield server
     server.stop()
@@ -87,6 +87,22 @@ def test_an_interruption_and_a_client_that_goes_away_end_the_line(
     line = given(sent).line
     left.close()
     assert sent.get(timeout=PATIENCE) == InterruptLine(line)
+
+
+@pytest.mark.parametrize("others", [0, 1])
+def test_where_several_runs_listen_the_one_that_answers_is_named(
+    server: ControlServer, sent: "Queue[Command]", capsys: pytest.CaptureFixture[str], others: int
+) -> None:
+    (path,) = runtime_folder().iterdir()
+    if others:
+        os.link(path, path.with_name("1.sock"))
+    client = threading.Thread(target=cli.main, args=(["ros2", "topic", "list"],))
+    client.start()
+    line = given(sent).line
+    server.take([LineSaid(0, line, "/odom", False), LineEnded(0, line, 0)])
+    client.join()
+    who = f"cbtui: process {os.getpid()} answers: One shared group; --engine chooses another one\n"
+    assert capsys.readouterr() == ("/odom\n", who if others else "")
 
 
 def test_the_end_of_the_run_ends_every_line(server: ControlServer, sent: "Queue[Command]") -> None:

@@ -6,7 +6,14 @@ from contextlib import closing
 from pathlib import Path
 from typing import TypeVar
 
-from cbtui.engines.control_socket import LineOutput, LineResult, NoEngine, RemoteLine, connect
+from cbtui.engines.control_socket import (
+    LineOutput,
+    LineResult,
+    NoEngine,
+    RemoteLine,
+    connect,
+    several_listen,
+)
 from cbtui.engines.follow import EngineLostError, FollowedRun
 from cbtui.engines.listening import ListeningSession
 from cbtui.runs.headless.program_log import ProgramLog, write_line
@@ -27,8 +34,8 @@ _LINE = 1
 def run_line(words: Sequence[str], process: int | None) -> int:
     """Run the line ``ros2 WORDS``; returns its exit status.
 
-    It goes to the run of that process number; for None to the run started last, or, if there is none, to an
-    engine in which nothing else runs.
+    It goes to the run of that process number; for None to the run started last, which says who it is if there
+    are others, or, if there is none, to an engine in which nothing else runs.
     """
     text = shlex.join(["ros2", *words])
     try:
@@ -42,7 +49,7 @@ def run_line(words: Sequence[str], process: int | None) -> int:
             "give its terminal and this one the same XDG_RUNTIME_DIR, a folder of your own"
         )
         return _StandaloneLine(text).run()
-    return _follow_remote(RemoteLine(connection, text))
+    return _follow_remote(RemoteLine(connection, text, asks_who=process is None and several_listen()))
 
 
 def _follow_remote(line: RemoteLine) -> int:
