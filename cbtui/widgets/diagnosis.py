@@ -243,11 +243,11 @@ def call_note(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
     latest = max(calls, key=lambda call: call.replied or 0, default=None)
     if latest is None or latest.replied is None or at - latest.replied > _REPLY_STAYS:
         return ()
-    return f"{latest.service} replied {_response(latest)}", f"{latest.service} replied"
+    return f"{latest.service} replied {response_of(latest)}", f"{latest.service} replied"
 
 
-def _response(call: Call) -> str:
-    """The fields of a response without its class and an empty message; of a success, the message alone."""
+def response_of(call: Call) -> str:
+    """Return a response's fields without its class and an empty message; of a success, the message alone."""
     inside = call.response.partition("(")[2].removesuffix(")").removesuffix(", message=''")
     return inside.removeprefix("success=True, message=") or call.response
 

@@ -6,11 +6,13 @@ from typing import NamedTuple
 
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.screens.parts.copying import what_runs
+from cbtui.widgets.diagnosis import response_of
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.log.line import line_of
 from cbtui.widgets.narrator import narration, returning, waiting
 from sim.diagnosis import location_text, with_stop
 from sim.quantities.durations import duration, timestamp
+from sim.quantities.nanoseconds import SECOND
 from sim.quantities.plural import counted
 from sim.trace.descriptions import name_of
 from sim.trace.events import Logged, Severity
@@ -58,7 +60,7 @@ class Narrative:
             self._begun.clear()
             self._problems.clear()
         window = Window(self._told_to, now + 1)
-        found = sorted([*self._calls(window), *self._waits(window)])
+        found = sorted([*self._calls(window), *self._waits(window), *self._service_calls(window)])
         self._told_to = now
         return [*(each.text for each in found), *self._log(now), *self._problems_among(findings, now)]
 
@@ -82,6 +84,19 @@ class Narrative:
                     took = duration(end - wait.since)
                     ends = f"{timestamp(end)}: {entity.spoken_name} waits no longer, after {took}"
                     yield from self._begin_and_end(entity.id, wait, now, begins, ends)
+
+    def _service_calls(self, window: Window) -> Iterator[News]:
+        """Yield the calls from outside, their replies, and which have had none for a second."""
+        for call in self._timeline.calls_within(Window(max(0, window.start - SECOND), window.end)):
+            late = call.sent + SECOND
+            moments = [(call.sent, "is called")]
+            if call.replied is None or call.replied > late:
+                moments.append((late, "has had no reply for 1.0 s"))
+            if call.replied is not None:
+                moments.append((call.replied, f"replied {response_of(call)}"))
+            for at, what in moments if call.caller == 0 else ():
+                if window.start < at < window.end:
+                    yield News(at, f"{timestamp(at)}: {call.service} {what}")
 
     def _begin_and_end(
         self, subject: int, bar: Span | Wait, now: Nanoseconds, begins: str, ends: str

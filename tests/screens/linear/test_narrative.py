@@ -4,7 +4,7 @@ from cbtui.runs.live.findings import FindingsMonitor
 from cbtui.screens.linear.narrative import LEAST, Narrative
 from cbtui.screens.linear.plain import plain, plain_lines
 from sim.trace.timeline import Timeline
-from tests.support.builder import ns
+from tests.support.builder import Run, ns
 from tests.support.runs import shared_group_run
 
 EVENTS = shared_group_run().events
@@ -31,6 +31,30 @@ def test_a_long_call_is_told_as_it_goes_on_and_as_it_ends() -> None:
     assert lines.count("14.000 s: timer_callback returns after 10.0 s, group A is free") == 1
     assert any("odom_callback waits, 1 queued: group A held by timer_callback" in line for line in lines)
     assert any("odom_callback waits no longer, after" in line for line in lines)
+
+
+def test_calls_from_outside_are_told_with_their_replies_and_when_those_are_late() -> None:
+    run = Run()
+    run.call("/quick", 1.0, 1.5)
+    run.call("/slow", 2.0, 4.0)
+    run.call("/lost", 5.0)
+    run.stop(8.0)
+    for looks in ((8.0,), (1.0, 1.2, 3.0, 3.5, 6.0, 8.0)):
+        timeline, lines = Timeline(), list[str]()
+        narrative, past = Narrative(timeline), -1
+        for now in map(ns, looks):
+            timeline.extend([event for event in run.events if past < event.t <= now])
+            lines += narrative.news(now, ())
+            past = now
+        assert [line for line in lines if "/" in line] == [
+            "1.000 s: /quick is called",
+            "1.500 s: /quick replied success=True",
+            "2.000 s: /slow is called",
+            "3.000 s: /slow has had no reply for 1.0 s",
+            "4.000 s: /slow replied success=True",
+            "5.000 s: /lost is called",
+            "6.000 s: /lost has had no reply for 1.0 s",
+        ]
 
 
 def test_it_does_not_matter_when_one_looks() -> None:
