@@ -79,7 +79,9 @@ class SelfMadeDeadlock(Rule):
         if not cure and answers:
             cure = f"after call_async() {awaiting(subject)}; to wait inside it, {apart}"
         if not cure:
-            if not stands or stands[-1].call in ("", "Client.call"):
+            # Where in a busy loop a thread was seen, in a call or between, is chance.
+            computes = bool(stands) and not stands[-1].call and not stands[-1].loop[0]
+            if not stands or computes or stands[-1].call == "Client.call":
                 cure = f"use call_async() and return from {subject}, or {apart}"
             else:
                 cure = (
