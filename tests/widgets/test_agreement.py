@@ -16,7 +16,8 @@ from cbtui.widgets.code.source_files import SourceFiles
 from cbtui.widgets.diagnosis import diagnosis_at
 from cbtui.widgets.factory.scene import FactoryScene, scene_of
 from cbtui.widgets.factory.texts import headlines, wait_texts
-from cbtui.widgets.lanes.rows import GroupLane, all_lanes
+from cbtui.widgets.lanes.details import details_of
+from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, all_lanes
 from cbtui.widgets.lanes.service_calls import LatestCalls
 from cbtui.widgets.lanes.status import LaneStatus
 from cbtui.widgets.scene import paint_scene
@@ -27,7 +28,7 @@ from sim.quantities.durations import duration
 from sim.trace.descriptions import name_of
 from sim.trace.events import GroupId, Reason
 from sim.trace.figures.concurrency import Concurrency
-from sim.trace.figures.waiting import waits_for_others
+from sim.trace.figures.waiting import WORTH_TELLING, waits_for_others
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
@@ -63,6 +64,17 @@ def test_all_panes_say_the_same_of_any_moment(number: int, at: int) -> None:
     assert_panes_agree(timeline, min(at, timeline.end), FILES)
 
 
+@pytest.mark.parametrize("number", range(2))
+@pytest.mark.parametrize("after", [0, ns(0.003), ns(0.01)])
+def test_all_panes_say_the_same_of_the_beginnings_of_waits(number: int, after: int) -> None:
+    timeline = timeline_of(number)
+    whole = Window(0, timeline.end)
+    begun = {wait.since for entity in timeline.entities for wait in timeline.waits_of(entity, whole)}
+    assert begun
+    for since in sorted(begun)[:: max(1, len(begun) // 20)]:
+        assert_panes_agree(timeline, min(since + after, timeline.end), FILES)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
 def test_all_panes_say_the_same_of_any_moment_of_a_lesson(lesson: Lesson) -> None:
@@ -83,6 +95,7 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
     in_factory = {area.group.id: area.waiting for area in scene.areas}
     assert by_lanes == {group: in_factory[group] for group in by_lanes}
     assert_headline_agrees(scene)
+    assert_short_waits_count_nowhere(timeline, at, files)
     told = diagnosis_at(timeline, at, Concurrency(timeline))
     in_code = {
         mark.entity: mark.texts[0] for marks in marks_at(timeline, at, files).values() for mark in marks
@@ -111,6 +124,19 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
         more = re.search(r"; (\d+) more", told.at_length)
         assert 1 + (int(more[1]) if more else 0) == len(waits)
     assert len(scene.workers) <= max(1, sum(executor.threads for executor in timeline.executors.values()))
+
+
+def assert_short_waits_count_nowhere(timeline: Timeline, at: int, files: SourceFiles) -> None:
+    """What has only just become ready waits in no pane, as the diagnosis line does not count it."""
+    moment = timeline.moment(at)
+    short = {each.entity: each for each in moment.waiting.values() if at - each.since < WORTH_TELLING}
+    in_code = [mark for marks in marks_at(timeline, at, files).values() for mark in marks]
+    assert not any("waits" in mark.texts[0] for mark in in_code if mark.entity in short)
+    status = LaneStatus(timeline, Window(0, at + 1), moment, LatestCalls(timeline), Charset.BRAILLE, 25)
+    for lane in all_lanes(timeline, ""):
+        if isinstance(lane, MemberLane | SoleLane) and lane.entity.id in short:
+            assert "late" not in status.of(lane, None).text
+            assert "waits" not in details_of(timeline, short[lane.entity.id], at).title
 
 
 def assert_headline_agrees(scene: FactoryScene) -> None:

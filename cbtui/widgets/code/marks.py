@@ -12,6 +12,7 @@ from cbtui.widgets.lanes.names import short_thread
 from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.events import Doing, EntityId
+from sim.trace.figures.waiting import WORTH_TELLING
 from sim.trace.model import EntityInfo, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
@@ -154,7 +155,7 @@ def _doing(
         texts = (f"▶ {threads} {lasted}", f"▶ {lasted}")
         return CallbackActivity.RUNS, (*_blocked_text(running, moment, lasted), *texts), running[0].start
     wait = moment.waiting.get(entity.id)
-    if wait is not None:
+    if wait is not None and moment.at - wait.since >= WORTH_TELLING:
         hatch, lasted = GLYPHS[Charset.BRAILLE].hatch[wait.reason], duration(moment.at - wait.since)
         waited = f"{hatch} waits {lasted}"
         whys = (f"{waited}: {why_waiting(wait, timeline)}", waited, f"{hatch} {lasted}")

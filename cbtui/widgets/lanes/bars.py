@@ -211,9 +211,9 @@ class BarPainter:
                 if row.cells[: stretch.first + 1][-2:] == [self.glyphs.line] * 2:
                     row.cells[stretch.first] = self.glyphs.line_start
                 span = stretch.top
-                took = self._took(span)
+                runs = f"runs {self._took(span)}".rstrip()
                 thread = short_thread(self.timeline.threads[span.thread].name)
-                texts = (f"runs {took} on {thread}", f"runs {took}", "runs")
+                texts = (f"{runs} on {thread}", runs, "runs")
                 free = [place for place, _ in stretch.places() if place not in marks]
                 self._words(row, *_longest_part(free), texts)
             self._failure(row, stretch)
@@ -248,15 +248,17 @@ class BarPainter:
         took = self._took(wait)
         verb = "waits" if wait.end is None or wait.end > self.told else "waited"
         reasons = self._words_of(wait)
+        if not took:
+            return reasons
         full = (f"{verb} {took}: {reason}" for reason in reasons)
         return (*full, f"{took}: {reasons[-1]}", *reasons, f"{verb} {took}", took)
 
     def _took(self, interval: Interval) -> str:
-        """Return how long an interval has lasted at ``told``; its full length if it begins there or later."""
+        """Return how long an interval has lasted at ``told``; "" if it begins then or later."""
+        if interval.start >= self.told:
+            return ""
         end = self.timeline.end if interval.end is None else interval.end
-        if interval.start < self.told:
-            end = min(end, self.told)
-        return duration(max(0, end - interval.start))
+        return duration(max(0, min(end, self.told) - interval.start))
 
     def _words_of(self, wait: Wait) -> tuple[str, ...]:
         if wait.reason is Reason.EVENT_QUEUE:

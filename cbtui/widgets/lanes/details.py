@@ -11,6 +11,7 @@ from cbtui.widgets.lanes.selection import Bar, Selection
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import doing_of, name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind
+from sim.trace.figures.waiting import WORTH_TELLING
 from sim.trace.model import Call, EntityInfo, Nanoseconds, Position, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -165,7 +166,10 @@ def _reason(timeline: Timeline, wait: Wait) -> str:
 
 
 def _who_waits(timeline: Timeline, wait: Wait, now: Nanoseconds) -> str:
-    verb = "waits" if wait.end is None or wait.end > now else "waited"
+    lasts = wait.end is None or wait.end > now
+    verb = "waits" if lasts else "waited"
+    if lasts and wait.start <= now < wait.since + WORTH_TELLING:
+        verb = "is ready"
     return f"{_with_letter(timeline, wait.entity)} {verb}"
 
 
