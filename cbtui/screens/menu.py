@@ -30,7 +30,16 @@ from cbtui.terminal.textual_internals import is_being_removed
 from cbtui.widgets.banner import Banner
 from cbtui.widgets.description_pane import DescriptionPane, EntryDescription, of_file, of_lesson, of_puzzle
 from cbtui.widgets.key_bar import KeyBar
-from cbtui.widgets.menu_list import MenuChoice, MenuList, MenuRows, WideMenuRows, id_of, with_words
+from cbtui.widgets.menu_list import (
+    MenuChoice,
+    MenuList,
+    MenuRows,
+    Taught,
+    WideMenuRows,
+    found_first,
+    id_of,
+    with_words,
+)
 from cbtui.widgets.menu_search import MenuSearch
 from cbtui.widgets.miniature import Miniature, PreviewPicture
 from lessons.catalogue import find
@@ -77,6 +86,7 @@ class MenuScreen(SizedScreen[None]):
         self._previews = Previews(self, open_session, charset, lambda: self._previewed)
         self._filled_with: object = None
         self._words = ""
+        self._is_old_search = False
         self._latest: RecentEntry | None = None
         """What was opened last before the menu was left."""
 
@@ -101,6 +111,9 @@ class MenuScreen(SizedScreen[None]):
         What was opened meanwhile, by whatever way, is highlighted.
         """
         self._progress.refresh()
+        self._is_old_search = bool(self._words)
+        if self._is_old_search:
+            self._list.focus()
         if self._filled_with == self._contents:
             self._describe()
         else:
@@ -147,13 +160,12 @@ class MenuScreen(SizedScreen[None]):
         self._filled_with = self._contents
         kind = WideMenuRows if self.layout_now is Layout.GRID else MenuRows
         rows = kind(self._lessons, self._stages, self._now())
-        wanted = with_words(self._words)
-        listed = ((unit, each) for unit, each in self._taught() if wanted(each))
-        self._list.show(listed, filter(wanted, self._recents.files), rows)
+        files = filter(with_words(self._words), self._recents.files)
+        self._list.show(found_first(tuple(self._taught()), self._words), files, rows)
         self._tell_troubles()
         self._describe()
 
-    def _taught(self) -> Iterator[tuple[str, Lesson | Puzzle]]:
+    def _taught(self) -> Iterator[Taught]:
         """Every lesson and its puzzles, each with its unit."""
         for lesson in self._lessons:
             yield lesson.unit, lesson
@@ -260,8 +272,8 @@ class MenuScreen(SizedScreen[None]):
     def _show_found(self, words: str) -> None:
         """Show the results, and open a lesson at once if only its number begins with the typed digits."""
         self._words = words
-        self._list.highlight_first()
         self._fill()
+        self._list.highlight_first()
         found = list(filter(with_words(words), self._lessons)) if words.isdecimal() else []
         if len(found) == 1 and words == str(found[0].number):
             self._list.choose(found[0].id)
@@ -326,9 +338,15 @@ class MenuScreen(SizedScreen[None]):
         self._list.action_cursor_down()
 
     def action_search(self) -> None:
-        """Open the search line."""
+        """Open the search line, an empty one where the menu was left since the last search."""
         if not self.query(MenuSearch):
             self.mount(MenuSearch(), before="#choice")
+        elif self._is_old_search:
+            search = self.query_one(MenuSearch)
+            with search.prevent(Input.Changed):
+                search.clear()
+            self._show_found("")
+        self._is_old_search = False
         self.set_focus(self.query_one(MenuSearch))  # at once, as the next key is for it
 
     def action_jump(self) -> None:

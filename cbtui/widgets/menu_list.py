@@ -21,6 +21,8 @@ from lessons.lesson import Lesson
 from lessons.puzzles import Puzzle
 
 MenuChoice: TypeAlias = Lesson | RecentEntry | Puzzle
+Taught: TypeAlias = tuple[str, Lesson | Puzzle]
+"""A lesson or a puzzle with its unit."""
 
 _KINDS = {RecentKind.PROGRAM: "program", RecentKind.RECORDING: "recording"}
 RECENT = "Recent"
@@ -55,13 +57,8 @@ class MenuList(PageableOptionList, inherit_bindings=False):
         """Return the lesson or file of an option."""
         return self._choices[option_id]
 
-    def show(
-        self, lessons: Iterable[tuple[str, Lesson | Puzzle]], files: Iterable[RecentEntry], rows: "MenuRows"
-    ) -> None:
-        """Show entries; the highlight stays on its entry, or goes to the first one.
-
-        Each lesson and puzzle comes with its unit.
-        """
+    def show(self, lessons: Iterable[Taught], files: Iterable[RecentEntry], rows: "MenuRows") -> None:
+        """Show entries; the highlight stays on its entry, or goes to the first one."""
         before = self.highlighted_option
         options: list[Option] = []
         self._choices = {}
@@ -183,6 +180,19 @@ def with_words(text: str) -> Callable[[MenuChoice], bool]:
     if text.isdecimal():
         return lambda choice: isinstance(choice, Lesson) and str(choice.number).startswith(text)
     return lambda choice: all(word in _said(choice) for word in words)
+
+
+def found_first(taught: Sequence[Taught], text: str) -> list[Taught]:
+    """Return the lessons and puzzles that a text finds, those first whose titles have all of its words.
+
+    If there are such ones, the others need the text as it was typed.
+    """
+    found = [each for each in taught if with_words(text)(each[1])]
+    words, phrase = text.casefold().split(), text.casefold().strip()
+    titled = [each for each in found if all(word in each[1].title.casefold() for word in words)]
+    if not titled or text.isdecimal():
+        return found
+    return titled + [each for each in found if each not in titled and phrase in _said(each[1])]
 
 
 def _said(choice: MenuChoice) -> str:

@@ -10,7 +10,9 @@ from cbtui.app import CbtuiApp
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
+from cbtui.widgets.menu_list import MenuList
 from cbtui.widgets.menu_search import MenuSearch
+from lessons.lesson import Lesson
 from tests.support.console import NARROW, TALL, predict
 from tests.support.exercises import until
 from tests.support.fake_session import FakeEngines
@@ -43,6 +45,40 @@ async def test_words_show_only_what_has_them_and_escape_shows_all(program: Path)
         assert "Split groups" in text_of(app)
         assert "my_node.py" in text_of(app)
         assert not app.screen.query(MenuSearch)
+
+
+async def test_a_title_is_found_first_and_chosen_and_what_only_has_the_words_somewhere_is_hidden() -> None:
+    app = menu()
+    async with app.run_test(size=TALL) as pilot:
+        await pilot.press("slash", *"call in")
+        await pilot.pause()
+        chosen = app.screen.query_one(MenuList).chosen
+        assert isinstance(chosen, Lesson)
+        assert chosen.id == "call-in-a-callback"
+        assert "Single thread" not in text_of(app)
+
+
+async def test_what_is_found_by_its_text_alone_is_shown_too() -> None:
+    app = menu()
+    async with app.run_test(size=TALL) as pilot:
+        await pilot.press("slash", *"single")
+        await pilot.pause()
+        assert "Single thread" in text_of(app)
+        assert "One shared group" in text_of(app)
+
+
+async def test_a_search_begins_anew_after_a_lesson(program: Path) -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("slash", *"split")
+        app.push_screen(Screen())
+        await pilot.pause()
+        app.pop_screen()
+        await pilot.pause()
+        await pilot.press("slash", *"my_n")
+        await pilot.pause()
+        assert [each.value for each in app.screen.query(MenuSearch)] == ["my_n"]
+        assert "my_node.py" in text_of(app)
 
 
 async def test_digits_typed_at_once_open_their_lesson() -> None:
