@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from cbtui.commands.options import changes, more_lessons, values
 from cbtui.commands.options.seeds import add_seed, check_seed
-from cbtui.commands.options.targets import file_of, lesson_of, refuse
+from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, refuse
 from cbtui.text.output import complain, say
 
 if TYPE_CHECKING:
@@ -16,7 +16,11 @@ if TYPE_CHECKING:
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    parser.add_argument("lesson", metavar="LESSON", help="a lesson with an exercise")
+    parser.add_argument(
+        "lesson",
+        metavar="LESSON",
+        help="a lesson with an exercise, or the file that cbtui start named after it",
+    )
     parser.add_argument(
         "file", metavar="FILE.py", nargs="?", help="the file to check (the one that cbtui start put here)"
     )
@@ -39,6 +43,8 @@ def add_limit(parser: argparse.ArgumentParser, usual: float) -> None:
 
 def check(options: argparse.Namespace) -> int:
     """Check a file; returns the exit code: 0 it passes every check, 1 it does not."""
+    if is_file_name(options.lesson) and options.file is None:
+        options.file, options.lesson = options.lesson, _lesson_named_by(options.lesson)
     lesson = exercise_of(options.lesson)
     real = changes.real_ros_of(options)
     check_seed(options.seed, lesson.setup.clock)
@@ -76,6 +82,17 @@ def exercise_of(name: str) -> "Lesson":
         others = ", ".join(each.id for each in lessons() if each.exercise is not None)
         refuse(f"the lesson {name} has no exercise; these have one: {others}")
     return lesson
+
+
+def _lesson_named_by(file: str) -> str:
+    """Return the id of the lesson after which a learner's file is named."""
+    from lessons.catalogue import lessons
+
+    of_lessons = {each.file_name: each.id for each in lessons() if each.exercise is not None}
+    lesson = of_lessons.get(file_of(file).name)
+    return lesson or refuse(
+        f"{file} is not named after a lesson; name that before it: cbtui check LESSON {file}"
+    )
 
 
 def _file(lesson: "Lesson", name: str | None) -> Path:

@@ -31,6 +31,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--to",
+        "--for",
         dest="end",
         metavar="SECONDS",
         type=values.duration,
@@ -43,6 +44,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
             type=values.threads,
             help=f"number of threads of {letter.upper()}'s executor, instead of its own",
         )
+        changes.add_groups(parser, f"-{letter}")
         changes.add_distro(parser, f"-{letter}")
         changes.add_on(parser, f"-{letter}")
     inputs.add_options(parser)
@@ -75,8 +77,13 @@ def _check(options: argparse.Namespace) -> None:
         is_real = getattr(options, f"on_{letter}") != "model"
         if is_real and options.inputs is not None:
             refuse(f"a run on real ROS 2 cannot be repeated; leave out --inputs, or --on-{letter}")
-        given_options = {name: getattr(options, f"{name}_{letter}") for name in ("threads", "distro")}
-        for option, given in (*given_options.items(), ("on", is_real)):
+        given_options = {
+            "threads": getattr(options, f"threads_{letter}"),
+            "group": getattr(options, f"groups_{letter}"),
+            "distro": getattr(options, f"distro_{letter}"),
+            "on": is_real,
+        }
+        for option, given in given_options.items():
             if given and is_recording(name):
                 refuse(f"{name} is a recording and stays as it is; leave out --{option}-{letter}")
     if all(map(is_recording, names)):
@@ -97,8 +104,10 @@ def _changes(options: argparse.Namespace, letter: str) -> "Changes":
     from cbtui.runs.setup.changes import Changes
 
     real = changes.real_ros_of(options, f"-{letter}")
-    threads, distro = (getattr(options, f"{name}_{letter}") for name in ("threads", "distro"))
-    return Changes(threads, distro=distro, real=real)
+    threads, groups, distro = (
+        getattr(options, f"{name}_{letter}") for name in ("threads", "groups", "distro")
+    )
+    return Changes(threads, dict(groups), distro=distro, real=real)
 
 
 def _compared_run(name: str, changed: "Changes", arguments: list[str]) -> "ComparedRun":

@@ -72,6 +72,13 @@ def test_a_lesson_can_be_compared_with_itself_with_other_threads() -> None:
     assert "  run B waits: no free worker" in text.splitlines()
 
 
+def test_a_lesson_can_be_compared_with_itself_with_a_callback_in_another_group() -> None:
+    words = ("--for", "8", "--call", "2.55", "--group-b", "odom_callback=own", "--threads-b", "2")
+    text = told("compare", "shared-group", "shared-group", *words)
+    assert "run B  shared-group, odom own group, 2 threads\n0 to 8 s\n" in text
+    assert figures(text, "odom_callback", "lost")[2].endswith("fewer")
+
+
 def test_a_program_can_be_compared_with_itself_on_another_release(tmp_path: Path) -> None:
     node = tmp_path / "node.py"
     node.write_text(_CALLS_OUT_OF_TIME)

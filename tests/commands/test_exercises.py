@@ -156,6 +156,7 @@ def test_a_lesson_without_an_exercise_is_refused_with_those_that_have_one(
             "there is no split_groups.py here; name your file, or begin one with cbtui start",
         ),
         (["check", "split-groups", "gone.py"], "there is no file gone.py"),
+        (["check", "gone.py"], "there is no file gone.py"),
         (["check", "split-groups", "."], ". is a folder; name the file in it"),
         (["check", "split-groups", "--limit", "0"], "a run cannot last 0 seconds"),
         (["--lessons", "nowhere", "check", "split-groups"], "there is no folder nowhere"),
@@ -193,6 +194,16 @@ def test_check_ends_with_0_when_all_pass_and_remembers_that(
     assert shown[:2] == ["", "my_own.py runs: 0.0 s of 30 s"]
     assert shown[-2:] == ["my_own.py runs: 30.0 s of 30 s", ""]
     assert Progress().of("split-groups").passed
+
+
+def test_a_file_that_is_named_after_its_lesson_is_checked_and_another_one_needs_its_lesson(
+    here: Path, capsys: pytest.CaptureFixture[str], refused: Refused
+) -> None:
+    (here / "my_own.py").write_text(STARTER)
+    assert refused("check", "my_own.py").endswith("cbtui check LESSON my_own.py")
+    (here / "split_groups.py").write_text(STARTER)
+    assert cli.main(["check", "./split_groups.py"]) == 1
+    assert "1 of 5 checks passed" in capsys.readouterr().out.splitlines()
 
 
 def test_reset_forgets_a_lesson_and_leaves_its_file(here: Path, capsys: pytest.CaptureFixture[str]) -> None:

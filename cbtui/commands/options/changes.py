@@ -25,16 +25,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=values.threads,
         help="number of threads of the executor, instead of its own",
     )
-    parser.add_argument(
-        "--group",
-        dest="groups",
-        metavar="CALLBACK=GROUP",
-        type=values.group_change,
-        action="append",
-        default=[],
-        help="put a callback into another group: own, shared, reentrant or default; NODE:CALLBACK means one "
-        "node's; may be given again",
-    )
+    add_groups(parser)
     parser.add_argument(
         "--period",
         dest="periods",
@@ -52,6 +43,21 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     add_physics(parser)
     add_distro(parser)
+
+
+def add_groups(parser: argparse.ArgumentParser, side: str = "") -> None:
+    """Add ``--group``, or ``--group-a`` and ``--group-b`` where two programs are run."""
+    of_run = f" of {side[1:].upper()}" if side else ""
+    parser.add_argument(
+        f"--group{side}",
+        dest=f"groups{side.replace('-', '_')}",
+        metavar="CALLBACK=GROUP",
+        type=values.group_change,
+        action="append",
+        default=[],
+        help=f"put a callback{of_run} into another group: own, shared, reentrant or default; NODE:CALLBACK "
+        "means one node's; may be given again",
+    )
 
 
 def add_distro(parser: argparse.ArgumentParser, side: str = "") -> None:
