@@ -23,6 +23,8 @@ from sim.probes import own_code
 from sim.ros.middleware.host import Host
 from sim.trace.events import Notice, RunEnding, Severity
 
+_MOST_NAMED = 3
+"""Threads that are named of those that keep a program from ending."""
 _SIGNAL_AFTER = 0.5
 """Real seconds after which a program on virtual time that does not wait is interrupted by a signal."""
 
@@ -191,14 +193,13 @@ class RunShutdown:
             self.leave()
 
     def _blocking_threads(self) -> str:
-        """Return which thread keeps the program from ending, as " (worker: node.py:12, in work)"."""
+        """Return which threads keep the program from ending, as " (worker: node.py:12, in work)"."""
         frames = sys._current_frames()
         left = [thread for process in self._programs.processes for thread in threads_left_by(process)]
-        for thread in (threading.main_thread(), *left):
-            place = own_code.place_of(frames.get(thread.ident or 0))
-            if place:
-                return f" ({thread.name}: {place})"
-        return ""
+        threads = dict.fromkeys((threading.main_thread(), *left))
+        places = ((each.name, own_code.place_of(frames.get(each.ident or 0))) for each in threads)
+        told = [f"{name}: {place}" for name, place in places if place]
+        return f" ({'; '.join(told[:_MOST_NAMED])})" if told else ""
 
     def _tell(self, severity: Severity, sentence: str) -> None:
         self._outbox.record(Notice(self._clock.now(), severity, sentence))

@@ -21,9 +21,9 @@ def module_root(frame: FrameType) -> str:
 
 
 def is_own(frame: FrameType) -> bool:
-    """Whether a frame runs neither the model's code nor the standard library's."""
+    """Whether a frame runs neither cbtui's code, its model's, nor the standard library's."""
     root = module_root(frame)
-    return root != "sim" and (root == "__main__" or root not in sys.stdlib_module_names)
+    return root not in ("sim", "cbtui") and (root == "__main__" or root not in sys.stdlib_module_names)
 
 
 def is_library(frame: FrameType) -> bool:
@@ -32,8 +32,9 @@ def is_library(frame: FrameType) -> bool:
 
 
 def own_frame(frame: FrameType | None) -> FrameType | None:
-    """The innermost frame of the learner's own, from a frame outwards."""
-    return next(filter(is_own, outwards(frame)), None)
+    """The innermost frame of a file of the learner's own, from a frame outwards."""
+    own = filter(is_own, outwards(frame))
+    return next((each for each in own if not each.f_code.co_filename.startswith("<")), None)
 
 
 def place_of(frame: FrameType | None) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from queue import Queue
 from signal import SIGINT, SIGTERM
 from time import monotonic
+from types import FrameType
 
 import msgspec
 import pytest
@@ -15,6 +16,7 @@ from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.lesson_setup import RunRequest
 from sim.engine.commands import Stop
 from sim.engine.programs.ending import GRACE
+from sim.probes.own_code import place_of
 from sim.trace.events import AnyEvent, Notice, Printed, RunEnded
 from tests.support.daily import first_daily, first_row_daily
 from tests.support.engine_runs import Run, program_setup, run_program, run_to_end
@@ -165,6 +167,36 @@ finally:
     (notice,) = (each for each in notices if "node.py had not ended" in each)
     assert "(MainThread: node.py:8, in <module>)" in notice
     assert (tmp_path / "log.csv").read_text() == "1"
+
+
+@pytest.mark.slow
+def test_a_thread_that_keeps_a_program_from_ending_is_named_with_its_line(tmp_path: Path) -> None:
+    source = """
+import threading, time
+def mission():
+    time.sleep(1000)
+threading.Thread(target=mission).start()
+time.sleep(1000)
+"""
+    run = run_program(tmp_path, source, seconds=0.5, clock="real")
+    (notice,) = (
+        each.text for each in run.events if isinstance(each, Notice) and "had not ended" in each.text
+    )
+    assert "Thread-1 (mission): node.py:4, in mission): it was ended by force" in notice
+
+
+def test_the_line_of_a_thread_is_never_one_of_cbtui_nor_of_what_starts_it() -> None:
+    def frame_in(module: str, file: str) -> FrameType:
+        names = {"__name__": module, "sys": sys}
+        exec(compile("frame = sys._getframe()", file, "exec"), names)
+        frame = names["frame"]
+        assert isinstance(frame, FrameType)
+        return frame
+
+    of_program = place_of(frame_in("__main__", "/home/me/node.py"))
+    assert of_program == "node.py:1, in <module>"
+    assert "session.py" not in place_of(frame_in("cbtui.engines.session", "session.py"))
+    assert "<string>" not in place_of(frame_in("__main__", "<string>"))
 
 
 def test_what_an_exit_function_raises_is_told_with_its_place(tmp_path: Path) -> None:
