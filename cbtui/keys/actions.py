@@ -289,6 +289,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("previous", "up", "choose", "Highlight the one above", "Highlight another"),
         ("next", "down", "choose", "Highlight the one below", "Highlight another"),
         ("take", "enter", "answer", "Give the highlighted answer; it is final"),
+        ("no_take", "enter", "", "Say that an answer has to be chosen first"),
         ("skip", "escape", "without predicting", "Go on without predicting"),
         ("page_up", "pageup", "scroll", "Scroll the text up"),
         ("page_down", "pagedown", "scroll", "Scroll the text down"),

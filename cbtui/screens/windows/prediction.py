@@ -17,6 +17,8 @@ from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.prose import Prose
 from lessons.description import Prediction
 
+_FINAL = "your answer is final"
+
 
 class PredictionExit(Enum):
     """How the window was left."""
@@ -66,8 +68,9 @@ class PredictionScreen(WindowScreen[PredictionExit]):
             case "choose":
                 place = parameters[0]
                 return isinstance(place, int) and place <= len(self._prediction.answers)
-            case "take":
-                return self.is_mounted and self.query_one(OptionList).highlighted is not None
+            case "take" | "no_take":
+                has_choice = self.is_mounted and self.query_one(OptionList).highlighted is not None
+                return has_choice is (action == "take")
             case "page_up" | "page_down":
                 return self.is_mounted and self.query_one(VerticalScroll).max_scroll_y > 0
         return True
@@ -80,7 +83,7 @@ class PredictionScreen(WindowScreen[PredictionExit]):
         several = len(self._predictions) > 1
         number = f" ({self._place + 1} of {len(self._predictions)})" if several else ""
         window = self.query_one(".window")
-        window.border_title, window.border_subtitle = f"What do you expect?{number}", "your answer is final"
+        window.border_title, window.border_subtitle = f"What do you expect?{number}", _FINAL
         self.query_one(".question", Static).update(self._prediction.question)
         answers = self.query_one(OptionList)
         answers.set_options(
@@ -93,6 +96,7 @@ class PredictionScreen(WindowScreen[PredictionExit]):
 
     @on(OptionList.OptionHighlighted)
     def _show_keys(self) -> None:
+        self.query_one(".window").border_subtitle = _FINAL
         self.query_one(KeyBar).changed()
 
     @on(OptionList.OptionSelected)
@@ -115,6 +119,11 @@ class PredictionScreen(WindowScreen[PredictionExit]):
         else:
             self._place += 1
             self._ask()
+
+    def action_no_take(self) -> None:
+        """Say that an answer has to be chosen first."""
+        numbers = f"1 to {len(self._prediction.answers)}"
+        self.query_one(".window").border_subtitle = f"choose an answer first: {numbers}"
 
     def action_skip(self) -> None:
         """Go on without predicting."""

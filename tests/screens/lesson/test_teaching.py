@@ -125,6 +125,16 @@ async def test_time_does_not_begin_before_every_question_is_answered() -> None:
         assert app.kept().answers == (0, 1)
 
 
+async def test_enter_without_a_choice_says_that_one_comes_first() -> None:
+    async with console() as (app, pilot):
+        assert "your answer is final" in text_of(app)
+        await press(pilot, "enter")
+        assert f"choose an answer first: 1 to {len(FIRST.answers)}" in text_of(app)
+        await press(pilot, "1")
+        assert "your answer is final" in text_of(app)
+        assert not app.kept().answers
+
+
 async def test_an_answer_that_is_only_highlighted_is_none() -> None:
     async with console() as (app, pilot):
         await press(pilot, "enter", "enter")
