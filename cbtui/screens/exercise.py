@@ -14,7 +14,7 @@ from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.keys.action import CHECKS, PANES, Scope
 from cbtui.keys.keymap import STANDARD, Keymap, keymap_of
 from cbtui.learning.lesson_page import page_of_exercise
-from cbtui.learning.stage import LessonStep
+from cbtui.learning.stage import LessonStep, StepState
 from cbtui.looks.theme import Charset
 from cbtui.runs.judged.checking import ObservedRun, ended_run
 from cbtui.runs.live.live_run import LiveRun
@@ -228,12 +228,14 @@ class ExerciseScreen(RunScreen[LiveRun]):
 
     def _celebrate(self, checks: int) -> None:
         """Show over the lanes that the exercise passed."""
-        key = self.key("next_lesson")
-        how_to_continue = (
-            f"{key} opens the next lesson"
-            if self.subject.following is not None
-            else "that was the last lesson"
-        )
+        steps = self._learning.steps()
+        left = [step.name for step in steps if step.state is not StepState.DONE and step.name != "Exercise"]
+        if left:
+            how_to_continue = f"left of the lesson: {', '.join(left).lower()}"
+        elif self.subject.following is not None:
+            how_to_continue = f"{self.key('next_lesson')} opens the next lesson"
+        else:
+            how_to_continue = "that was the last lesson"
         text = f"✓ {self._learning.lesson.title}: all {checks} checks pass, {how_to_continue}"
         self.app.clear_notifications()  # hints are no longer needed
         self.query_one(PassedBanner).celebrate(text)

@@ -214,11 +214,20 @@ async def test_a_file_that_passes_is_noted_and_the_next_lesson_named() -> None:
         assert Progress().of(LESSON.id).passed
         assert "n next" in lines_of(app)[-1]
         assert "hint" not in offered(app)
-        assert "all 5 checks pass, n opens the next lesson" in text_of(app)
+        assert "all 5 checks pass, left of the lesson: predict, run, explain" in text_of(app)
         await pilot.press("w")  # another run, of which that is not known
         await settle(pilot)
         assert "opens the next lesson" not in text_of(app)
         assert app.exercise.steps[-1].text == "Exercise ✓"
+
+
+@pytest.mark.slow
+async def test_where_only_the_exercise_was_left_the_banner_names_the_next_lesson() -> None:
+    progress = Progress()
+    progress.see(LESSON.id)
+    progress.explain(LESSON.id)
+    async with console(passing()) as (app, _, _pilot):
+        assert "all 5 checks pass, n opens the next lesson" in text_of(app)
 
 
 @pytest.mark.slow
