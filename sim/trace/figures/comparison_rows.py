@@ -30,6 +30,7 @@ RUNS = ("run A", "run B")
 """Names of the runs in a table: single letters are callback groups."""
 DIFFERENCE = "B against A"
 NOTHING = "-"
+_SAME = "same"
 
 
 class Assessment(Enum):
@@ -356,14 +357,13 @@ def _spread_row(label: str, first: _Spread | None, second: _Spread | None, wordi
     figures = _format_both(lambda spread: _spread_text(spread, wording), first, second)
     if first is None or second is None:
         return ComparisonRow(label, figures)
-    which = "max"
+    which = "max "
     text, assessment = _difference(first.most, second.most, wording)
     if assessment is Assessment.SAME and first.median is not None and second.median is not None:
-        which = "med"
-        text, assessment = _difference(first.median, second.median, wording)
-    return ComparisonRow(
-        label, figures, text if assessment is Assessment.SAME else f"{which} {text}", assessment
-    )
+        of_median = _difference(first.median, second.median, wording)
+        if text == _SAME or of_median[1] is not Assessment.SAME:
+            which, (text, assessment) = "med ", of_median
+    return ComparisonRow(label, figures, text if assessment is Assessment.SAME else which + text, assessment)
 
 
 def _spread_text(spread: _Spread, wording: Wording) -> str:
@@ -374,7 +374,7 @@ def _spread_text(spread: _Spread, wording: Wording) -> str:
 def _difference(first: float, second: float, wording: Wording) -> tuple[str, Assessment]:
     """The difference as text, with the precision of the figures."""
     if wording.format(first) == wording.format(second):
-        return "same", Assessment.SAME
+        return _SAME, Assessment.SAME
     if wording.is_noise(first, second):
         return "about the same", Assessment.SAME
     step = second - first
