@@ -114,7 +114,7 @@ async def test_enter_goes_to_the_moment_the_lane_and_the_code(size: tuple[int, i
         assert lanes.selection is not None
         assert isinstance(lanes.selection.lane, MemberLane)
         assert lanes.selection.lane.entity.name == "/odom"
-        assert "▸ A odom_callback waits" in text_of(app)
+        assert "▸ A odom_callback is ready" in text_of(app)
         assert code.has_focus
         assert code.picked == 94
         assert "time.sleep" in text_of(app)
@@ -222,7 +222,7 @@ async def test_a_recording_has_its_diagnoses_too(tmp_path: Path) -> None:
         assert "1 problem · d" in lines_of(app)[-2]
         await press(pilot, "d", "enter")
         assert "t 4.003 s" in status(app)
-        assert "▸ A odom_callback waits" in text_of(app)
+        assert "▸ A odom_callback is ready" in text_of(app)
         assert screen.query_one(CodeView).picked == 94
 
 
