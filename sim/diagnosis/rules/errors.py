@@ -249,12 +249,13 @@ class ExceptionCaught(Rule):
         """Yield each call that raised, if a callback of its node began since."""
         if not any(mark.kind is AxisMarkKind.ERROR for mark in view.timeline.marks(view.window)):
             return
+        latest = [(each.node, span.start) for each in view.entities() for span in view.spans(each.id)[-1:]]
+        spun = dict(sorted(latest))
         for entity in view.entities():
             for span in view.spans(entity.id):
-                raised = span.error and span.end is not None and not span.no_response
-                if raised and _is_spun_since(span.end_at(view.end), entity, view):
-                    end = span.end_at(view.end)
-                    yield Finding(self, span.start, end, entity.id, size=span.start, detail=span.error or "")
+                end = span.end_at(view.end)
+                if span.error and not span.no_response and end < spun[entity.node]:
+                    yield Finding(self, span.start, end, entity.id, size=span.start, detail=span.error)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
@@ -265,8 +266,3 @@ class ExceptionCaught(Rule):
             f"correct the line, or catch the exception in {subject} and log it there",
             line_location(*span.raised_at) or place_of(found.subject, timeline),
         )
-
-
-def _is_spun_since(at: Nanoseconds, entity: EntityInfo, view: TimelineView) -> bool:
-    beside = (each for each in view.entities() if each.node == entity.node)
-    return any(span.start > at for each in beside for span in view.spans(each.id)[-1:])
