@@ -75,11 +75,16 @@ def ending_signals_on_loop(tell: Callable[[signal.Signals], None]) -> Iterator[N
     try:
         yield
     finally:
+        came: list[int] = []
         blocked = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+        for number in ENDING:  # other threads still take signals, and nobody reads what the loop is told
+            signal.signal(number, lambda number, _: came.append(number))
         for number in ENDING:
             loop.remove_signal_handler(number)
         signal.signal(signal.SIGINT, before)
         signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
+        for number in came:
+            signal.raise_signal(number)
 
 
 @contextmanager
