@@ -151,7 +151,7 @@ def test_ctrl_c_ends_a_console_that_starts_and_gives_the_terminal_back(moment: i
 def test_ctrl_c_before_the_console_hears_it_ends_it_before_it_draws(function: str, tmp_path: Path) -> None:
     with opened(80, 24, tmp_path, program=[SCRIPT, function]) as console:
         assert console.ended() == INTERRUPTED
-        assert re.fullmatch(rb"(opening \.\.\.\r\x1b\[K)*", console.drawn), "what was said is taken away again"
+        assert re.fullmatch(rb"(opening \.\.\.\r\x1b\[K)*", console.drawn), "it was taken away"
         assert console.left_on() == set()
 
 

@@ -88,7 +88,7 @@ def test_a_fresh_project_has_a_green_a_red_and_an_equal_test(project: Path, work
         told,
     )
     assert "in 2 of 2 schedules, this one is --cbtui-seed 0" in told
-    assert "! take waited 500 ms: group A was held by press." in told
+    assert "! take and send waited up to 500 ms: group A was held by press." in told
     assert re.search(r"^press +│.*│", told, re.MULTILINE)
     (recorded,) = (project / "cbtui-recordings").iterdir()
     assert f"recording: cbtui replay cbtui-recordings/{recorded.name}" in told

@@ -44,13 +44,10 @@ class _KeptWaiting(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield such waits."""
         for entity in view.entities():
-            threshold = HALF_A_SECOND
-            if entity.kind is EntityKind.TIMER:
-                threshold = min(threshold, max(2 * entity.period, _SOON))
             for wait in view.waits(entity.id):
                 parts = wait.because(self.reason)
                 waited = sum(map(wait.length, parts))
-                if waited < threshold or _may_wait_for_its_caller(entity, wait, view):
+                if waited < _long_for(entity) or _may_wait_for_its_caller(entity, wait, view):
                     continue
                 shares: defaultdict[EntityId, Nanoseconds] = defaultdict(int)
                 for part in parts:
@@ -239,18 +236,24 @@ class NodeNeverSpins(Rule):
         )
 
 
+def _long_for(entity: EntityInfo) -> Nanoseconds:
+    """Return from which length on a wait is long: for timers, from that at which they miss a tick."""
+    if entity.kind is not EntityKind.TIMER:
+        return HALF_A_SECOND
+    return min(HALF_A_SECOND, max(2 * entity.period, _SOON))
+
+
 def _others_waiting(found: Finding, reason: Reason, timeline: Timeline) -> list[EntityId]:
     """Return the callbacks but a finding's own that waited long for its culprit then, for a reason."""
     at = Window(found.at, found.until)
-    least = HALF_A_SECOND if found.size >= HALF_A_SECOND else found.size // 2
     return [
         each
-        for each in timeline.entities
+        for each, entity in timeline.entities.items()
         if each not in (found.subject, found.culprit)
         and any(
             wait.holder == found.culprit
             and wait.reason is reason
-            and min(wait.end_at(timeline.end), at.end) - wait.start >= least
+            and min(wait.end_at(timeline.end), at.end) - wait.start >= _long_for(entity)
             for wait in timeline.waits_of(each, at)
         )
     ]
