@@ -197,6 +197,8 @@ def test_on_the_real_clock_pauses_and_speeds_lose_nothing_and_do_nothing_twice(t
             run.give(SetSpeed((0.5, 2.0, 20.0)[turn % 3]), Resume())
             time.sleep(0.011)
         run.give(CallService("/stop", data=True))
+        run.until(Printed)
+        run.stop()
         run.to_the_end()
     printed = [event.text for event in run.events if isinstance(event, Printed) and not event.error]
     assert printed == ["heard True served True"]
