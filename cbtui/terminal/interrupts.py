@@ -83,8 +83,8 @@ def ending_signals_on_loop(tell: Callable[[signal.Signals], None]) -> Iterator[N
             loop.remove_signal_handler(number)
         signal.signal(signal.SIGINT, before)
         signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
-        for number in came:
-            signal.raise_signal(number)
+        for each in came:
+            signal.raise_signal(each)
 
 
 @contextmanager
