@@ -270,6 +270,11 @@ class Probe:
             )
         )
 
+    def exception_surfaced(self, error: BaseException) -> None:
+        """Record that a pool's executor raises a callback's exception on the calling thread."""
+        surfaced = events.ExceptionSurfaced(self._now(), self.thread(), error_line(error), *raised_at(error))
+        self._sink(surfaced)
+
     @property
     def keeps_messages(self) -> bool:
         """Whether published messages are read later, so that a subscription must not get the same object."""

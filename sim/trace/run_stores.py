@@ -69,6 +69,7 @@ class RunStores:
         self.notices: History[ev.Notice] = History(attrgetter("t"), ev.Notice, spill)
         self.mismatches: History[ev.QosMismatched] = History(attrgetter("t"), ev.QosMismatched, spill)
         self.spin_clashes: History[ev.SpinClashed] = History(attrgetter("t"), ev.SpinClashed, spill)
+        self.surfaced: History[ev.ExceptionSurfaced] = History(attrgetter("t"), ev.ExceptionSurfaced, spill)
         self.program_positions: History[ev.ProgramAt] = History(attrgetter("t"), ev.ProgramAt, spill)
         self.robot: History[ev.RobotMoved] = History(attrgetter("t"), ev.RobotMoved, spill)
         self.velocities: History[ev.VelocityCommanded] = History(attrgetter("t"), ev.VelocityCommanded, spill)
@@ -129,6 +130,7 @@ class RunStores:
             ev.SpinClashed: self.spin_clashes.add,
             ev.ProgramAt: self.program_positions.add,
             ev.CallbackFailed: self._callback_failed,
+            ev.ExceptionSurfaced: self.surfaced.add,
             ev.Published: self._published,
             ev.QosMismatched: self.mismatches.add,
             ev.ServiceCalled: self._service_called,

@@ -90,6 +90,8 @@ class Timeline:
         """The incompatible publishers and subscriptions, in order."""
         self.spin_clashes: Sequence[ev.SpinClashed] = run.spin_clashes
         """The attempts to spin what was already being spun, in order."""
+        self.surfaced: Sequence[ev.ExceptionSurfaced] = run.surfaced
+        """The exceptions of callbacks that pools raised out of ``spin()``, in order."""
 
     def program_at(self, at: Nanoseconds) -> ev.ProgramAt | None:
         """Where the program is at ``at`` outside callbacks; None if it spins as it should, or is unknown."""

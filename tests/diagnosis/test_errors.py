@@ -13,14 +13,17 @@ from sim.diagnosis import Explanation, diagnose
 from sim.quantities.nanoseconds import SECOND
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
-from sim.trace.events import RunEnded
+from sim.trace.events import ExceptionSurfaced, RunEnded
 from sim.trace.timeline import Timeline
 from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, executor_of, once
 from tests.support.simulation import Simulation, Trace
 
 
 def raising(threads: int | None, *, ticks_on: bool) -> Diagnosed:
-    """``fails`` raises at 1 s; ``tick``, if it is there, is called each second; ``spin`` is called again."""
+    """``fails`` raises at 1 s; ``tick``, if it is there, is called each second; ``spin`` is called again.
+
+    All workers have run something before: what is raised on one that was just started comes out at once.
+    """
 
     def program(simulation: Simulation) -> None:
         node = Node("n")
@@ -29,6 +32,8 @@ def raising(threads: int | None, *, ticks_on: bool) -> Diagnosed:
         def fails() -> None:
             raise ValueError("no scan")
 
+        for worker in range(threads or 0):
+            once(node, 0.1 * (1 + worker), lambda: None, group)
         once(node, 1.0, fails, group)
         if ticks_on:
             node.create_timer(1.0, lambda: None, group)
@@ -64,6 +69,27 @@ def test_an_exception_that_comes_out_and_is_caught_is_worth_a_remark_at_its_line
     assert told.what == "fails raised ValueError: no scan, and the program went on"
     assert told.place is not None
     assert Path(__file__).read_text().splitlines()[told.place.first_line - 1].strip().startswith("raise")
+
+
+def test_what_comes_out_of_a_pool_and_ends_the_program_well_is_not_swallowed() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def fails() -> None:
+            raise ValueError("no device")
+
+        once(node, 0.5, fails, ReentrantCallbackGroup())
+        executor = executor_of(2)
+        executor.add_node(node)
+        with suppress(ValueError):
+            executor.spin()
+
+    run = diagnosed(program)
+    events = [each for each in run.trace.events if not isinstance(each, RunEnded)]
+    ended = RunEnded(max(each.t for each in events), "the program returned", failed=False)
+    assert Diagnosed(Trace([*events, ended])).problems() == set()
+    kept = [each for each in events if not isinstance(each, ExceptionSurfaced)]
+    assert Diagnosed(Trace([*kept, ended])).problems() == {("exception-swallowed", "fails")}
 
 
 def test_a_single_threaded_executor_swallows_nothing() -> None:

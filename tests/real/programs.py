@@ -158,6 +158,17 @@ class Tried(Node):
     def tick(self):
         raise ValueError("no more")
 """
+CATCHES = (
+    RAISES
+    + """
+class Catching(MultiThreadedExecutor):
+    def spin(self):
+        try:
+            super().spin()
+        except ValueError as error:
+            print(f"stopped: {error}")
+"""
+)
 ACTS = """
 from rclpy.action import ActionClient, ActionServer
 from test_msgs.action import Fibonacci

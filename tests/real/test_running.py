@@ -14,6 +14,7 @@ from sim.trace.events import (
     CallbackResumed,
     CallbackStarted,
     CallbackSuspended,
+    ExceptionSurfaced,
     Logged,
     MessageDropped,
     Notice,
@@ -186,6 +187,18 @@ def test_an_exception_ends_the_program_and_is_placed(tmp_path: Path) -> None:
         "the program raised ValueError: no more",
         CodeLocation(failed.file, failed.line, failed.line),
     )
+
+
+@pytest.mark.parametrize("ground", ["ros2", "model"])
+def test_an_exception_that_a_pool_raises_and_the_program_catches_is_no_problem(
+    tmp_path: Path, ground: str
+) -> None:
+    run = programs.run(tmp_path, programs.CATCHES, "Catching(2)", ground=ground)
+    failed = next(event for event in run.events if isinstance(event, CallbackFailed))
+    surfaced = next(event for event in run.events if isinstance(event, ExceptionSurfaced))
+    assert (surfaced.error, surfaced.file, surfaced.line) == (failed.error, failed.file, failed.line)
+    assert not run.ending.failed
+    assert not any("exception" in each.rule.id for each in diagnose(run.timeline))
 
 
 @pytest.mark.parametrize("program", ["hides_a_name", *(f"wrong_arity{of}" for of in OF)])

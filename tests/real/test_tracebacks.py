@@ -18,6 +18,10 @@ def tried(function, *arguments):
     except Exception:
         traceback.print_exc()
 
+def spin_on(pool):
+    while True:
+        pool.spin_once()
+
 class Tried(Node):
     def __init__(self):
         super().__init__("tried")
@@ -40,6 +44,10 @@ tried(node.create_timer)
 tried(node.create_publisher(String, "news", 10).publish, 7)
 tried(node.create_client(SetBool, "switch").call, 7)
 tried(rclpy.spin, node, executor)
+pool = MultiThreadedExecutor(2)
+pool.add_node(node)
+tried(spin_on, pool)
+pool.remove_node(node)
 executor.add_node(node)
 tried(executor.spin_once)
 executor.spin()
@@ -62,7 +70,7 @@ def test_the_probe_is_not_in_the_tracebacks_of_a_program(tmp_path: Path) -> None
         return done.stderr
 
     assert printed() == printed(PYTHONPATH="")
-    assert printed().count("Traceback") == 7
+    assert printed().count("Traceback") == 8
 
 
 @needs_ros

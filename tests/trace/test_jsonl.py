@@ -93,6 +93,8 @@ def test_golden_lines() -> None:
         f'{{"t":2.25,"event":"callback_error",{about},"thread":"talker-1 MainThread",'
         '"message":"IndexError: no beam 720","file":"node.py","line":60}',
         f'{{"t":2.25,"event":"callback_end",{about},"thread":"talker-1 MainThread"}}',
+        '{"t":2.25,"event":"exception_surfaced","thread":"talker-1 MainThread",'
+        '"message":"IndexError: no beam 720","file":"node.py","line":60}',
         '{"t":2.3,"event":"print","process":"talker-1","message":"hello","error":true}',
         '{"t":2.35,"event":"arena","walls":[[0.0,0.0,1.0,0.0]],"sphere":[0.9,0.0,0.2],"robot_radius":0.1}',
         '{"t":2.35,"event":"robot","x":0.5,"y":0.0,"yaw":-0.1,"front":null,"linear":0.08,"angular":0.0,'

@@ -218,11 +218,13 @@ class ExceptionSwallowed(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Irrelevant if the exception ended the run or another callback started since."""
+        """Irrelevant if ``spin`` raised it, as it also does at the end of a run or for another callback."""
         ended = timeline.ended
         if ended is not None and ended.failed:
             return None if ended.error in (None, found.detail) else Weight.PROBLEM
         if timeline.end - found.until < self.threshold and ended is None:
+            return None
+        if any(each.t >= found.until and each.error == found.detail for each in timeline.surfaced):
             return None
         since = Window(found.until, timeline.end + 1)
         pool = pool_of(found.thread, timeline)

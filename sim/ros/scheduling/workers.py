@@ -339,6 +339,7 @@ class WorkerPool:
                 return
             error = self._errors.pop(0)
             self.error_surfaces = False
+            self._executor._probe.exception_surfaced(error)
         raise error
 
     def dismiss(self) -> None:

@@ -197,3 +197,16 @@ class CallbackFailed(TraceEvent, frozen=True, tag="callback_error"):
     """The exception's class; "" if not known."""
     no_response: WireOnly[bool] = False
     """Whether a service's callback returned without a response."""
+
+
+class ExceptionSurfaced(TraceEvent, frozen=True, tag="exception_surfaced"):
+    """A MultiThreadedExecutor raised, out of the function that spins it, what a callback had raised."""
+
+    thread: ThreadId
+    """Thread that spins."""
+    error: Text
+    """The exception's class and text."""
+    file: str
+    """As in ``callback_error``."""
+    line: int
+    """As in ``callback_error``."""

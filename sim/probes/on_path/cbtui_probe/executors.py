@@ -8,7 +8,7 @@ from contextlib import suppress
 from functools import wraps
 from typing import TYPE_CHECKING, Any
 
-from .callbacks import is_own
+from .callbacks import is_own, raised_at
 from .recorder import now
 from .states import STATE, state_of
 from .unseen import UNSEEN, leave_out_probe
@@ -115,6 +115,7 @@ class Executors:
         base.__init__ = init
         base.add_node = add_node
         pool_class.__init__ = init_pool
+        self._watch_exceptions(pool_class)
         self._give_threads(executors.SingleThreadedExecutor, pool_class)
         base.wait_for_ready_callbacks = wait_for_ready_callbacks
         self._watch_spinning(base, "spin", _itself)
@@ -132,6 +133,21 @@ class Executors:
                 "spin_once_until_future_complete",
             ):
                 self._watch_spinning(rclpy_implementation.EventsExecutor, name, _itself)
+
+    def _watch_exceptions(self, pool_class: Any) -> None:
+        """Record what comes out of a pool, which keeps the exceptions of callbacks."""
+        spin_once, recorder = pool_class._spin_once_impl, self._recorder
+
+        @wraps(spin_once)
+        def raising(*args: Any, **kwargs: Any) -> None:
+            try:
+                spin_once(*args, **kwargs)
+            except Exception as error:
+                recorder.put("exception_surfaced", now(), recorder.thread(), *raised_at(error))
+                leave_out_probe(error)
+                raise
+
+        pool_class._spin_once_impl = raising
 
     def _give_threads(self, single: Any, pool_class: Any) -> None:
         """Make a MultiThreadedExecutor of each SingleThreadedExecutor if the run is to have more threads."""
