@@ -1,10 +1,9 @@
 """When a wait is over whatever happens: by its timeout, or by the condition of the loop around it."""
 
 import ast
-from functools import lru_cache
-from pathlib import Path
 
-from sim.files.untrusted import program_text
+from sim.diagnosis.edits.program_file import asked_of_file
+from sim.diagnosis.edits.source_editor import SourceEditor
 from sim.trace.events import ProgramAt
 from sim.trace.model import Nanoseconds, Position
 
@@ -17,19 +16,10 @@ def time_limit(at: Position | ProgramAt) -> Nanoseconds:
     return at.until if not at.loop[0] or ends_by_itself(*at.loop) else 0
 
 
-def ends_by_itself(file: str, line: int) -> bool:
+@asked_of_file
+def ends_by_itself(source: SourceEditor, line: int) -> bool:
     """Return whether a ``while`` compares a clock, or what it counts itself."""
-    return _ends_by_itself(program_text(Path(file)) or "", line)
-
-
-@lru_cache(maxsize=64)
-def _ends_by_itself(text: str, line: int) -> bool:
-    try:
-        tree = ast.parse(text)
-    except (SyntaxError, ValueError):
-        return False
-    loops = (each for each in ast.walk(tree) if isinstance(each, ast.While) and each.lineno == line)
-    return any(map(_compares_what_changes, loops))
+    return any(_compares_what_changes(each) for each in source.nodes(ast.While) if each.lineno == line)
 
 
 def _compares_what_changes(loop: ast.While) -> bool:

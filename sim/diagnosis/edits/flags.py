@@ -1,25 +1,18 @@
 """Loops that only ask for what another function sets: which function, and the edit that lets it run."""
 
 import ast
-from functools import lru_cache
-from pathlib import Path
 
+from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.replies import is_idle
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
-from sim.files.untrusted import program_text
 
 _TELLS = ("print", "debug", "info", "warn", "warning", "error", "fatal")
 
 
-def setters(file: str, line: int) -> tuple[str, ...]:
+@asked_of_file
+def setters(source: SourceEditor, line: int) -> tuple[str, ...]:
     """Return the functions that set what a ``while`` waits for which only asks; constructors are left out."""
-    return _setters(program_text(Path(file)) or "", line)
-
-
-@lru_cache(maxsize=16)
-def _setters(text: str, line: int) -> tuple[str, ...]:
     try:
-        source = SourceEditor(text)
         loop = _asking(source, line)
     except NotSimpleError:
         return ()

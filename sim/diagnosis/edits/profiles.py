@@ -1,11 +1,9 @@
 """Edits of the quality of service that a subscription requests or a publisher offers."""
 
 import ast
-from functools import lru_cache
-from pathlib import Path
 
+from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
-from sim.files.untrusted import program_text
 
 _KINDS = {
     "RELIABILITY": ("reliability", "ReliabilityPolicy", {"create_subscription": "BEST_EFFORT"}, "RELIABLE"),
@@ -14,17 +12,9 @@ _KINDS = {
 _PLACES = {"create_subscription": 3, "create_publisher": 2}
 
 
-def unmatched_beside(file: str, policy: str, line: int, other: int) -> tuple[str, ...]:
+@asked_of_file
+def unmatched_beside(source: SourceEditor, policy: str, line: int, other: int) -> tuple[str, ...]:
     """Return which other policies of the endpoints at two lines differ, as far as their profiles tell."""
-    return _unmatched_beside(program_text(Path(file)) or "", policy, line, other)
-
-
-@lru_cache(maxsize=16)
-def _unmatched_beside(text: str, policy: str, line: int, other: int) -> tuple[str, ...]:
-    try:
-        source = SourceEditor(text)
-    except NotSimpleError:
-        return ()
     return tuple(each for each in _KINDS if each != policy and _fails(source, each, line, other))
 
 

@@ -2,28 +2,21 @@
 
 import ast
 from collections.abc import Iterator
-from functools import lru_cache
-from pathlib import Path
 
+from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.source_editor import Function, NotSimpleError, SourceEditor
-from sim.files.untrusted import program_text
 
 _SENDS = ("publish", "call_async", "call", "send_goal_async")
 """Methods of an attribute that leave it as it is."""
 
 
-def uses_what_is_set(file: str, setter: int, user: int) -> bool | None:
+@asked_of_file
+def uses_what_is_set(source: SourceEditor, setter: int, user: int) -> bool | None:
     """Return whether a method uses what another one of its class sets; None if the source does not tell.
 
     ``setter`` and ``user`` are lines of theirs. What methods of the class do that they call counts as theirs.
     """
-    return _uses_what_is_set(program_text(Path(file)) or "", setter, user)
-
-
-@lru_cache(maxsize=64)
-def _uses_what_is_set(text: str, setter: int, user: int) -> bool | None:
     try:
-        source = SourceEditor(text)
         one, other = _Reach(source, setter), _Reach(source, user)
     except NotSimpleError:
         return None

@@ -17,7 +17,7 @@ class NotSimpleError(Exception):
     """The source does not have the simple shape that an edit needs."""
 
 
-@dataclass
+@dataclass(eq=False)
 class SourceEditor:
     """A source and its edits, all at positions of the unedited text.
 

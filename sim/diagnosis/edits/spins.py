@@ -2,18 +2,16 @@
 
 import ast
 from collections.abc import Collection
-from functools import lru_cache
-from pathlib import Path
 
+from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
-from sim.files.untrusted import program_text
 
 _ENTITIES = ("create_timer", "create_subscription", "create_service", "create_client")
 
 
 def spins_in_turn(file: str) -> tuple[int, ...]:
     """Return the lines of ``spin()`` in turn, if a file has such in one place only, else ()."""
-    return tuple(each.lineno for each in _read(program_text(Path(file)) or "")[1])
+    return tuple(each.lineno for each in _read(file)[1])
 
 
 def never_made(file: str, made: Collection[int]) -> list[str]:
@@ -22,7 +20,7 @@ def never_made(file: str, made: Collection[int]) -> list[str]:
     ``made`` are the lines of the file at which entities were made; if it has no such lines, it has been
     changed since, and nothing is known.
     """
-    source, spins = _read(program_text(Path(file)) or "")
+    source, spins = _read(file)
     nodes = [argument for spin in spins[1:] for argument in getattr(spin.value, "args", ())]
     names = {ast.unparse(each.func) for each in nodes if isinstance(each, ast.Call)}
     if not names or not all(_makes(source, source.tree, [line]) for line in made):
@@ -39,15 +37,11 @@ def _makes(source: SourceEditor, part: ast.AST, lines: Collection[int] | None = 
     return bool(at if lines is None else at.intersection(lines))
 
 
-@lru_cache(maxsize=16)
-def _read(text: str) -> tuple[SourceEditor, list[ast.Expr]]:
-    """Return a source and its only statements that spin in turn."""
-    try:
-        source = SourceEditor(text)
-        (spins,) = _spins_in_turn(source)
-    except (NotSimpleError, ValueError):
-        return SourceEditor(""), []
-    return source, spins
+@asked_of_file
+def _read(source: SourceEditor) -> tuple[SourceEditor, list[ast.Expr]]:
+    """Return a source, and its statements that spin in turn if they are in one place only."""
+    found = _spins_in_turn(source)
+    return source, found[0] if len(found) == 1 else []
 
 
 def spin_together(source: SourceEditor, line: int) -> None:

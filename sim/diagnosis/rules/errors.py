@@ -2,17 +2,14 @@
 
 import re
 from collections.abc import Iterator
-from contextlib import suppress
-from pathlib import Path
 
 from sim.diagnosis.edits.functions import fit_parameters, hand_over_function
 from sim.diagnosis.edits.names import rename_definition
+from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.replies import futures_used, use_in_done_callback
-from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, line_location, made_at, place_of
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of, raised_last
 from sim.diagnosis.words import listed, often, who
-from sim.files.untrusted import program_text
 from sim.interpreter.exception_text import UNREADABLE
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, Reason, RunEnded
@@ -80,9 +77,8 @@ def _used_too_soon(ended: RunEnded) -> str:
     """Return the attribute that was asked of the result of a future that was not done; "" for none."""
     known = _NO_ATTRIBUTE.fullmatch(ended.error or "")
     file, line = ended.place
-    with suppress(NotSimpleError):
-        if known and futures_used(SourceEditor(program_text(Path(file)) or ""), line, known[1]):
-            return known[1]
+    if known and _futures_used(file, line, known[1]):
+        return known[1]
     return ""
 
 
@@ -95,6 +91,7 @@ def _called_too_soon(ended: RunEnded, timeline: Timeline) -> EntityInfo | None:
     return next((each for each in entities if made_at(each)), None)
 
 
+_futures_used = asked_of_file(futures_used)
 _NO_ATTRIBUTE = re.compile(r"AttributeError: 'NoneType' object has no attribute '(\w+)'")
 
 _NODE_PROPERTIES = (
