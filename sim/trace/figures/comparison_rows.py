@@ -127,7 +127,7 @@ def verdict(comparison: Comparison, *, is_cured: bool = False) -> str:
 class _FigureDifference(NamedTuple):
     """A figure, of which less is better, that differs enough to speak for a run; ``rank`` 0 weighs most."""
 
-    rank: float
+    rank: int
     what: str
     first: float
     second: float
@@ -152,7 +152,7 @@ def _listed(differences: Sequence[_FigureDifference]) -> str:
 
 def _differences(comparison: Comparison) -> Iterator[_FigureDifference]:
     pairs = [(pair.name, pair.first, pair.second) for pair in comparison.callbacks]
-    for rank, (what, figure, wording, least) in enumerate(_DECIDING):
+    for rank, what, figure, wording, least in _DECIDING:
         for name, first, second in pairs:
             if first is not None and second is not None:
                 one, other = figure(first), figure(second)
@@ -161,19 +161,21 @@ def _differences(comparison: Comparison) -> Iterator[_FigureDifference]:
                     continue
                 is_like = 2 * lower.figures.calls >= higher.figures.calls
                 if (is_like or wording not in _OF_CALLS) and abs(other - one) >= least:
-                    weight: float = rank if is_like or what != _LOST else len(_DECIDING)
+                    weight = rank if is_like or what != _LOST else _LEAST
                     yield _FigureDifference(weight, f"{what} of {name}", one, other, wording)
-    for weight, what, count in _DECIDING_RUNS:
+    for rank, what, count in _DECIDING_RUNS:
         one, other = count(comparison.first), count(comparison.second)
         if one != other:
-            yield _FigureDifference(weight, what, one, other, FLAWS)
+            yield _FigureDifference(rank, what, one, other, FLAWS)
 
 
 _NONE = (math.inf, 0.0)
-_DECIDING_RUNS: tuple[tuple[float, str, Callable[[RunFigures], int]], ...] = (
+_LEAST = 6
+"""The rank of what weighs less than all else."""
+_DECIDING_RUNS: tuple[tuple[int, str, Callable[[RunFigures], int]], ...] = (
     (0, "runs that an error ends", lambda run: run.crashes),
-    (0.5, "subscriptions that hear nothing", lambda run: run.mismatches),
-    (1, "collisions", lambda run: run.collisions),
+    (1, "subscriptions that hear nothing", lambda run: run.mismatches),
+    (2, "collisions", lambda run: run.collisions),
 )
 _OF_CALLS = (LATENESS, AGES)
 """Figures of calls: lower ones of far fewer calls, as of a callback that hangs, speak for no run."""
@@ -187,14 +189,14 @@ def _most(values: Distribution | None) -> float:
     return 0.0 if values is None else values.most
 
 
-_DECIDING: tuple[tuple[str, Callable[[CallbackInRun], float], Wording, float], ...] = (
-    ("errors", lambda side: side.figures.errors, ERRORS, 1),
-    (_LOST, lambda side: side.figures.drops, LOSSES, 1),
-    ("longest wait", lambda side: side.longest_wait, WAITS, _NOTABLE),
-    ("worst lateness", lambda side: _most(side.figures.late), LATENESS, _NOTABLE),
-    ("oldest data", lambda side: _most(side.figures.age), AGES, _NOTABLE),
+_DECIDING: tuple[tuple[int, str, Callable[[CallbackInRun], float], Wording, float], ...] = (
+    (0, "errors", lambda side: side.figures.errors, ERRORS, 1),
+    (2, _LOST, lambda side: side.figures.drops, LOSSES, 1),
+    (3, "longest wait", lambda side: side.longest_wait, WAITS, _NOTABLE),
+    (4, "worst lateness", lambda side: _most(side.figures.late), LATENESS, _NOTABLE),
+    (5, "oldest data", lambda side: _most(side.figures.age), AGES, _NOTABLE),
 )
-"""Figures that decide a verdict, the most important first, and by how much they must differ."""
+"""Figures that decide a verdict, each with its rank, and by how much it must differ."""
 
 
 def extent(window: Window, *ends: Nanoseconds, is_real: bool = False) -> str:
