@@ -25,18 +25,12 @@ from sim.clock.schedule import Seed
 from sim.diagnosis import Finding
 from sim.diagnosis.text import location_text
 from sim.engine.setup import RunSetup
-from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import NoticeKind, Severity, ThreadChosen
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 
 PRELOADED = ["cbtui.cli_commands", "sim.engine.preloaded"]
 """Modules of an engine, imported once in the server that every run is forked from."""
-_STUCK = ("self-made-deadlock", "needs-one-more-worker", "still-computing", "service-never-comes")
-"""Ids of the diagnosis rules on callbacks that wait for ever."""
-_IN_LOOP, _LONG = "stays-in-loop", 3 * SECOND
-"""The id of the rule on callbacks that do not leave a loop, and how long that lasts if it is a failure."""
-
 
 Judged = TypeVar("Judged")
 SeedT = TypeVar("SeedT", bound=Seed)
@@ -172,8 +166,8 @@ class Exploration:
     def _failures(self, observed: ObservedRun, found: Mapping[str, Finding]) -> Iterator[ScheduleFailure]:
         raised = [*_raised(observed)]
         yield from raised
-        for rule, problem in found.items():
-            if rule in _STUCK or (rule == _IN_LOOP and problem.lasted >= _LONG):
+        for problem in found.values():
+            if (hangs_from := problem.rule.hangs_from) is not None and problem.lasted >= hangs_from:
                 yield ScheduleFailure(problem.rule.summary)
         kinds = {each.kind for each in observed.timeline.notices}
         for notice in observed.timeline.notices:

@@ -43,6 +43,7 @@ class SelfMadeDeadlock(Rule):
 
     id = "self-made-deadlock"
     summary = "a callback waits for a reply that it keeps from coming"
+    hangs_from = 0
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each cycle."""
@@ -123,6 +124,7 @@ class NeedsOneMoreWorker(Rule):
 
     id = "needs-one-more-worker"
     summary = "all threads stand still in calls whose answers need a thread"
+    hangs_from = 0
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each set of callbacks that block all threads of an executor."""

@@ -143,6 +143,7 @@ class StillComputing(Rule):
 
     id = "still-computing"
     summary = "a callback computes and does not come back"
+    hangs_from = 0
     is_effect = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
@@ -184,6 +185,7 @@ class StaysInLoop(Rule):
 
     id = "stays-in-loop"
     summary = "a callback does not leave its loop"
+    hangs_from = 3 * SECOND
     threshold = 3 * SECOND // 2
     is_effect = True
 

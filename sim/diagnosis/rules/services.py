@@ -134,6 +134,7 @@ class ServiceNeverComes(Rule):
 
     id = "service-never-comes"
     summary = "a callback waits for a service that nobody offers"
+    hangs_from = 0
     threshold = SECOND
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
