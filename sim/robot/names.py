@@ -1,6 +1,8 @@
 """The robot's names: on the network, and of its thread."""
 
-NAMES = ("/odom", "/scan", "/cmd_vel", "/reset_world", "/motor_power")
+from sim.trace.events import VELOCITY_TOPIC
+
+NAMES = ("/odom", "/scan", VELOCITY_TOPIC, "/reset_world", "/motor_power")
 """The robot's topics and services."""
 
 THREAD = "robot_driver"

@@ -8,7 +8,7 @@ from sim.diagnosis.edits.names import rename, rename_publisher
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, entity_of, made_at, place_of
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import who
-from sim.trace.events import EntityKind
+from sim.trace.events import VELOCITY_TOPIC, EntityKind
 from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -18,8 +18,6 @@ _SHORTEST = 4
 """The least length of a last part that counts as alike if the other begins or ends with it."""
 _MOST = 50
 """Limit for the names that are compared; a beginner's program has fewer unheard topics."""
-_ROBOTS = "/cmd_vel"
-"""The topic on which the robot is told where to go."""
 
 
 class MisspeltTopic(Rule):
@@ -42,8 +40,8 @@ class MisspeltTopic(Rule):
         unheard = [name for name in unheard if name not in timeline.services_called][:_MOST]
         silent = [each for each in ends if each.made_at[0] and not timeline.sent_on(each.name)][:_MOST]
         ends_of_pairs = [(each.id, each.name) for each in silent]
-        if timeline.arena is not None and not timeline.sent_on(_ROBOTS):
-            ends_of_pairs.append((0, _ROBOTS))
+        if timeline.arena is not None and not timeline.sent_on(VELOCITY_TOPIC):
+            ends_of_pairs.append((0, VELOCITY_TOPIC))
         for entity, name in ends_of_pairs if unheard else ():
             near = nearest(name, unheard)
             since = timeline.sent_on(near)[0].at if near else view.end
@@ -71,12 +69,12 @@ def _explain_robot(published: str, timeline: Timeline) -> Explanation:
     by = "the program" if sender is None else who(sender.entity, timeline)
     place = None if sender is None else place_of(sender.entity, timeline)
     return Explanation(
-        f"the robot hears nothing: nobody publishes on {_ROBOTS}, and nobody hears {published}, "
+        f"the robot hears nothing: nobody publishes on {VELOCITY_TOPIC}, and nobody hears {published}, "
         f"on which {by} publishes",
-        f"the robot does what it is told on {_ROBOTS}, letter by letter, and hears no other topic",
-        f"if the robot is meant, publish on {_ROBOTS}",
+        f"the robot does what it is told on {VELOCITY_TOPIC}, letter by letter, and hears no other topic",
+        f"if the robot is meant, publish on {VELOCITY_TOPIC}",
         place,
-        remedies=by_edit(place, f"publish on {_ROBOTS}", rename_publisher, published, _ROBOTS),
+        remedies=by_edit(place, f"publish on {VELOCITY_TOPIC}", rename_publisher, published, VELOCITY_TOPIC),
     )
 
 

@@ -52,6 +52,10 @@ class Scanned(TraceEvent, frozen=True, tag="scan"):
     """
 
 
+VELOCITY_TOPIC = "/cmd_vel"
+"""The topic on which the robot is told where to go."""
+
+
 class VelocityCommanded(TraceEvent, frozen=True, tag="cmd_vel"):
     """The robot's driver took a velocity command."""
 
