@@ -13,7 +13,6 @@ from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
 from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import Entity, OwnerNode, TakenData
-from sim.ros.scheduling.events_executor import EventsExecutor
 from sim.trace.events import EntityKind
 
 SrvType = TypeVar("SrvType")
@@ -84,8 +83,9 @@ class Service(ClientOrService, Entity):
 
     async def _answer_later(self, request: Request, outcome: Any) -> None:
         response = await outcome
-        if isinstance(executor := self.node.executor, EventsExecutor):
-            executor.create_task(self.send_response, response, request)  # a done-callback of rclpy's task
+        executor = self.node.executor
+        if executor is not None and executor.replies_in_tasks:
+            executor.create_task(self.send_response, response, request)
         else:
             self.send_response(response, request)
 

@@ -52,6 +52,7 @@ class EventsExecutor(Executor):
     """
 
     already_spinning = "Attempt to spin an already-spinning Executor"
+    replies_in_tasks = True  # rclpy sends them in done-callbacks
 
     def __init__(self, *, context: Context | None = None) -> None:
         chosen = get_default_context() if context is None else context

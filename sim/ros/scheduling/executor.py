@@ -41,6 +41,8 @@ class Executor:
     """The entities that it keeps in use until its next update, though they are destroyed before."""
     already_spinning = "Executor is already spinning"
     """The message of the RuntimeError for a nested or second spin."""
+    replies_in_tasks = False
+    """Whether what a service's coroutine returns is sent by a task of its own."""
 
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = get_default_context() if context is None else context
