@@ -6,10 +6,11 @@ packages that are registered under the entry-point group ``cbtui.lessons``.
 
 import os
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import cache
 from itertools import zip_longest
 from pathlib import Path
+from typing import NamedTuple
 
 from msgspec import structs
 
@@ -29,19 +30,32 @@ class UnknownLesson(LookupError):  # noqa: N818 - the sentence it carries is wha
 def lessons() -> tuple[Lesson, ...]:
     """Return every lesson in teaching order, numbered from 1; those from elsewhere follow the package's own.
 
-    They are read once for each value of the environment variable.
+    They are read once for each value of the environment variable. Lessons at fault are left out.
 
     Raises:
-        BadLesson: a lesson's folder is at fault, two lessons have one id, or a place for lessons has none.
+        BadLesson: a place for lessons has none.
     """
-    return _lessons(os.environ.get(VARIABLE, ""))
+    return _catalogue(os.environ.get(VARIABLE, "")).lessons
+
+
+def faults() -> tuple[BadLesson, ...]:
+    """Return what is wrong with the lessons that were left out. Raises BadLesson as ``lessons``."""
+    return tuple(_catalogue(os.environ.get(VARIABLE, "")).faults.values())
 
 
 def find(lesson_id: str) -> Lesson:
-    """Return the lesson with this id or number. Raises UnknownLesson, which names one that is near."""
+    """Return the lesson with this id or number.
+
+    Raises:
+        BadLesson: it is at fault.
+        UnknownLesson: there is none; the text names one that is near.
+    """
     for lesson in lessons():
         if lesson_id in (lesson.id, str(lesson.number)):
             return lesson
+    for folder, fault in _catalogue(os.environ.get(VARIABLE, "")).faults.items():
+        if folder.name == lesson_id:
+            raise fault
     if lesson_id.isdecimal():
         raise UnknownLesson(f"There are {len(lessons())} lessons, and none is number {lesson_id}.")
     raise UnknownLesson(f"No lesson is called {lesson_id!r}; {_nearest(lesson_id)}'cbtui list' shows all.")
@@ -64,26 +78,59 @@ def lessons_in(folder: Path) -> tuple[Lesson, ...]:
     Raises:
         BadLesson: one of them is invalid.
     """
-    places = ("", "*/", "*/*/")
-    paths = [path for place in places for path in folder.glob(f"{place}{DESCRIPTION_FILE}")]
-    found = [read_lesson(path.parent) for path in sorted(paths)]
-    return tuple(sorted(found, key=lambda lesson: lesson.number))
+    return _sorted(read_lesson(place) for place in _places_in(folder))
+
+
+class _Catalogue(NamedTuple):
+    lessons: tuple[Lesson, ...]
+    faults: dict[Path, BadLesson]
+    """What is wrong with the others, by their folders."""
 
 
 @cache
-def _lessons(folders: str) -> tuple[Lesson, ...]:
-    own = [lesson for unit in ROOT.glob("unit*") for lesson in lessons_in(unit)]
-    every = sorted(own, key=lambda lesson: lesson.number)
+def _catalogue(folders: str) -> _Catalogue:
+    faults: dict[Path, BadLesson] = {}
+    places = [place for unit in ROOT.glob("unit*") for place in _places_in(unit)]
+    every = _sorted(_readable(places, faults))
     for folder, source in {folder: source for source, folder in _elsewhere(folders)}.items():
-        added = lessons_in(folder)
+        added = _places_in(folder)
         if not added:
             raise BadLesson(f"{source}: there is no lesson in {folder}")
-        every += added
-    _check_ids(every)
-    return tuple(
-        structs.replace(lesson, number=place, following=_announcement(following))
-        for place, (lesson, following) in enumerate(zip_longest(every, every[1:]), start=1)
+        every += _sorted(_readable(added, faults))
+    known: dict[str, Lesson] = {}
+    for lesson in every:
+        other = known.setdefault(lesson.id, lesson)
+        if other is not lesson:
+            faults[lesson.folder] = BadLesson(
+                f"{lesson.folder / DESCRIPTION_FILE}: the field 'id' is wrong: "
+                f"the lesson in {other.folder} is called {lesson.id!r} too"
+            )
+    every = tuple(known.values())
+    numbered = enumerate(zip_longest(every, every[1:]), start=1)
+    return _Catalogue(
+        tuple(
+            structs.replace(lesson, number=place, following=_announcement(following))
+            for place, (lesson, following) in numbered
+        ),
+        faults,
     )
+
+
+def _places_in(folder: Path) -> list[Path]:
+    places = ("", "*/", "*/*/")
+    return sorted(path.parent for place in places for path in folder.glob(f"{place}{DESCRIPTION_FILE}"))
+
+
+def _readable(places: list[Path], faults: dict[Path, BadLesson]) -> Iterator[Lesson]:
+    for place in places:
+        try:
+            yield read_lesson(place)
+        except BadLesson as fault:
+            faults[place] = fault
+
+
+def _sorted(found: Iterable[Lesson]) -> tuple[Lesson, ...]:
+    return tuple(sorted(found, key=lambda lesson: lesson.number))
 
 
 def _announcement(following: Lesson | None) -> str:
@@ -147,17 +194,6 @@ def _locations(package: str) -> list[str]:
     except (ImportError, ValueError):  # not a name, or the name of a module without a spec
         return []
     return list((spec and spec.submodule_search_locations) or ())
-
-
-def _check_ids(every: list[Lesson]) -> None:
-    known: dict[str, Lesson] = {}
-    for lesson in every:
-        other = known.setdefault(lesson.id, lesson)
-        if other is not lesson:
-            path = lesson.folder / DESCRIPTION_FILE
-            raise BadLesson(
-                f"{path}: the field 'id' is wrong: the lesson in {other.folder} is called {lesson.id!r} too"
-            )
 
 
 def _nearest(lesson_id: str) -> str:

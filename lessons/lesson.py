@@ -3,8 +3,8 @@
 import os
 import re
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
-from typing import Any
 
 import msgspec
 from msgspec import structs
@@ -87,54 +87,71 @@ def read_lesson(folder: Path) -> Lesson:
     its id is not the folder's name, or when a file that it needs is missing.
     """
     path = folder / DESCRIPTION_FILE
+    text = _text(path)
     try:
-        description = msgspec.convert(_table(path), Description)
+        description = msgspec.convert(plain_toml.load(text), Description)
     except msgspec.ValidationError as error:
-        raise BadLesson(f"{path}: {_fault(str(error))}") from error
+        fault, field = _fault(str(error))
+        raise BadLesson(f"{_place(path, text, field)}: {fault}") from error
+    except ValueError as error:  # errors of the parser, and of its conversion of numbers and texts
+        what, line = _SYNTAX_ERROR.findall(str(error))[0]
+        raise BadLesson(f"{path}{f':{line}' if line else ''}: is not valid TOML: {what}") from error
     if description.id != folder.name:
-        raise BadLesson(f"{path}: the field 'id' is wrong: {description.id!r} is not the name of its folder")
+        fault = f"the field 'id' is wrong: {description.id!r} is not the name of its folder"
+        raise BadLesson(f"{_place(path, text, 'id')}: {fault}")
     for field, file in _files_of(description):
         if not (folder / file).is_file():
             wanted_by = f"the field {field!r} is wrong: " if field else ""
-            raise BadLesson(f"{path}: {wanted_by}there is no file {file!r} beside it")
+            raise BadLesson(f"{_place(path, text, field)}: {wanted_by}there is no file {file!r} beside it")
     return Lesson(**structs.asdict(description), folder=folder)
 
 
-def _files_of(description: Description) -> Iterator[tuple[str | None, str]]:
-    """Yield the required files, each with the field that names it."""
+def _files_of(description: Description) -> Iterator[tuple[str, str]]:
+    """Yield the required files, each with the field that names it, if one does."""
     yield "setup.node", description.setup.node
-    yield None, GUIDE_FILE
+    yield "", GUIDE_FILE
     if description.exercise is not None:
         yield "exercise.starter", description.exercise.starter
         yield "exercise.solution", description.exercise.solution
     if description.exercise is not None or description.predictions:
-        yield None, CHECKS_FILE
+        yield "", CHECKS_FILE
 
 
-def _table(path: Path) -> dict[str, Any]:
+def _text(path: Path) -> str:
     try:
-        return plain_toml.load(untrusted.read_text(path))
+        return untrusted.read_text(path)
     except OSError as error:
         raise BadLesson(f"{path}: cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
         raise BadLesson(f"{path}:{untrusted.decoding_fault(error)}") from error
-    except ValueError as error:  # errors of the parser, and of its conversion of numbers and texts
-        raise BadLesson(f"{path}: is not valid TOML: {error}") from error
 
 
+_SYNTAX_ERROR = re.compile(r"(.*?)(?: \(at line (\d+), .*\))?\Z", re.DOTALL)
 _ERROR = re.compile(r"(?P<what>.*?)(?: - at `\$\.?(?P<where>.*)`)?", re.DOTALL)
 _FIELD_ERROR = re.compile(r"Object (?P<kind>missing required|contains unknown) field `(?P<field>.*)`")
 
 
-def _fault(error: str) -> str:
-    """Turn an error of msgspec (`Expected …, got … - at `$.setup.node``) into the end of a sentence."""
+def _fault(error: str) -> tuple[str, str]:
+    """Turn an error of msgspec (`Expected …, got … - at `$.setup.node``) into the end of a sentence.
+
+    The second text is the field that it is about, or for a missing one the table that lacks it.
+    """
     parts = _ERROR.fullmatch(error)
     assert parts is not None, "the pattern matches every text"
-    what, where = parts["what"], parts["where"]
-    if not where and not _FIELD_ERROR.fullmatch(what):
-        return what
+    what, where = parts["what"], parts["where"] or ""
     if about_field := _FIELD_ERROR.fullmatch(what):
         field = ".".join(filter(None, (where, about_field["field"])))
-        missing = about_field["kind"] == "missing required"
-        return f"the field {field!r} is " + ("missing" if missing else "not known")
-    return f"the field {where!r} is wrong: {what[:1].lower()}{what[1:]}"
+        if about_field["kind"] == "missing required":
+            return f"the field {field!r} is missing", where
+        return f"the field {field!r} is not known", field
+    return f"the field {where!r} is wrong: {what[:1].lower()}{what[1:]}" if where else what, where
+
+
+def _place(path: Path, text: str, field: str) -> str:
+    """Return the file, with the line of a field such as `try[1].text` where it has one of its own."""
+    end = 0
+    for name, place in re.findall(r"([\w-]+)(?:\[(\d+)\])?", field):
+        named = re.compile(rf"^[ \t]*(?:{name}\b|\[+[\w.-]*\b{name}\])", re.MULTILINE)
+        found = list(islice(named.finditer(text, end), int(place or 0) + 1))
+        end = found[-1].end() if found else end
+    return f"{path}:{text.count(chr(10), 0, end) + 1}" if end else str(path)

@@ -76,7 +76,6 @@ def open_console(options: argparse.Namespace) -> int:
         lesson = opened.id
     look = console_look(options, "cbtui run")
     changed = None if target is None else changes.seeded_changes_of(options)
-    _read_lessons()
     return run_console(
         look, start_lesson=lesson, start_puzzle=puzzle, start_file=start_file, start_changes=changed
     )
@@ -93,13 +92,6 @@ def _open_exercise(options: argparse.Namespace) -> int:
         )
     look = console_look(options, "cbtui check")
     return run_console(look, start_exercise=lesson.id, start_changes=changed)
-
-
-def _read_lessons() -> None:
-    """Read the lessons, so that a faulty one is reported before the console takes over the terminal."""
-    from lessons.catalogue import lessons
-
-    lessons()
 
 
 def replay(options: argparse.Namespace) -> int:
@@ -134,6 +126,9 @@ def run_console(look: Appearance, **begins_with: Any) -> int:
 
     The other arguments are ``CbtuiApp``'s own.
     """
+    from lessons.catalogue import faults  # before the console takes over the terminal
+
+    look = look._replace(complaints=[*look.complaints, *map(str, faults())])
     if look.screen_reader:
         return open_in_lines(look, **begins_with)
     with _opening():

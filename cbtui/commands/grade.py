@@ -170,8 +170,10 @@ def _check_output(option: str, path: Path | None, papers: "list[HandIn]") -> Non
 
 def _papers(options: argparse.Namespace) -> "list[HandIn]":
     from cbtui.grading.grading import hand_ins_in
-    from lessons.catalogue import lessons
+    from lessons.catalogue import faults, lessons
 
+    for fault in faults():
+        complain(f"what is handed in for this lesson is not graded: {fault}")
     only = None if options.lesson is None else exercise_of(options.lesson)
     folder = folder_of(options.folder)
     exercises = [lesson for lesson in lessons() if lesson.exercise is not None]

@@ -4,16 +4,16 @@ import argparse
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from cbtui.text.output import say
+from cbtui.text.output import complain, say
 
 if TYPE_CHECKING:
     from cbtui.learning.stage import StageNote
 
 
 def list_lessons(_options: argparse.Namespace) -> int:
-    """Print the lessons."""
+    """Print the lessons, and what is wrong with those that are left out."""
     from cbtui.learning.stage import Stage, puzzle_note, stage_note, stage_of
-    from lessons.catalogue import lessons
+    from lessons.catalogue import faults, lessons
     from lessons.progress import Progress
     from lessons.puzzles import puzzles_of
 
@@ -30,6 +30,8 @@ def list_lessons(_options: argparse.Namespace) -> int:
             for puzzle in puzzles_of(lesson.id):
                 about = f"{puzzle.id:{width}}  puzzle: {puzzle.title}"
                 _say_row(puzzle_note(progress.of(puzzle.id)), "", about)
+    for fault in faults():
+        complain(str(fault))
     return 0
 
 

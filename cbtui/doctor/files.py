@@ -7,7 +7,7 @@ from pathlib import Path
 
 from cbtui.doctor.examination import Examination, fault, note, well
 from cbtui.keys.config import read_file, standard_path
-from lessons.catalogue import ROOT, VARIABLE, lessons
+from lessons.catalogue import ROOT, VARIABLE, faults, lessons
 from lessons.lesson import BadLesson
 from lessons.progress import faulty_line, usual_path
 from sim.files.untrusted import mode_of
@@ -98,9 +98,12 @@ def progress() -> Examination:
 def lessons_found() -> Iterator[Examination]:
     """Examine all lessons, those from other folders included."""
     try:
-        every = lessons()
+        every, troubles = lessons(), faults()
     except BadLesson as error:
-        yield fault("lessons", str(error), f"fix it, or take its folder out of {VARIABLE}")
+        every, troubles = (), (error,)
+    for trouble in troubles:
+        yield fault("lessons", str(trouble), f"fix it, or take its folder out of {VARIABLE}")
+    if not every:
         return
     elsewhere = [lesson for lesson in every if not lesson.folder.is_relative_to(ROOT)]
     more = f", {len(elsewhere)} of them from elsewhere" if elsewhere else ""

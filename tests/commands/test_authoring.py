@@ -6,6 +6,11 @@ from pathlib import Path
 import pytest
 
 from cbtui import cli
+from cbtui.app import CbtuiApp
+from cbtui.commands.console import run_console
+from cbtui.commands.options.appearance import Appearance
+from cbtui.keys.keymap import Keymap
+from cbtui.looks.colour_themes import STANDARD
 
 
 def test_a_new_node_runs_well_and_is_never_written_over(
@@ -96,20 +101,56 @@ def test_a_lesson_that_is_not_whole_is_not_left_there(
     assert not (tmp_path / "new").exists()
 
 
-@pytest.mark.parametrize("command", [["list"], ["run", "single-thread"], ["start", "split-groups"]])
-def test_a_lesson_at_fault_is_named_in_one_line(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]
-) -> None:
+@pytest.fixture
+def fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> str:
+    """The sentence on the lesson two-belts in the temporary folder, which lacks its node."""
     folder = tmp_path / "two-belts"
     cli.main(["new-lesson", str(folder)])
     (folder / "node.py").unlink()
     capsys.readouterr()
+    place = f"{folder}/lesson.toml:12"
+    return f"cbtui: {place}: the field 'setup.node' is wrong: there is no file 'node.py' beside it\n"
+
+
+@pytest.mark.parametrize("command", ["open", "run", "start"])
+def test_a_lesson_at_fault_is_refused_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str, fault: str
+) -> None:
     with pytest.raises(SystemExit, match="2"):
-        cli.main([*command, "--lessons", str(tmp_path)])
-    (line,) = capsys.readouterr().err.splitlines()
-    assert line == (
-        f"cbtui: {folder}/lesson.toml: the field 'setup.node' is wrong: there is no file 'node.py' beside it"
-    )
+        cli.main([command, "two-belts", "--lessons", str(tmp_path)])
+    assert capsys.readouterr().err == fault
+
+
+def test_the_list_names_a_lesson_at_fault_after_the_others(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], fault: str
+) -> None:
+    assert cli.main(["list", "--lessons", str(tmp_path)]) == 0
+    out, err = capsys.readouterr()
+    assert err == fault
+    assert "single-thread" in out
+    assert "two-belts" not in out
+
+
+def test_another_lesson_is_begun_beside_one_at_fault(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, fault: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["start", "split-groups", "--lessons", "."]) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_the_console_begins_with_the_sentence_on_a_lesson_at_fault(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: str
+) -> None:
+    shown: list[str] = []
+
+    def run(app: CbtuiApp) -> None:
+        shown.extend(app._complaints)
+
+    monkeypatch.setattr(CbtuiApp, "run", run)
+    monkeypatch.setenv("CBTUI_LESSONS", str(tmp_path))
+    run_console(Appearance("block", "auto", STANDARD, Keymap(), ["The colour is unknown."]))
+    assert shown == ["The colour is unknown.", fault.removeprefix("cbtui: ").rstrip()]
 
 
 def test_lessons_of_nowhere_are_refused(capsys: pytest.CaptureFixture[str]) -> None:

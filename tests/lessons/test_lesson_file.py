@@ -79,8 +79,9 @@ def sentence_about(folder: Path) -> str:
         read_lesson(folder)
     sentence = str(caught.value)
     file = str(folder / "lesson.toml")
-    assert sentence.startswith(f"{file}: ")
-    return sentence.removeprefix(f"{file}: ")
+    place, sentence = sentence.split(": ", 1)
+    assert place.split(":")[0] == file
+    return sentence
 
 
 def test_a_lesson_holds_what_its_file_says(kitchen: Kitchen) -> None:
@@ -212,9 +213,33 @@ def test_a_name_of_the_wrong_form_is_refused(kitchen: Kitchen, right: str, wrong
 
 
 def test_a_file_that_is_not_toml_is_said_to_be_so(kitchen: Kitchen) -> None:
-    sentence = sentence_about(kitchen(WHOLE.replace("number = 7", "number 7")))
-    assert sentence.startswith("is not valid TOML: ")
-    assert "(at line 2, " in sentence
+    folder = kitchen(WHOLE.replace("number = 7", "number 7"))
+    with pytest.raises(BadLesson) as caught:
+        read_lesson(folder)
+    assert str(caught.value) == (
+        f"{folder}/lesson.toml:2: is not valid TOML: Expected '=' after a key in a key/value pair"
+    )
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "line"),
+    [
+        ("number = 7", 'number = "7"', ":2"),
+        ('id = "two-cooks"', 'id = "cooks"', ":1"),
+        ('"node.py"', '"chef.py"', ":10"),
+        ('node = "node.py"\n', "", ":9"),
+        ('"5.0"', "5.0", ":11"),
+        ('[[try]]\nkey = "s"', '[[try]]\nkey = "r"\ntext = "text"\n[[try]]\nkey = 3', ":22"),
+        ('title = "Two cooks"\n', "", ""),
+    ],
+)
+def test_the_line_of_a_bad_field_or_of_its_table_is_named(
+    kitchen: Kitchen, right: str, wrong: str, line: str
+) -> None:
+    folder = kitchen(WHOLE.replace(right, wrong, 1))
+    with pytest.raises(BadLesson) as caught:
+        read_lesson(folder)
+    assert str(caught.value).startswith(f"{folder}/lesson.toml{line}: the field ")
 
 
 def test_a_file_that_is_not_utf8_is_said_to_be_so_with_its_line(kitchen: Kitchen) -> None:

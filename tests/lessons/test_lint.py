@@ -33,7 +33,7 @@ def change(path: Path, old: str, new: str) -> None:
             "lesson.toml",
             "number = 1",
             "number = 0",
-            "lesson.toml: the field 'number' is wrong: expected `int` >= 1",
+            "lesson.toml:3: the field 'number' is wrong: expected `int` >= 1",
         ),
         (
             "checks.py",

@@ -6,7 +6,7 @@ import pytest
 
 from cbtui.learning.lesson_scaffold import make_lesson
 from lessons import catalogue
-from lessons.catalogue import VARIABLE, find, lessons, lessons_in
+from lessons.catalogue import VARIABLE, faults, find, lessons, lessons_in
 from lessons.lesson import BadLesson
 
 OWN = len(lessons())
@@ -30,7 +30,7 @@ def announce(monkeypatch: pytest.MonkeyPatch, installed: Path, value: str) -> No
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: theirs\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text(f"[{catalogue.ENTRY_POINTS}]\ntheirs = {value}\n")
     monkeypatch.syspath_prepend(str(installed))
-    monkeypatch.setattr(catalogue, "_lessons", catalogue._lessons.__wrapped__)
+    monkeypatch.setattr(catalogue, "_catalogue", catalogue._catalogue.__wrapped__)
 
 
 def test_lessons_of_a_folder_follow_the_packages_own_in_the_order_of_their_numbers(folder: Path) -> None:
@@ -56,18 +56,28 @@ def test_a_folder_that_is_named_twice_counts_once(folder: Path, monkeypatch: pyt
     assert len(lessons()) == OWN + 2
 
 
-def test_two_lessons_with_one_id_are_refused_with_both_places(
+def test_of_two_lessons_with_one_id_the_second_is_at_fault_with_both_places(
     folder: Path, tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     other = tmp_path_factory.mktemp("other")
     make_lesson(other / "third-thing")
     monkeypatch.setenv(VARIABLE, f"{folder}:{other}")
-    with pytest.raises(BadLesson) as caught:
-        lessons()
-    assert str(caught.value) == (
+    assert find("third-thing").folder == folder / "third-thing"
+    (fault,) = faults()
+    assert str(fault) == (
         f"{other}/third-thing/lesson.toml: the field 'id' is wrong: "
         f"the lesson in {folder}/third-thing is called 'third-thing' too"
     )
+
+
+def test_a_lesson_at_fault_is_left_out_and_told_when_it_is_asked_for(folder: Path) -> None:
+    (folder / "second-thing" / "guide.md").unlink()
+    assert [lesson.id for lesson in lessons()][OWN:] == ["third-thing"]
+    sentence = f"{folder}/second-thing/lesson.toml: there is no file 'guide.md' beside it"
+    assert [str(fault) for fault in faults()] == [sentence]
+    with pytest.raises(BadLesson) as caught:
+        find("second-thing")
+    assert str(caught.value) == sentence
 
 
 @pytest.mark.parametrize(
