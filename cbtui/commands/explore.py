@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cbtui.commands.check import add_limit, exercise_of
-from cbtui.commands.options import changes, inputs, more_lessons, values
+from cbtui.commands.options import changes, inputs, more_lessons, outputs, values
 from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, refuse
 from cbtui.terminal.interrupts import INTERRUPTED
 from cbtui.text.output import complain, say
@@ -67,6 +67,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="run part I of N of the schedules, for machines that share them; see --save and --merge",
     )
     parser.add_argument("--save", metavar="FILE.json", help="write the results to a file, for --merge")
+    outputs.add_force(parser)
     parser.add_argument(
         "--merge",
         metavar="FILE.json",
@@ -88,6 +89,8 @@ def explore(options: argparse.Namespace) -> int:
     if options.target is None:
         refuse("explore needs a FILE.py or a LESSON; cbtui list lists the lessons")
     _check(options)
+    files = filter(is_file_name, [options.target])
+    outputs.check_outputs({"--save": options.save}, map(Path, files), force=options.force)
     exploration, replays = _of_file(options) if is_file_name(options.target) else _of_lesson(options)
     part, parts = options.shard
     shard = Shard(
@@ -196,8 +199,8 @@ def _exit_code(shard: "Shard") -> int:
 
 def _merge(options: argparse.Namespace) -> int:
     """Print the merged results of several files; returns the exit code as ``explore`` does."""
-    if options.target is not None or options.save is not None:
-        refuse("--merge runs nothing: leave out the target and --save")
+    if options.target is not None or options.save is not None or options.force:
+        refuse("--merge runs nothing: leave out the target, --save and --force")
     from cbtui.runs.judged.shards import BadShardError, merged
 
     try:

@@ -4,7 +4,7 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from cbtui.commands.options.targets import same_file
+from cbtui.commands.options.outputs import add_force, check_outputs
 from cbtui.commands.options.values import moment, whole_number
 from cbtui.commands.run import add_chain
 from cbtui.runs.recorded.exporting import FORMATS, WIDTH, ExportError, ExportRequest, export
@@ -20,6 +20,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", dest="end", metavar="S", type=moment, help="where it ends (the run's end)")
     add_chain(parser)
     parser.add_argument("--width", metavar="PIXELS", type=whole_number, help=f"how wide it is ({WIDTH})")
+    add_force(parser)
 
 
 def export_command(options: argparse.Namespace) -> int:
@@ -56,7 +57,7 @@ def _request(options: argparse.Namespace, source: Path) -> ExportRequest:
         raise ExportError(
             f"name what to write, such as --svg lanes.svg; choose from --{', --'.join(FORMATS)}"
         )
-    _check_paths(outputs, source)
+    check_outputs({f"--{name}": path for name, path in outputs.items()}, [source], force=options.force)
     placed = [options.start, options.end, options.width]
     if "svg" not in outputs and any(value is not None for value in placed):
         raise ExportError("--from, --to and --width are for the picture; add --svg OUT.svg")
@@ -71,12 +72,3 @@ def _request(options: argparse.Namespace, source: Path) -> ExportRequest:
     if not NARROWEST <= width <= WIDEST:
         raise ExportError(f"a picture cannot be {width} pixels wide; give {NARROWEST} to {WIDEST}")
     return ExportRequest(outputs, start, options.end, width, chains=options.chains)
-
-
-def _check_paths(outputs: dict[str, Path], source: Path) -> None:
-    seen = [source]
-    for name, path in outputs.items():
-        taken = next((each for each in seen if same_file(each, path)), None)
-        if taken is not None:
-            raise ExportError(f"--{name} would overwrite {taken}; give it a file of its own")
-        seen.append(path)

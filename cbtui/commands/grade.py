@@ -8,8 +8,8 @@ from stat import S_ISDIR
 from typing import TYPE_CHECKING
 
 from cbtui.commands.check import add_limit, exercise_of
-from cbtui.commands.options import changes, more_lessons
-from cbtui.commands.options.targets import folder_of, refuse, same_file
+from cbtui.commands.options import changes, more_lessons, outputs
+from cbtui.commands.options.targets import folder_of, refuse
 from cbtui.text.output import complain, say, say_data
 from sim.files.untrusted import mode_of
 
@@ -53,6 +53,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="keep the rows that are in OUT.csv already, and grade what is missing there or was changed",
     )
+    outputs.add_force(parser)
     add_limit(parser, 30)
     changes.add_on(parser)
     more_lessons.add_option(parser)
@@ -64,10 +65,13 @@ def grade(options: argparse.Namespace) -> int:
     papers = _papers(options)
     path = None if options.csv in {None, _STANDARD_OUTPUT} else Path(options.csv)
     junit = None if options.junit is None else Path(options.junit)
-    for option, output in (("--junit", junit), ("--csv", path)):
-        _check_output(option, output, papers)
     if options.resume and path is None:
         refuse("--resume goes on with a table; name it with --csv OUT.csv")
+    files = [paper.file for paper in papers if paper.file is not None]
+    force = options.force or options.resume
+    outputs.check_outputs({"--junit": junit, "--csv": path}, files, force=force)
+    for output in filter(None, (junit, path)):
+        _check_writable(output)
     from cbtui.grading.confinement import Confinement
     from cbtui.grading.grading import Grader, PackagesChangedError, line
     from cbtui.grading.mark_sheet import MarkSheet, SheetFile, SheetStream, UnwritableSheetError
@@ -148,13 +152,8 @@ def _write(path: Path, text: str) -> bool:
     return True
 
 
-def _check_output(option: str, path: Path | None, papers: "list[HandIn]") -> None:
+def _check_writable(path: Path) -> None:
     """Refuse a file that cannot be written before any program is run."""
-    if path is None:
-        return
-    for paper in papers:
-        if paper.file is not None and same_file(path, paper.file):
-            refuse(f"{option} would overwrite {paper.file}; give it a file of its own")
     try:
         mode = mode_of(path)
         place = path if mode else path.parent

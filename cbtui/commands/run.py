@@ -5,9 +5,9 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands.options import changes, inputs, more_lessons, values
+from cbtui.commands.options import changes, inputs, more_lessons, outputs, values
 from cbtui.commands.options.seeds import add_seed, check_seed
-from cbtui.commands.options.targets import RunTargets, is_file_name, refuse, same_file, targets_of
+from cbtui.commands.options.targets import RunTargets, is_file_name, refuse, targets_of
 from cbtui.text.output import complain
 
 if TYPE_CHECKING:
@@ -65,9 +65,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE.mcap",
         help="record the run, with its topics as rosbag2 and Foxglove read them",
     )
-    parser.add_argument(
-        "--force", action="store_true", help="let --record replace a file that is there already"
-    )
+    outputs.add_force(parser)
     more_lessons.add_option(parser)
 
 
@@ -105,8 +103,6 @@ def _repeat(options: argparse.Namespace) -> int:
         refuse("only runs on the virtual clock can be repeated exactly; leave out --clock real")
     if options.calls or options.lines or options.typed:
         refuse("--inputs gives the run all its inputs; leave out --call, --at and --type")
-    if options.force and options.record is None:
-        refuse("--force lets --record replace a file; there is nothing to record to")
     _check_outputs(options, [Path(name) for name in (options.inputs, *options.targets)])
     from cbtui.runs.recorded.repeat import CannotRepeatError, repeated_setup
 
@@ -154,18 +150,14 @@ def _request(options: argparse.Namespace, program: RunTargets) -> "RunRequest":
 
 
 def _check_outputs(options: argparse.Namespace, taken: list[Path]) -> None:
-    """Refuse to overwrite an input, or to write two outputs into one file."""
-    outputs = {"--events": options.events, "--json": options.json, "--record": options.record}
-    for option, path in [(option, Path(name)) for option, name in outputs.items() if name is not None]:
-        for each in taken:
-            if same_file(each, path):
-                refuse(f"{option} would overwrite {each}; give it a file of its own")
-        taken = [*taken, path]
+    outputs.check_outputs(
+        {"--events": options.events, "--json": options.json, "--record": options.record},
+        taken,
+        force=options.force,
+    )
 
 
 def _check_run(options: argparse.Namespace, *, is_file: bool) -> None:
     inputs.check(options, options.seconds)
-    if options.force and options.record is None:
-        refuse("--force lets --record replace a file; there is nothing to record to")
     if options.arguments and not is_file:
         refuse("a lesson has its own arguments; leave out what follows --")

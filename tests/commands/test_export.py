@@ -128,7 +128,7 @@ def test_a_file_that_is_no_recording_is_refused_and_leaves_outputs_alone(
     nonsense.write_bytes(b"nonsense")
     kept.write_text("kept")
     for path in (nonsense, tmp_path / "missing.mcap", tmp_path):
-        assert cli.main(["export", str(path), "--csv", str(kept)]) == 2
+        assert cli.main(["export", str(path), "--csv", str(kept), "--force"]) == 2
         assert len(capsys.readouterr().err.splitlines()) == 1
     assert kept.read_text() == "kept"
 

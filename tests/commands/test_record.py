@@ -102,7 +102,7 @@ def test_info_tells_of_losses_and_prints_no_control_characters(
         (["--record", "{there}"], "there is a file {there} already; give another name, or --force"),
         (["--record", "/no/such/folder/x.mcap"], "cannot record to /no/such/folder/x.mcap: No such file"),
         (["--record", "/dev/full", "--force"], "cannot record to /dev/full: No space left on device"),
-        (["--force"], "--force lets --record replace a file; there is nothing to record to"),
+        (["--force"], "--force replaces files that are there already; no file to write is named"),
     ),
 )
 def test_what_cannot_be_recorded_is_refused_before_the_run(

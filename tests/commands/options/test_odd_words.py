@@ -111,14 +111,22 @@ def test_what_cannot_be_opened(complaint: Complaint, words: list[str], sentence:
         ),
         (["run", "node.py", "--record", "folder"], "cannot record to folder: it is a folder"),
         (
-            ["run", "node.py", "--record", "run.mcap", "--events", "kept.txt"],
+            ["run", "node.py", "--record", "run.mcap", "--events", "new.txt"],
             "there is a file run.mcap already",
         ),
+        (["run", "node.py", "--events", "kept.txt"], "there is a file kept.txt already; give another name"),
+        (["run", "node.py", "--json", "kept.txt"], "there is a file kept.txt already"),
+        (["explore", "node.py", "--save", "kept.txt"], "there is a file kept.txt already"),
+        (["export", "run.mcap", "--svg", "kept.txt"], "there is a file kept.txt already"),
+        (["grade", ".", "--csv", "kept.txt"], "there is a file kept.txt already"),
+        (["grade", ".", "--junit", "kept.txt"], "there is a file kept.txt already"),
+        (["grade", ".", "--csv", "new.txt", "--junit", "new.txt"], "--csv would overwrite new.txt"),
+        (["run", "node.py", "--force"], "--force replaces files that are there already; no file to write"),
         (
             ["run", "node.py", "--record", "run.mcap", "--force", "--events", "no/x"],
             "cannot write events to no/x: No such file or directory",
         ),
-        (["export", "run.mcap", "--csv", "kept.txt", "--svg", "no/x"], "cannot write no/x"),
+        (["export", "run.mcap", "--force", "--csv", "kept.txt", "--svg", "no/x"], "cannot write no/x"),
         (["export", "run.mcap", "--csv", "new.csv", "--svg", "/dev/full"], "cannot write /dev/full"),
         (["grade", ".", "--csv", "split_groups.py"], "--csv would overwrite split_groups.py"),
         (["grade", ".", "--csv", "folder"], "folder cannot be written: it is a folder"),
@@ -128,6 +136,14 @@ def test_nothing_is_overwritten_or_left_half_written(
     complaint: Complaint, words: list[str], sentence: str
 ) -> None:
     assert sentence in complaint(words)
+
+
+def test_force_replaces_what_is_there(tmp_path: Path) -> None:
+    recording, kept = tmp_path / "run.mcap", tmp_path / "kept.txt"
+    write(recording, shared_group_run().events)
+    kept.write_text("precious")
+    assert cli.main(["export", str(recording), "--csv", str(kept), "--force"]) == 0
+    assert kept.read_text().startswith("start_s,")
 
 
 def test_another_name_of_the_recording_is_no_place_for_its_export(

@@ -1,0 +1,39 @@
+"""The files that a command writes: one that is there already is only replaced with ``--force``."""
+
+import argparse
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from stat import S_ISREG
+
+from cbtui.commands.options.targets import refuse, same_file
+from sim.files.untrusted import mode_of
+
+
+def add_force(parser: argparse.ArgumentParser) -> None:
+    """Add ``--force``."""
+    parser.add_argument("--force", action="store_true", help="replace files that are there already")
+
+
+def check_outputs(outputs: Mapping[str, str | Path | None], inputs: Iterable[Path], *, force: bool) -> None:
+    """Exit with code 2 and one line unless each output, by its option, has a file of its own.
+
+    That may be there already only with ``force``; pipes and devices are written to in any case.
+    """
+    wanted = [(option, Path(name)) for option, name in outputs.items() if name is not None]
+    if force and not wanted:
+        refuse("--force replaces files that are there already; no file to write is named")
+    taken = list(inputs)
+    for option, path in wanted:
+        for each in taken:
+            if same_file(each, path):
+                refuse(f"{option} would overwrite {each}; give it a file of its own")
+        if not force and _is_file(path):
+            refuse(f"there is a file {path} already; give another name, or --force to replace it")
+        taken.append(path)
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return S_ISREG(mode_of(path))
+    except OSError:  # writing it says why
+        return False
