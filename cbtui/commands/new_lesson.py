@@ -13,7 +13,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def new_lesson(options: argparse.Namespace) -> int:
-    """Create a lesson; returns the exit code: 0 on success, 1 if it could not be created."""
+    """Create a lesson; returns the exit code: 0 on success, 2 if it could not be created."""
     from cbtui.learning.lesson_scaffold import CannotScaffoldError, make_lesson
 
     folder = Path(options.folder)
@@ -21,7 +21,7 @@ def new_lesson(options: argparse.Namespace) -> int:
         files = make_lesson(folder)
     except CannotScaffoldError as error:
         complain(str(error))
-        return 1
+        return 2
     say("".join(f"{folder / file.name}\n" for file in files))
     where = shlex.quote(str(folder))
     say(

@@ -17,7 +17,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def start(options: argparse.Namespace) -> int:
-    """Put the starter of an exercise into a folder; returns the exit code: 0 if it is there, else 1."""
+    """Put the starter of an exercise into a folder; returns the exit code: 0 if it is there, else 2."""
     lesson = exercise_of(options.lesson)
     from cbtui.learning.exercise_files import CannotPlaceError, StarterPlacement, place_starter
 
@@ -27,13 +27,13 @@ def start(options: argparse.Namespace) -> int:
         placed = place_starter(lesson, folder)
     except CannotPlaceError as error:
         complain(str(error))
-        return 1
+        return 2
     if placed is StarterPlacement.CHANGED:
         complain(
             f"{path} is there already, and is not as it was put there: nothing was written; "
             "give another folder, or move it away to begin again"
         )
-        return 1
+        return 2
     assert lesson.exercise is not None, "there is a starter"
     known = "is there already, unchanged" if placed is StarterPlacement.THERE_ALREADY else "is yours now"
     say(f"{path} {known}.\n{fill(lesson.exercise.asks.strip(), 79)}\n")

@@ -16,7 +16,8 @@ from cbtui.looks.colour_themes import STANDARD
 def test_a_new_node_runs_well_and_is_never_written_over(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    file = tmp_path / "my own.py"
+    file = tmp_path / "my own" / "node.py"
+    file.parent.mkdir()
     assert cli.main(["new", str(file)]) == 0
     assert f"See it run: cbtui open '{file}'\n" in capsys.readouterr().out
     assert cli.main(["run", str(file), "--clock", "virtual", "--for", "5", "--call", "2"]) == 0
@@ -24,9 +25,38 @@ def test_a_new_node_runs_well_and_is_never_written_over(
     assert "longest waits: none" in told
     assert "answered after 2.0 s" in told
     file.write_text("mine\n")
-    assert cli.main(["new", str(file)]) == 1
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(["new", str(file)])
     assert file.read_text() == "mine\n"
-    assert cli.main(["new", str(tmp_path / "mine.txt")]) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [
+        ("mine.txt", "mine.txt is not the name of a program: give one that ends in .py"),
+        ("class.py", "class.py could not be imported"),
+        ("1a.py", "1a.py could not be imported"),
+        ("my-node.py", "my-node.py could not be imported"),
+        ("rclpy.py", "rclpy.py would hide the module rclpy from every program beside it: take another name"),
+        ("std_msgs.py", "would hide the module std_msgs"),
+        ("tf2_ros.py", "would hide the module tf2_ros"),
+        ("threading.py", "would hide the module threading"),
+        ("numpy.py", "would hide the module numpy"),
+    ],
+)
+def test_a_name_that_no_program_can_have_is_refused(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    name: str,
+    sentence: str,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(["new", name])
+    (line,) = capsys.readouterr().err.splitlines()
+    assert sentence in line
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_new_lesson_is_right_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -82,7 +112,7 @@ def test_a_lesson_that_cannot_be_made_is_said_to_be_so(
 ) -> None:
     (tmp_path / "there").mkdir()
     (tmp_path / "file").touch()
-    assert cli.main(["new-lesson", str(tmp_path / name)]) == 1
+    assert cli.main(["new-lesson", str(tmp_path / name)]) == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert sentence in line
     assert list((tmp_path / "there").iterdir()) == []
@@ -96,7 +126,7 @@ def test_a_lesson_that_is_not_whole_is_not_left_there(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("shutil.copyfile", full)
-    assert cli.main(["new-lesson", str(tmp_path / "new")]) == 1
+    assert cli.main(["new-lesson", str(tmp_path / "new")]) == 2
     assert "new cannot be made: No space left on device" in capsys.readouterr().err
     assert not (tmp_path / "new").exists()
 

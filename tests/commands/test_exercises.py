@@ -96,14 +96,14 @@ def test_start_leaves_an_unchanged_file_and_says_so(capsys: pytest.CaptureFixtur
 
 def test_start_never_writes_over_a_changed_file(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (here / "split_groups.py").write_text("mine")
-    assert cli.main(["start", "split-groups"]) == 1
+    assert cli.main(["start", "split-groups"]) == 2
     assert (here / "split_groups.py").read_text() == "mine"
     assert "split_groups.py is there already, and is not as it was put there" in capsys.readouterr().err
 
 
 def test_start_writes_through_no_dangling_link(here: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (here / "split_groups.py").symlink_to(here / "elsewhere.py")
-    assert cli.main(["start", "split-groups"]) == 1
+    assert cli.main(["start", "split-groups"]) == 2
     assert not (here / "elsewhere.py").exists()
     assert len(capsys.readouterr().err.splitlines()) == 1
 
@@ -115,7 +115,7 @@ def test_start_says_when_a_folder_takes_no_files(
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(exercise_files, "write_atomically", refuse)
-    assert cli.main(["start", "split-groups"]) == 1
+    assert cli.main(["start", "split-groups"]) == 2
     assert capsys.readouterr().err == "cbtui: split_groups.py cannot be written: Permission denied\n"
 
 
@@ -126,13 +126,13 @@ def test_start_leaves_no_half_of_a_file(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
-    assert cli.main(["start", "split-groups"]) == 1
+    assert cli.main(["start", "split-groups"]) == 2
     assert capsys.readouterr().err == "cbtui: split_groups.py cannot be written: No space left on device\n"
     assert not list(here.iterdir())
 
 
 def test_start_says_when_there_is_no_folder(capsys: pytest.CaptureFixture[str]) -> None:
-    assert cli.main(["start", "split-groups", "nowhere"]) == 1
+    assert cli.main(["start", "split-groups", "nowhere"]) == 2
     assert capsys.readouterr().err == "cbtui: there is no folder nowhere\n"
 
 
