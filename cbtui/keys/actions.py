@@ -44,6 +44,19 @@ OWN_TIME = {
     "take_over": "W",
 }
 """The actions that need a time that can be stopped, as real ROS 2's cannot; with their keys."""
+NOT_ALWAYS = {
+    "threads": "t",
+    "group": "g",
+    "set_up": "p",
+    "next_lesson": "n",
+    "explain": "a",
+    "cycle_camera": "c",
+    "reset_world": "r",
+    "call_service": "s",
+    "call_service_off": "S",
+    "record": "R",
+}
+"""Actions that make no sense for some of what a run's screen shows, such as a recording; with their keys."""
 _PANE = f"Go to a pane: {', '.join(PANES)}"
 
 _ROWS: dict[Scope, tuple[_Row, ...]] = {
@@ -131,6 +144,10 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("no_compare", "C", "", "Say what can be compared"),
         *((f"no_time('{name}')", key, "", _NO_TIME) for name, key in OWN_TIME.items()),
         ("no_take_over", "W", "", "Say when you can choose which thread goes on"),
+        *(
+            (f"no_use('{name}')", key, "", "Say why that key does nothing here")
+            for name, key in NOT_ALWAYS.items()
+        ),
         ("diagnoses", "d", "diagnoses", "List what went wrong, why, and what to do about it"),
         *(
             (f"show_pane('{name}')", str(number), "pane", f"Go to the {name}", _PANE)

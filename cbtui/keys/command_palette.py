@@ -36,7 +36,9 @@ class ActionsProvider(Provider):
         if scope is None:
             return
         for action in keymap_of(self.app).of(actions_of(scope)):
-            if action.id != "command_palette" and self.screen.check_action(*method_of(action)) is not False:
+            if action.id == "command_palette" or action.refused:
+                continue
+            if self.screen.check_action(*method_of(action)) is not False:
                 yield action
 
     def _run(self, action: KeyAction) -> "partial[Coroutine[Any, Any, None]]":

@@ -18,7 +18,7 @@ from cbtui.screens.compare_key import CompareKey
 from cbtui.screens.parts.choices import TakeOver
 from cbtui.screens.parts.cures import CureTrials
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TimeRefusals, TypingKeys, WorldKeys
-from cbtui.screens.parts.keys import Refusals
+from cbtui.screens.parts.keys import Absences, Refusals
 from cbtui.screens.parts.own_file import FileRead, OwnFile, read_when_saved
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.parts.restarts import Restarts, SetUpKeys
@@ -93,6 +93,7 @@ class LessonScreen(RunScreen[LiveRun]):
             ),
             *([] if lesson is None else self._teaching_parts(lesson)),
             Refusals(self, lesson, is_available),
+            Absences(self, runs, lesson, is_available),
             TimeRefusals(self, runs, is_available),
             **more,
         )

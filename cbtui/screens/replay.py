@@ -7,6 +7,7 @@ from cbtui.runs.live.replay import RecordedRun, of_recording
 from cbtui.runs.recorded.recording_file import setup_of
 from cbtui.runs.setup.changes import Changes, changes_in
 from cbtui.screens.parts.frames import FRAMES_A_SECOND
+from cbtui.screens.parts.keys import Absences
 from cbtui.screens.parts.playback import Playback
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.run import RunScreen
@@ -26,7 +27,8 @@ class ReplayScreen(RunScreen[RecordedRun]):
         )
         super().__init__(subject, charset, runs)
         self._playback = Playback(self, runs, self.navigation, monotonic_ns)
-        self.add_parts(self._playback)
+        absences = Absences(self, runs, None, lambda action: self._parts.offer(action, ()))
+        self.add_parts(self._playback, absences)
         runs.begin(speed=None)
 
     @property

@@ -8,8 +8,11 @@ from textual.widget import Widget
 
 from cbtui.keys.action import Scope
 from cbtui.looks.theme import Charset
+from cbtui.runs.live.live_run import ShownRun
+from cbtui.runs.live.replay import RecordedRun
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.part import RunHost, ScreenPart, ScreenParts
+from cbtui.screens.parts.runs import RunController
 from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.choice import ChoiceOptions
@@ -95,6 +98,39 @@ class OfferedKeys:
         focused = self.screen.focused
         scopes = (scope for kind, scope in _SCOPES.items() if isinstance(focused, kind))
         self.screen.query_one(KeyBar).show(next(scopes, Scope.LESSON))
+
+
+@dataclass
+class Absences(ScreenPart):
+    """Explains why an action makes no sense here; ``is_available`` tells whether it does something."""
+
+    host: RunHost
+    runs: RunController[ShownRun]
+    lesson: Lesson | None
+    is_available: Callable[[str], bool]
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer the explanation where the action itself is not offered."""
+        return not self.is_available(str(parameters[0]))
+
+    def action_no_use(self, wanted: str) -> None:
+        """Show the explanation."""
+        self.host.tell(self._why(wanted))
+
+    def _why(self, wanted: str) -> str:
+        run, key = self.runs.run, self.host.key
+        if wanted == "cycle_camera":
+            return "There is no robot here whose map or camera could be shown."
+        if wanted == "next_lesson":
+            lessons = f"{key('leave')} leads to the menu with all of them."
+            return f"No lesson follows {'this one' if self.lesson else 'here'}: {lessons}"
+        if wanted == "explain":
+            return f"Only lessons are explained; {key('diagnoses')} lists what went wrong here."
+        if isinstance(run, RecordedRun):
+            return "This is a recording: nothing in it can be called, changed, recorded or run again."
+        if not run.alive:
+            return f"The run is over: {key('run_again')} runs it again."
+        return "These processes are only watched: they can be neither changed nor run again from here."
 
 
 @dataclass

@@ -108,7 +108,9 @@ class PaneLayout(ScreenPart):
             self.arranged()
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer the existing panes."""
+        """Offer the existing panes, and the camera where there is a robot."""
+        if action == "cycle_camera":
+            return not self.screen.has_class(WITHOUT_ROBOT)
         return action != "show_pane" or not parameters or parameters[0] in self.names
 
     def action_show_pane(self, name: str) -> None:

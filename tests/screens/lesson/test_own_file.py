@@ -2,10 +2,16 @@
 
 from pathlib import Path
 
+import pytest
+
 from cbtui.app import CbtuiApp
+from cbtui.runs.setup.shown_program import of_processes
 from cbtui.screens.parts.own_file import FileRead
+from cbtui.widgets.key_bar import KeyBar
 from sim.engine.commands import CallService, Pause
-from sim.engine.setup import ProgramSetup
+from sim.engine.setup import ProgramSetup, RealRos
+from sim.probes.on_path.cbtui_probe import PROTOCOL
+from sim.real.wire import Hello
 from sim.trace.events import Reason, RunEnded, TimePassed
 from tests.support.builder import Run
 from tests.support.console import NARROW, TALL, WIDE, settle
@@ -62,6 +68,33 @@ async def test_without_a_set_bool_service_s_says_what_calls_another_one(tmp_path
         [told] = [note.message for note in app._notifications]
         assert told.startswith("There is no SetBool service to call; : takes ros2 service call")
         assert engines.latest.commands == []
+
+
+@pytest.mark.parametrize(
+    ("key", "label", "sentence"),
+    [
+        ("t", "threads", "These processes are only watched: they can be neither changed nor run again"),
+        ("g", "group", "These processes are only watched"),
+        ("p", "set-up", "These processes are only watched"),
+        ("r", "run again", "These processes are only watched"),
+        ("c", "camera", "There is no robot here whose map or camera could be shown."),
+        ("n", "next", "No lesson follows here: q leads to the menu with all of them."),
+        ("a", "explain", "Only lessons are explained; d lists what went wrong here."),
+    ],
+)
+async def test_on_watched_processes_a_key_that_does_nothing_says_why_and_is_not_in_the_footer(
+    tmp_path: Path, key: str, label: str, sentence: str
+) -> None:
+    hello = Hello(0, PROTOCOL, 17, "3.12.3", "jazzy", ["python3", str(tmp_path / "node.py")], 0)
+    program = of_processes(RealRos(watched=str(tmp_path)), [hello])
+    app = CbtuiApp(start_program=program, open_session=FakeEngines(dummy_server_run().events, ns(2.0)))
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        assert label not in {action.label for action in app.screen.query_one(KeyBar).offered}
+        await pilot.press(key)
+        await settle(pilot)
+        [told] = [note.message for note in app._notifications]
+        assert told.startswith(sentence)
 
 
 async def test_the_guide_tells_what_was_found_and_what_to_try(tmp_path: Path) -> None:
