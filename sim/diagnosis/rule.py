@@ -12,6 +12,7 @@ import sim
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.diagnosis.timeline_view import TimelineView
+from sim.diagnosis.words import SPIN_ALWAYS, SPIN_BESIDE
 from sim.trace.events import AnyEvent, EntityId, ThreadId
 from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -167,10 +168,18 @@ def made_at(entity: EntityInfo) -> CodeLocation | None:
     return line_location(*entity.made_at)
 
 
-def loop_beside_spin(at: Nanoseconds, timeline: Timeline) -> CodeLocation | None:
-    """Return the program's own loop in which it is at ``at`` while nothing spins; None if it is in none."""
+def loop_beside_spin(at: Nanoseconds, timeline: Timeline) -> tuple[CodeLocation | None, str]:
+    """Return the program's own loop in which it is at ``at`` while nothing spins, and the cure.
+
+    The place is the line of a rate's ``sleep()``, with which no loop goes on; None if it is in no loop.
+    """
     program = timeline.program_at(at)
-    return None if program is None else line_location(*program.loop)
+    if program is None:
+        return None, ""
+    if program.call == "Rate.sleep":
+        file, _, line = program.frames[-1]
+        return line_location(file, line), SPIN_BESIDE
+    return line_location(*program.loop), SPIN_ALWAYS
 
 
 def line_of(entity: EntityId, window: Window, timeline: Timeline) -> CodeLocation | None:

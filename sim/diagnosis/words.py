@@ -11,6 +11,9 @@ from sim.trace.timeline import Timeline
 SPIN_ALWAYS = "do one step of the loop in a timer's callback, and call rclpy.spin(node)"
 """The cure of a program whose loop spins too rarely, or never."""
 
+SPIN_BESIDE = "spin the node in a thread beside the loop: Thread(target=rclpy.spin, args=(node,)).start()"
+"""The cure of a program whose loop sleeps by a rate, and that spins nothing."""
+
 SPIN_ONCE = "add all nodes to one executor by add_node(), and spin that, once"
 """The cure of a program that spins one node after another."""
 

@@ -71,6 +71,30 @@ def spin_together(source: SourceEditor, line: int) -> None:
         source.replace_lines(each, each, "")
 
 
+def spin_beside(source: SourceEditor, line: int) -> None:
+    """Spin the node of a rate that sleeps in a loop at a line in a thread that begins before the loop.
+
+    Only if the rate is an attribute of the node, or an assignment tells whose rate it is.
+    """
+    loops = [each for each in source.nodes(ast.stmt) if isinstance(each, ast.While | ast.For)]
+    around = [each for each in loops if each.lineno <= line <= (each.end_lineno or 0)]
+    makers = {
+        ast.unparse(each.targets[0]): each.value.func.value
+        for each in source.nodes(ast.Assign)
+        if isinstance(each.value, ast.Call) and isinstance(each.value.func, ast.Attribute)
+        if each.value.func.attr == "create_rate"
+    }
+    match source.statement_at(line):
+        case ast.Expr(value=ast.Call(func=ast.Attribute(value=rate, attr="sleep"))) if around:
+            node = makers.get(ast.unparse(rate)) or getattr(rate, "value", None)
+            if node is not None:
+                spins = f"Thread(target=rclpy.spin, args=({source.code_of(node)},), daemon=True).start()"
+                source.insert_before(around[0], f"{spins}\n{indentation(around[0])}")
+                source.import_names("threading", ["Thread"])
+                return
+    raise NotSimpleError
+
+
 def _spins_in_turn(source: SourceEditor) -> list[list[ast.Expr]]:
     """Return the statements that spin, if a body has several, for each such body."""
     makers = ((each, ast.unparse(each.value).partition("(")[0]) for each in source.nodes(ast.Assign))

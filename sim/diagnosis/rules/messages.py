@@ -20,7 +20,7 @@ from sim.diagnosis.rule import (
     place_of,
 )
 from sim.diagnosis.timeline_view import LongWait, TimelineView, raised_last
-from sim.diagnosis.words import SPIN_ALWAYS, listed, often, who
+from sim.diagnosis.words import listed, often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import why_waiting
@@ -77,8 +77,8 @@ class DroppedMessages(Rule):
             place_of(found.subject, timeline),
         )
         if waits and waits[-1].reason is Reason.NOBODY_SPINS:
-            loop, room = loop_beside_spin(found.until, timeline), Remedy()
-            cure, place = (SPIN_ALWAYS, loop) if loop else ("keep spinning its node", place)
+            (loop, how), room = loop_beside_spin(found.until, timeline), Remedy()
+            cure, place = (how, loop) if loop else ("keep spinning its node", place)
         messages = "1 message" if found.count == 1 else f"{found.count} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
         worst = f"; most in the second from {found.until // SECOND} s on, {found.size}"

@@ -5,20 +5,21 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
-from sim.diagnosis.edits.spins import spins_in_turn
+from sim.diagnosis.edits.spins import spin_beside, spins_in_turn
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
     Finding,
     Rule,
     Weight,
+    by_edit,
     line_of,
     loop_beside_spin,
     place_of,
 )
 from sim.diagnosis.rules.edits import not_reached
 from sim.diagnosis.timeline_view import LongWait, TimelineView, raised_last
-from sim.diagnosis.words import SPIN_ALWAYS, SPIN_ONCE, group_of, listed, often, only_thread, threads_for, who
+from sim.diagnosis.words import SPIN_BESIDE, SPIN_ONCE, group_of, listed, often, only_thread, threads_for, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
@@ -202,6 +203,7 @@ class NodeNeverSpins(Rule):
         spins: tuple[int, ...] = ()
         remedies: tuple[Remedy, ...] = ()
         what = "nobody spins its node any more" if ever else "nobody ever spun its node"
+        why = "callbacks run only inside spin()"
         cure = "call rclpy.spin(node), or add the node to an executor and spin that"
         if timeline.executors and not ever:
             what = "none of the spinning executors has its node"
@@ -215,7 +217,7 @@ class NodeNeverSpins(Rule):
         if place and spins:
             cure = SPIN_ONCE
             what, place, remedies = not_reached(place.file)
-        loop = loop_beside_spin(found.until, timeline)
+        loop, how = loop_beside_spin(found.until, timeline)
         if at is not None and not ever:
             place = CodeLocation(*at.place, at.place[1])
             what = f"the program is at line {place.first_line}, and has come to no spin() so far"
@@ -223,13 +225,17 @@ class NodeNeverSpins(Rule):
                 what = f"the program waits in {at.call}() at line {place.first_line}, and nothing spins"
                 cure = "use call_async() there, and rclpy.spin_until_future_complete(node, future)"
         if loop is not None:
-            how = "spins too rarely" if ever else "comes to no spin()"
-            place, cure = loop, SPIN_ALWAYS
-            what = f"the program is in the loop of line {loop.first_line}, and {how}"
+            how_often = "spins too rarely" if ever else "comes to no spin()"
+            place, cure = loop, how
+            what = f"the program is in the loop of line {loop.first_line}, and {how_often}"
+        if loop is not None and cure is SPIN_BESIDE:
+            what = f"the program waits in Rate.sleep() at line {loop.first_line}, and nothing spins"
+            why = "a rate's timer is a callback too: callbacks run only inside spin()"
+            remedies = by_edit(loop, "spin the node in a thread beside the loop", spin_beside)
         return Explanation(
             f"{subject} of {found.about} has been ready for {duration(found.lasted)} "
             f"and does not run: {what}",
-            "callbacks run only inside spin()",
+            why,
             cure,
             place,
             remedies=remedies,

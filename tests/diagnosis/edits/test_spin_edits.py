@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.diagnosis.edits.spins import never_made, spin_together, spins_in_turn
+from sim.diagnosis.edits.spins import never_made, spin_beside, spin_together, spins_in_turn
 from tests.diagnosis.edits.edited_source import changed
 
 
@@ -97,3 +97,29 @@ def test_a_file_that_has_been_changed_is_read_again(tmp_path: Path) -> None:
     assert spins_in_turn(str(path)) == (1, 2)
     path.write_text("executor.spin()\n")
     assert spins_in_turn(str(path)) == ()
+
+
+LOOP = "import rclpy\n{0}while rclpy.ok():\n    for _ in range(3):\n        {1}.sleep()  # here\n"
+
+
+@pytest.mark.parametrize(
+    ("made", "rate", "node"),
+    [
+        ("rate = self.node.create_rate(10)\n", "rate", "self.node"),
+        ("", "node.rate", "node"),
+        ("self.rate = self.create_rate(10)\n", "self.rate", "self"),
+    ],
+)
+def test_the_node_of_a_rate_is_spun_in_a_thread_that_begins_before_the_outermost_loop(
+    made: str, rate: str, node: str
+) -> None:
+    assert changed(LOOP.format(made, rate), spin_beside) == [
+        "+from threading import Thread",
+        "+",
+        f"+Thread(target=rclpy.spin, args=({node},), daemon=True).start()",
+    ]
+
+
+def test_a_rate_of_an_unknown_node_or_without_a_loop_stays() -> None:
+    assert changed(LOOP.format("", "rate"), spin_beside) is None
+    assert changed("import rclpy\nself.rate.sleep()  # here\n", spin_beside) is None
