@@ -13,6 +13,7 @@ from sim.trace.model import (
     Call,
     EntityInfo,
     ExecutorInfo,
+    Frame,
     GroupInfo,
     Moment,
     Nanoseconds,
@@ -31,6 +32,8 @@ __all__ = ["ShellEvent", "Timeline"]
 
 NOBODY: EntityId = 0
 """Code outside callbacks, such as a main thread that calls a service."""
+
+_WAITS = (ev.Doing.WAITS, ev.Doing.CALLS_ROS, ev.Doing.READS)
 
 
 class Timeline:
@@ -97,6 +100,29 @@ class Timeline:
         """Where the program is at ``at`` outside callbacks; None if it spins as it should, or is unknown."""
         found = self._run.program_positions.latest(at)
         return found if found is not None and found.frames else None
+
+    def program_waits_on(self, thread: ThreadId, window: Window) -> Sequence[Position]:
+        """Where the program itself waited on its main thread before anything spun, in order of start.
+
+        No callback is there: ``entity`` is 0. A wait in ``Client.call`` is left out: ``blocks_on`` has it.
+        """
+        known = self.threads.get(thread)
+        if known is None or known.name != "MainThread":
+            return ()
+        every, found = self._run.program_positions, list[Position]()
+        for place in range(max(0, every.until(window.start) - 1), every.before(window.end)):
+            at, following = every[place], every[place + 1 : place + 2]
+            if not at.frames or at.doing not in _WAITS or at.call == "Client.call":
+                continue
+            end = following[0].t if following else None
+            called = self.spans_on(thread, Window(at.t, end or self.end + 1))[:1]
+            end = called[0].start if called else end
+            if end is None or end > window.start:
+                frames = tuple(Frame(*each) for each in at.frames)
+                found.append(
+                    Position(at.t, end, thread, NOBODY, at.doing, at.call, frames, at.loop, until=at.until)
+                )
+        return found
 
     def extend(self, events: Iterable[AnyEvent]) -> None:
         """Add a batch of events; the size of batches makes no difference."""

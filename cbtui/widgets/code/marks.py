@@ -56,8 +56,8 @@ class CallbackMark:
 class LineMark:
     """A line at which a callback is, with texts on its activity there, the longest first.
 
-    A line that called another one has no text. ``number`` is that of the callback's group. A ``fault``
-    ended the program.
+    A line that called another one has no text. ``number`` is that of the callback's group, -1 for none. A
+    ``fault`` ended the program.
     """
 
     texts: tuple[str, ...]
@@ -70,17 +70,19 @@ LineMarks: TypeAlias = dict[int, LineMark]
 
 
 def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, LineMarks]:
-    """Return the lines at which callbacks are at a moment, with the calls that led there.
+    """Return the lines at which callbacks are at a moment, or the program waits, and the calls to there.
 
     Sleeps that follow each other at one line are one position, so the text tells how long it has been there.
     """
     found: defaultdict[SourceFile, LineMarks] = defaultdict(dict)
-    groups = list(timeline.groups)
-    for thread, span in timeline.moment(at).running.items():
-        position = timeline.position_on(thread, at)
+    groups, running = list(timeline.groups), timeline.moment(at).running
+    positions = [timeline.position_on(thread, at) for thread in running]
+    for thread in timeline.threads:
+        positions += timeline.program_waits_on(thread, Window(at, at + 1))
+    for position in positions:
         if position is None:
             continue
-        number = groups.index(timeline.entities[span.entity].group)
+        number = groups.index(timeline.entities[position.entity].group) if position.entity else -1
         *calls, here = position.frames
         for frame in (*calls, here):
             file = files.of(frame.file)

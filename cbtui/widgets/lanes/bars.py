@@ -69,9 +69,7 @@ class BarPainter:
             free = [place for place, _ in stretch.places() if row.blank(place, place + 1)]
             for place in free:
                 row.put(place, self._doing(at), Ink(Role.LINE, number))
-            doing = doing_of(at)
-            texts = (f"{doing}, line {at.line}", f"{doing} :{at.line}", doing, f":{at.line}")
-            self._words(row, *_longest_part(free), texts)
+            self._words(row, *_longest_part(free), _texts_at(at))
 
     def nested(self, row: CellRow, calls: Sequence[tuple[int, int, Span]]) -> None:
         """Draw calls inside other calls, each from its first column to before its ``after``."""
@@ -97,9 +95,11 @@ class BarPainter:
             self._stands(row, stretch, (f"blocked {where}", where, "blocked"))
 
     def locked(self, row: CellRow, columns: Sequence[LaneColumn[Position] | None]) -> None:
-        """Draw where a thread's call waits for a lock, beside the name on its bar."""
+        """Draw where a call waits for a lock, beside the name on its bar, or the program itself waits."""
         for stretch in stretches(columns):
-            self._stands(row, stretch, ("waits for a lock", "for a lock", "lock"))
+            at = stretch.top
+            texts = ("waits for a lock", "for a lock", "lock") if at.entity else _texts_at(at)
+            self._stands(row, stretch, texts)
 
     def _stands(
         self, row: CellRow, stretch: MergedColumns[Blocked] | MergedColumns[Position], texts: Sequence[str]
@@ -338,6 +338,11 @@ class BarPainter:
 
     def _number(self, entity: EntityId) -> int:
         return self.numbers[self.timeline.entities[entity].group]
+
+
+def _texts_at(position: Position) -> tuple[str, ...]:
+    doing, line = doing_of(position), position.line
+    return f"{doing}, line {line}", f"{doing} :{line}", doing, f":{line}"
 
 
 @lru_cache

@@ -19,9 +19,9 @@ from sim.trace.timeline import Timeline
 class LaneSummary:
     """A lane's content, column by column.
 
-    ``locked`` are the columns in which a call waits for a lock; ``kept`` are the stretches, by first column
-    and the one after, in which a suspended call keeps the group; ``lasting`` is the duration of the open
-    interval, in words; ``unseen`` are the columns that are not aggregated yet.
+    ``locked`` are the columns in which a call waits for a lock, or the program itself waits; ``kept`` are the
+    stretches, by first column and the one after, in which a suspended call keeps the group; ``lasting`` is
+    the duration of the open interval, in words; ``unseen`` are the columns that are not aggregated yet.
     """
 
     scale: TimeScale

@@ -41,7 +41,6 @@ PLAIN = Ink(Role.TEXT)
 NOW = Ink(Role.NOW)
 MARK = Ink(Role.MARK)
 
-
 INTERVALS_PER_FRAME = 500
 """Intervals that are examined per frame: a lesson's lanes are complete after two or three frames, an hour
 zoomed out after some fifty, with its overview, and keys stay responsive.
@@ -323,7 +322,8 @@ class _LaneFrame:
             case ThreadLane(thread):
                 blocks = self._summed(cache.columns(timeline.blocks_on, thread.id), unseen)
                 lines = self._summed(cache.columns(timeline.positions_on, thread.id), unseen)
-                locked = [at if at and at.top.waits_for_lock else None for at in lines]
+                own = self._summed(cache.columns(timeline.program_waits_on, thread.id), unseen)
+                locked = [a if a and a.top.waits_for_lock else b for a, b in zip(lines, own, strict=True)]
             case MemberLane(entity) | SoleLane(entity):
                 waits = self._summed(cache.columns(timeline.waits_of, entity.id), unseen)
                 losses = cache.losses(entity).over(self._scale, self._edge)

@@ -9,7 +9,7 @@ from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, lines_at, m
 from cbtui.widgets.code.source_files import SourceFiles
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
-from sim.trace.events import CallbackAt, Doing, RunStarted
+from sim.trace.events import CallbackAt, Doing, ProgramAt, RunStarted
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.pictures import lines_of
@@ -97,6 +97,18 @@ def test_on_the_real_clock_a_line_that_was_sampled_just_now_gets_no_time(
     timeline.extend([RunStarted(0, "run", "real", 0), *sorted([*events, at], key=lambda event: event.t)])
     files = SourceFiles(path)
     assert lines_at(timeline, ns(4.5), files)[files.main][31].texts[0] == told
+
+
+def test_the_line_at_which_a_program_waits_where_nothing_spins_is_marked(path: Path) -> None:
+    run = Run()
+    run.thread("MainThread")
+    hangs = ProgramAt(ns(2.0), Doing.CALLS_ROS, "Rate.sleep", ((str(path), "main", 38),))
+    timeline = Timeline()
+    timeline.extend([*run.events, hangs])
+    files = SourceFiles(path)
+    assert lines_at(timeline, ns(1.0), files) == {}
+    marked = lines_at(timeline, ns(4.5), files)[files.main][38]
+    assert (marked.texts[0], marked.number) == ("▶ in Rate.sleep(), 2.5 s", -1)
 
 
 def test_a_waiting_callback_is_marked_with_the_reason(path: Path) -> None:

@@ -9,7 +9,7 @@ from cbtui.widgets.lanes import LanePainter, Selection
 from cbtui.widgets.lanes.rows import MemberLane, ThreadLane, all_lanes
 from cbtui.widgets.lanes.scale import TimeScale
 from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls
-from sim.trace.events import CallbackAt, Doing, MessageDropped
+from sim.trace.events import CallbackAt, Doing, MessageDropped, ProgramAt
 from sim.trace.figures.chains import ChainStep, StepKind
 from sim.trace.model import Call, Window
 from sim.trace.timeline import Timeline
@@ -76,6 +76,23 @@ def test_a_call_that_waits_for_a_lock_looks_unlike_one_that_sleeps() -> None:
     assert "░" not in keeps
     assert "A keeps" in keeps
     assert "B wants ░░ waits for a lock ░" in wants
+
+
+def test_a_program_that_waits_where_nothing_spins_is_on_its_main_threads_lane_until_a_callback_runs() -> None:
+    run, thread, a, _ = small_run()
+    run.callback(a, thread, 6.0, 1.0)
+    hangs = ProgramAt(ns(1.0), Doing.CALLS_ROS, "Rate.sleep", (("node.py", "main", 28),))
+    timeline = Timeline()
+    timeline.extend(sorted([*run.until(10.0), hangs], key=lambda event: event.t))
+    picture = plain(LanePainter().paint(timeline, *last(10, 10.0), 80, 8).rows).splitlines()
+    assert picture[0] == drawn(
+        "|MainThread  │     ░░ in Rate.sleep() :28 ░░A ███               │  10% busy      |"
+    )
+    (wait,) = timeline.program_waits_on(thread, Window(0, ns(10)))
+    assert (wait.start, wait.end, wait.entity, wait.line) == (ns(1.0), ns(6.0), 0, 28)
+    assert not timeline.program_waits_on(thread, Window(ns(6.0), ns(10)))
+    timeline.extend([ProgramAt(ns(10), Doing.COMPUTES, "", (("node.py", "main", 29),))])
+    assert not timeline.program_waits_on(thread, Window(ns(10), ns(11)))
 
 
 def test_a_bars_name_is_kept_where_its_thread_stands_still_at_once() -> None:
