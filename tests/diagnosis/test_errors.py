@@ -142,6 +142,11 @@ def test_an_exception_is_told_at_its_own_time_though_the_run_went_on_with_others
 
 def explained_end(add_to: Callable[[Node], None], threads: int | None = None) -> Explanation:
     """Spin a node with something added to it until an exception ends that, and explain the exception."""
+    return ended_by(add_to, threads).explained("program-raised")
+
+
+def ended_by(add_to: Callable[[Node], None], threads: int | None = None) -> Diagnosed:
+    """Spin a node with something added to it until an exception ends that."""
     raised: list[BaseException] = []
 
     def program(_: Simulation) -> None:
@@ -158,7 +163,7 @@ def explained_end(add_to: Callable[[Node], None], threads: int | None = None) ->
     error = f"{kind}: {raised[0]}"
     last = max(each.t for each in events)
     ended = RunEnded(last, error, failed=True, error=error, exception=kind, problem=error)
-    return Diagnosed(Trace([*events, ended])).explained("program-raised")
+    return Diagnosed(Trace([*events, ended]))
 
 
 @pytest.mark.parametrize("threads", [None, 2])
@@ -272,3 +277,19 @@ def test_what_is_lost_after_an_exception_ended_the_spin_is_part_of_that() -> Non
 
 def test_a_thread_whose_callbacks_catch_their_exceptions_spins_on() -> None:
     assert spun_by_another_thread(None, catches=True).told() == set()
+
+
+@pytest.mark.parametrize(("threads", "kind"), [(None, "program-failed"), (2, "program-raised")])
+def test_only_an_exception_on_a_worker_is_of_the_kind_that_may_get_lost(
+    threads: int | None, kind: str
+) -> None:
+    def fails() -> None:
+        raise ValueError("no scan")
+
+    def add_to(node: Node) -> None:
+        once(node, 1.0, fails)
+        once(node, 2.0, lambda: None)
+
+    run = ended_by(add_to, threads)
+    found = run.one("program-raised")
+    assert found.rule.kind(found) == kind

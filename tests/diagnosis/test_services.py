@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 import sim.ros.rclpy as rclpy
+from lessons.catalogue import lesson_on
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, spin
@@ -35,6 +36,8 @@ def test_a_callback_that_returns_no_response_leaves_its_caller_waiting() -> None
     told = run.explained("unreturned-response")
     assert told.what == "serve returned no response, so the caller of /s waits for ever"
     assert told.cure == "end serve with: return response"
+    found = run.one("unreturned-response")
+    assert lesson_on(found.rule.kind(found)) is None
 
 
 def test_a_callback_that_raises_leaves_its_caller_waiting() -> None:

@@ -40,6 +40,8 @@ def test_the_lessons_of_a_unit_stand_together() -> None:
         ("deadlock-over-a-rate", "rate-sleep-in-a-callback"),
         ("deadlock-over-the-clock", "sim-time-in-a-callback"),
         ("group-starvation", "single-thread"),
+        ("exception-swallowed", "lost-exceptions"),
+        ("overrun-timer", "missed-ticks"),
     ],
 )
 def test_a_problem_leads_to_the_lesson_that_shows_its_kind(problem: str, lesson: str) -> None:

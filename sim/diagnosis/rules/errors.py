@@ -35,11 +35,12 @@ class ProgramRaised(Rule):
         latest = (span for each in view.entities() for span in view.spans(each.id)[-1:])
         raised = next((span for span in latest if span.error and span.error == ended.error), None)
         at = ended.t if raised is None or raised.end is None else raised.end  # others may have gone on
-        yield Finding(self, at, at, raised.entity if raised else 0)
+        worker = raised.thread if raised and is_worker(raised.thread, view.timeline) else 0
+        yield Finding(self, at, at, raised.entity if raised else 0, thread=worker)
 
     def kind(self, found: Finding) -> str:
-        """Distinguish exceptions of callbacks from those of the rest of the program."""
-        return self.id if found.subject else "program-failed"
+        """Distinguish exceptions on a worker, which may be lost, from those that end the program at once."""
+        return self.id if found.thread else "program-failed"
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         ended = timeline.ended

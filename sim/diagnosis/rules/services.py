@@ -42,6 +42,10 @@ class UnreturnedResponse(Rule):
                     raised = "" if span.no_response else span.error
                     yield Finding(self, span.start, span.end, entity.id, entity.id, detail=raised)
 
+    def kind(self, found: Finding) -> str:
+        """No lesson is on this: where it is found in one, it is an effect."""
+        return "no-response"
+
     def _is_over(self, span: Span, view: TimelineView) -> bool:
         if span.end is None:
             return False
