@@ -197,21 +197,21 @@ class Publisher:
 
     def type_differs_from(self, subscription: Subscription) -> None:
         """Report different types on both sides, when their executors next spin."""
-        refused = f"Incompatible type on topic '{self.topic_name}', no messages will be"
-        self.events.type_refused(f"{refused} sent to it.")
-        subscription.events.type_refused(f"{refused} received from it.")
+        refused = "Incompatible type on topic '{}', no messages will be {} it."
+        self.events.type_refused(refused.format(self.topic, "sent to"))
+        subscription.events.type_refused(refused.format(subscription.topic, "received from"))
         self._record_mismatch(subscription, "TYPE")
 
     def incompatible_with(self, subscription: Subscription, policy: str) -> None:
         """Report an incompatible policy on both sides, when their executors next spin."""
         self.events.qos_refused(
             policy,
-            f"New subscription discovered on topic '{self.topic_name}', requesting incompatible QoS. "
+            f"New subscription discovered on topic '{self.topic}', requesting incompatible QoS. "
             f"No messages will be sent to it. Last incompatible policy: {policy}",
         )
         subscription.events.qos_refused(
             policy,
-            f"New publisher discovered on topic '{self.topic_name}', offering incompatible QoS. "
+            f"New publisher discovered on topic '{subscription.topic}', offering incompatible QoS. "
             f"No messages will be received from it. Last incompatible policy: {policy}",
         )
         self._record_mismatch(subscription, policy)

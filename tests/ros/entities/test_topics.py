@@ -110,7 +110,7 @@ def test_both_sides_of_a_mismatch_warn_once_while_spinning(
     def program(simulation: Simulation) -> None:
         speaker, listener = Node("speaker"), Node("listener")
         publisher = speaker.create_publisher(Int32, "t", publisher_qos)
-        listener.create_subscription(Int32, "t", lambda _: None, subscription_qos)
+        listener.create_subscription(Int32, "/t", lambda _: None, subscription_qos)
         publisher.publish(Int32())
         simulation.sleep(1.0)
         assert not Trace(simulation.events).said()
@@ -123,7 +123,7 @@ def test_both_sides_of_a_mismatch_warn_once_while_spinning(
         (
             "WARN",
             "speaker",
-            "New subscription discovered on topic '/t', requesting incompatible QoS. "
+            "New subscription discovered on topic 't', requesting incompatible QoS. "
             f"No messages will be sent to it. Last incompatible policy: {policy}",
         ),
         (

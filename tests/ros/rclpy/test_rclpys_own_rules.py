@@ -128,9 +128,9 @@ def test_types_and_policies_that_do_not_match_are_warned_of_while_spinning(
             executor.spin_once(timeout_sec=0)
         warned = capsys.readouterr().err
     for text in (
-        "Incompatible type on topic '/numbers', no messages will be sent to it.",
-        "Incompatible type on topic '/numbers', no messages will be received from it.",
-        "New publisher discovered on topic '/letters', offering incompatible QoS. No messages will be "
+        "Incompatible type on topic 'numbers', no messages will be sent to it.",
+        "Incompatible type on topic 'numbers', no messages will be received from it.",
+        "New publisher discovered on topic 'letters', offering incompatible QoS. No messages will be "
         "received from it. Last incompatible policy: RELIABILITY",
     ):
         assert warned.count(text) == 1
