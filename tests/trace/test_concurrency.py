@@ -1,3 +1,5 @@
+import pytest
+
 from sim.trace.events import AnyEvent
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
@@ -75,3 +77,14 @@ def test_a_run_that_grows_in_batches_gives_the_same_peaks() -> None:
         grown.peak(timeline.end)
     moments = [ns(tenth / 10) for tenth in range(200)]
     assert [grown.peak(at) for at in moments] == [whole.peak(at) for at in moments]
+
+
+@pytest.mark.parametrize("took", [0.0, 0.5])
+def test_a_reply_that_a_blocked_call_waits_for_needs_a_second_thread(took: float) -> None:
+    run, timer, first, second = two_threads()
+    reply = run.client(run.exclusive(run.node("/m")), "/s", "reply")
+    run.callback(timer, first, 1.0, took)
+    run.blocked(run.call("/s", 1.0, 1.0 + took), "/s", first, timer, 1.0, 1.0 + took)
+    assert peak(run, 5.0) == 1
+    run.callback(reply, second, 1.0 + took, 0.0)
+    assert peak(run, 5.0) == 2

@@ -61,17 +61,18 @@ def threads_incrementally(timeline: Timeline, window: Window) -> Incremental[int
 def _rises(timeline: Timeline, window: Window, best: int) -> list[tuple[Nanoseconds, int]]:
     """Return the times at which the maximum rises above ``best``, each with the new maximum.
 
-    A call that took no time needs a thread besides those of calls around it. Other calls of the same instant
-    may have come before or after it, so they do not count.
+    A call that took no time needs a thread besides those of calls around it, also of one that has just got
+    its reply from ``Client.call``. Other calls of the same instant may have come before or after it, so they
+    do not count.
     """
     running = 0
     rises: list[tuple[Nanoseconds, int]] = []
     for at, change in sorted(_changes(timeline, window)):
-        needed = running + (change is not _Change.END)
+        needed = running + (change in _TAKES_THREAD)
         if needed > best:
             best = needed
             rises.append((at, best))
-        running += {_Change.END: -1, _Change.INSTANT: 0, _Change.BEGIN: 1}[change]
+        running += _GROWTH[change]
     return rises
 
 
@@ -79,18 +80,31 @@ class _Change(IntEnum):
     """Changes of a thread, in the order in which they count at one instant."""
 
     END = 0
-    INSTANT = 1
-    BEGIN = 2
+    BEGIN_OF_CALL = 1
+    INSTANT = 2
+    END_OF_CALL = 3
+    BEGIN = 4
+
+
+_TAKES_THREAD = (_Change.BEGIN_OF_CALL, _Change.INSTANT, _Change.BEGIN)
+_GROWTH = {
+    _Change.END: -1,
+    _Change.BEGIN_OF_CALL: 1,
+    _Change.INSTANT: 0,
+    _Change.END_OF_CALL: -1,
+    _Change.BEGIN: 1,
+}
 
 
 def _changes(timeline: Timeline, window: Window) -> Iterator[tuple[Nanoseconds, _Change]]:
     for thread in timeline.threads:
+        replied = {block.end for block in timeline.blocks_on(thread, window)}
         for start, end in _busy(timeline.spans_on(thread, window), window):
-            if start == end:
+            if start == end and end not in replied:
                 yield start, _Change.INSTANT
             else:
-                yield start, _Change.BEGIN
-                yield end, _Change.END
+                yield start, _Change.BEGIN_OF_CALL if start == end else _Change.BEGIN
+                yield end, _Change.END_OF_CALL if end in replied else _Change.END
 
 
 def _busy(spans: Sequence[Span], window: Window) -> list[tuple[Nanoseconds, Nanoseconds]]:
