@@ -12,6 +12,7 @@ from textual.errors import NoWidget
 from textual.events import Event, InputEvent, Key, MouseDown
 from textual.widget import Widget
 
+from cbtui.terminal.key_turns import KeyHandled, KeyTurns
 from cbtui.terminal.textual_internals import is_mounted
 
 MOUNT_TIMEOUT = 3.0
@@ -27,6 +28,10 @@ class PendingKeysApp(App[None]):
 
     _enter_until = 0.0
     """Until when, as events count time, a first key is ignored if it is enter."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._key_turns = KeyTurns(self, super().on_event)
 
     def ignore_enter(self) -> None:
         """Ignore an enter that comes as the next key and soon: what it would confirm was done without it."""
@@ -54,8 +59,14 @@ class PendingKeysApp(App[None]):
                 await asyncio.sleep(_POLL_INTERVAL)
             if not self.screen_stack:  # the app ends
                 return
-        if not (isinstance(event, MouseDown) and self._is_gone(event)):
+        if isinstance(event, Key) and not event.is_forwarded:
+            await self._key_turns.take(event)
+        elif not (isinstance(event, MouseDown) and self._is_gone(event)):
             await super().on_event(event)
+
+    def on_app_key_handled(self, event: KeyHandled) -> None:
+        """Let the next key take its turn."""
+        self._key_turns.handled(event.turn)
 
     def _is_gone(self, click: MouseDown) -> bool:
         """Whether the clicked widget was removed and is still drawn; Textual would look for its parent."""

@@ -8,7 +8,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from textual.events import Key
 from textual.pilot import Pilot
+from textual.widgets import Input
 
 from cbtui.app import CbtuiApp
 from cbtui.keys.action import PANES
@@ -20,9 +22,11 @@ from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
 from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.log import LogFilter
+from cbtui.widgets.shell import Prompt
 from sim.diagnosis import CodeLocation
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.exercises import until
 from tests.support.fake_session import FakeEngines
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import shared_group_run
@@ -48,6 +52,15 @@ async def press(pilot: Pilot[None], *keys: str) -> None:
 
 def tabs(app: RecordedConsole) -> str:
     return next(line for line in lines_of(app) if "1 Guide" in line)
+
+
+@pytest.mark.parametrize(("key", "line"), [("slash", LogFilter), ("colon", Prompt)])
+async def test_what_is_typed_in_one_go_goes_where_its_first_key_leads(key: str, line: type[Input]) -> None:
+    async with console() as (app, pilot):
+        for each in (key, *"timer"):  # r alone would reset the world
+            app.post_message(Key(each, None if each == key else each))
+        await until(pilot, lambda: app.screen.query_one(line).value == "timer")
+        assert app.screen.query_one(line).has_focus
 
 
 async def test_a_slash_filters_the_log_from_wherever_one_is() -> None:

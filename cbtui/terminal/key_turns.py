@@ -1,0 +1,60 @@
+"""Lets keys take effect one after another, however fast they come.
+
+Textual sends a key at once to what has the focus, though what the key before does there may move the focus.
+Of ``/text`` that comes in one go, as over ssh, the letters would act as keys of the pane.
+"""
+
+import asyncio
+from collections import deque
+from collections.abc import Awaitable, Callable
+from typing import Any
+
+from textual.app import App
+from textual.events import Key
+from textual.message import Message
+
+PATIENCE = 0.5
+"""Seconds after which the next key is handled though the last one's end is unknown: its widget has gone."""
+
+
+class KeyHandled(Message, namespace="app"):
+    """Bubbles up behind a key, so it comes to the app when the key has been handled."""
+
+    def __init__(self, turn: int) -> None:
+        super().__init__()
+        self.turn = turn
+
+
+class KeyTurns:
+    """Hands one key at a time to ``handle``, the next when the focus is as the last one left it."""
+
+    def __init__(self, app: App[Any], handle: Callable[[Key], Awaitable[None]]) -> None:
+        self._app = app
+        self._handle = handle
+        self._held: deque[Key] = deque()
+        self._turn = 0
+        self._is_free = True
+
+    async def take(self, key: Key) -> None:
+        """Handle a key, now or in its turn."""
+        self._held.append(key)
+        if self._is_free:
+            await self._next(self._turn)
+
+    def handled(self, turn: int) -> None:
+        """The key of a turn has been handled: the next one follows behind what that has left to be done."""
+        if not self._app.screen.call_later(self._app.call_later, self._next, turn):
+            self._app.call_later(self._next, turn)
+
+    async def _next(self, turn: int) -> None:
+        if turn != self._turn:  # its time was up
+            return
+        self._turn += 1
+        self._is_free = not self._held
+        if self._held:
+            target = self._app.focused or self._app.screen
+            await self._handle(self._held.popleft())
+            if target.post_message(KeyHandled(self._turn)):
+                asyncio.get_running_loop().call_later(PATIENCE, self._app.call_later, self._next, self._turn)
+            else:
+                self._app.call_later(self._next, self._turn)
