@@ -11,7 +11,7 @@ from sim.ros.scheduling.callback_groups import (
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, once, spin
+from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, executor_of, once, spin
 from tests.support.builder import ns
 from tests.support.engine_runs import program_setup, run_to_end
 from tests.support.simulation import Simulation
@@ -119,6 +119,40 @@ def test_a_sleep_in_a_group_of_its_own_is_well() -> None:
 
 def test_a_short_sleep_among_sensors_is_well() -> None:
     assert sleeper_and_sensor(same_group=True, length=0.4).problems() == set()
+
+
+def slow_listener(length: float, depth: int) -> Diagnosed:
+    """``hear`` takes so long for each of the messages, which are 0.1 s apart."""
+
+    def program(simulation: Simulation) -> None:
+        talker, listener = Node("talker"), Node("listener")
+        news = talker.create_publisher(Int32, "t", 10)
+
+        def hear(_: object) -> None:
+            simulation.sleep(length)
+
+        listener.create_subscription(Int32, "t", hear, depth)
+        talker.create_timer(0.1, lambda: news.publish(Int32()))
+        executor = executor_of(2)
+        for node in (talker, listener):
+            executor.add_node(node)
+        executor.spin()
+
+    return diagnosed(program, until=5.0)
+
+
+def test_a_callback_that_is_slower_than_its_messages_come_is_told_as_long_as_none_is_lost() -> None:
+    run = slow_listener(0.3, 100)
+    assert run.problems() == {("falls-behind", "hear")}
+    assert run.explained("falls-behind").what == (
+        "hear falls behind: it takes 300 ms a message, and took one that was 3.0 s old"
+    )
+    assert slow_listener(0.3, 10).problems() == {("dropped-messages", "hear")}
+
+
+@pytest.mark.parametrize("length", [0.09, 0.0])
+def test_a_callback_that_keeps_up_with_its_messages_is_well(length: float) -> None:
+    assert slow_listener(length, 100).problems() == set()
 
 
 CALLS_TICK = """

@@ -34,6 +34,19 @@ def match_quality(source: SourceEditor, line: int, policy: str, other: int = 0) 
         _set_policy(source, line, each, profile, end)
 
 
+def keep_newest(source: SourceEditor, line: int) -> None:
+    """Give the subscription at a line a queue of one, which keeps the newest message."""
+    profile = _profile_of(*_endpoint(source, line))
+    made = _made(source, profile)
+    if made is None and isinstance(profile, ast.Constant):
+        source.replace(profile, "1")
+        return
+    depths = [] if made is None else [each.value for each in made.keywords if each.arg == "depth"]
+    if len(depths) != 1:
+        raise NotSimpleError
+    source.replace(depths[0], "1")
+
+
 def _set_policy(source: SourceEditor, line: int, policy: str, profile: ast.expr, end: str) -> None:
     keyword, kind, requested, offered = _KINDS[policy]
     value = f"{kind}.{requested.get(end, offered)}"

@@ -13,7 +13,7 @@ from sim.diagnosis.rules.parameters import ParameterOverruled
 from sim.diagnosis.rules.services import NobodyOffers, ServiceNeverComes, UnreturnedResponse
 from sim.diagnosis.rules.spinning import NestedSpin, SpinInConstructor, SpinNotReached
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
-from sim.diagnosis.rules.timing import OverlappingCallback, OverrunTimer
+from sim.diagnosis.rules.timing import FallsBehind, OverlappingCallback, OverrunTimer
 from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NodeNeverSpins, NoFreeWorker
 
 RULES: tuple[Rule, ...] = (
@@ -44,6 +44,7 @@ RULES: tuple[Rule, ...] = (
     BehindOthers(),
     OverlappingCallback(),
     OverrunTimer(),
+    FallsBehind(),
     StaleData(),
     DroppedMessages(),
     GapsInTrace(),

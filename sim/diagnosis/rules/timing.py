@@ -1,18 +1,33 @@
 """Rules on the duration of callbacks and its effects."""
 
 from collections.abc import Iterator
+from itertools import pairwise
 
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, line_of
+from sim.diagnosis.edits.profiles import keep_newest
+from sim.diagnosis.rule import (
+    Explanation,
+    Finding,
+    Rule,
+    Weight,
+    by_edit,
+    entity_of,
+    line_of,
+    made_at,
+    place_of,
+)
 from sim.diagnosis.rules.edits import edits_for_rounds
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import often, threads_for, who, with_threads
 from sim.quantities.durations import duration
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind, GroupKind
-from sim.trace.model import EntityInfo, Window
+from sim.trace.model import EntityInfo, Span, Window
 from sim.trace.timeline import Timeline
 
 _HABIT = 3
 """The number of overruns from which on their share counts."""
+_CALLS_IN_TURN = 5
+"""The number of calls, one right after the other, that tell a habit."""
 
 
 class OverlappingCallback(Rule):
@@ -126,3 +141,48 @@ class OverrunTimer(Rule):
 def _kind_of_group(entity: EntityInfo, view: TimelineView) -> GroupKind | None:
     group = view.timeline.groups.get(entity.group)
     return None if group is None else group.kind
+
+
+class FallsBehind(Rule):
+    """A subscription's calls take longer than its messages are apart, so it takes older and older ones.
+
+    Once messages are lost, that is told instead.
+    """
+
+    id = "falls-behind"
+    summary = "a callback takes longer than its messages are apart, so they grow old in its queue"
+    is_effect = True
+    threshold = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each call that took an old message, if those before it kept the messages waiting."""
+        for entity in view.entities(EntityKind.SUBSCRIPTION):
+            for span in view.spans(entity.id):
+                is_old = span.age >= self.threshold and span.end is not None
+                if is_old and _is_outrun(entity, span, view.timeline):
+                    yield Finding(self, span.start, span.end_at(view.end), entity.id, size=span.age)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        subject, place = who(found.subject, timeline), place_of(found.subject, timeline)
+        made = made_at(entity_of(found, timeline))
+        return Explanation(
+            f"{subject} falls behind: it takes {duration(found.lasted)} a message, and took one that was "
+            f"{duration(found.size)} old",
+            "its messages come faster than that, so its queue grows, and what it does is about the past",
+            f"let {subject} return sooner, or keep only the newest message by a queue of 1",
+            line_of(found.subject, Window(found.at, found.until), timeline) or place,
+            remedies=by_edit(made, f"give {subject} a queue of 1", keep_newest),
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant once its queue has lost messages."""
+        return None if timeline.losses_of(found.subject, Window(0, timeline.end + 1)) else Weight.PROBLEM
+
+
+def _is_outrun(entity: EntityInfo, last: Span, timeline: Timeline) -> bool:
+    """Whether the calls up to one followed each other at once, each with an older message."""
+    calls = timeline.spans_of(entity.id, Window(0, last.start + 1))[-_CALLS_IN_TURN:]
+    return len(calls) == _CALLS_IN_TURN and all(
+        one.end is not None and other.start - one.end <= (one.end - one.start) // 10 and other.age > one.age
+        for one, other in pairwise(calls)
+    )

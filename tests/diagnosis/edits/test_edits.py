@@ -13,7 +13,7 @@ from sim.diagnosis.edits.groups import give_own_group
 from sim.diagnosis.edits.locks import make_reentrant
 from sim.diagnosis.edits.names import rename, rename_definition
 from sim.diagnosis.edits.polling import leave_out, step_by_step
-from sim.diagnosis.edits.profiles import match_quality
+from sim.diagnosis.edits.profiles import keep_newest, match_quality
 from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback, use_in_done_callback
 from tests.diagnosis.edits.edited_source import changed, edited, node
 
@@ -310,6 +310,23 @@ def test_an_end_of_a_topic_gets_the_profile_that_fits(
     text = node(f"def __init__(self):\n    {made}", QOS)
     lines = changed(text, match_quality, policy)
     assert (None if lines is None else [each for each in lines if each[0] == "+"]) == brought
+
+
+@pytest.mark.parametrize(
+    ("made", "brought"),
+    [
+        ("on(String, 'a', self.on, 10)  # here", "on(String, 'a', self.on, 1)  # here"),
+        (
+            "on(String, 'a', self.on, QoSProfile(depth=9))  # here",
+            "on(String, 'a', self.on, QoSProfile(depth=1))  # here",
+        ),
+        ("on(String, 'a', self.on, qos_profile_sensor_data)  # here", None),
+    ],
+)
+def test_a_queue_of_one_keeps_the_newest_message(made: str, brought: str | None) -> None:
+    begin = "    self.create_subscripti"
+    lines = changed(node(f"def __init__(self):\n{begin}{made}", QOS), keep_newest)
+    assert (lines and lines[1:]) == (brought and [f"+    {begin}{brought}"])
 
 
 def test_what_hides_a_name_of_a_node_gets_another_one_wherever_it_is_used() -> None:
