@@ -81,7 +81,7 @@ class Timer(Entity):
         if isinstance(clock, ROSClock):
             clock._attach_timer(self)
         if autostart:
-            self.reset()
+            self._start()
 
     @property
     def callback(self) -> Callable[..., Any] | None:
@@ -115,6 +115,11 @@ class Timer(Entity):
     def reset(self) -> None:
         """Restart the timer, cancelled or not: it is due one period from now."""
         self.require_alive()
+        with self._host.lock:
+            self.reset_unheard = True
+            self._start()
+
+    def _start(self) -> None:
         with self._host.lock:
             self._canceled = False
             self.become_idle()

@@ -41,8 +41,14 @@ class ClockTimers:
         self._jumps = clock.create_jump_callback(_ANY_JUMP, post_callback=lambda _: self.check_soon())
 
     def add(self, timer: Entity) -> None:
-        """Add a timer; this checks all timers at once."""
+        """Add a timer; this checks all timers at once, and later for its resets that nobody heard of.
+
+        Source: ``rcl_timer_set_on_reset_callback`` reports earlier resets.
+        """
         self.timers[timer] = None
+        if timer.reset_unheard:
+            timer.reset_unheard = False
+            self.check_soon()
         self._check()
 
     def remove(self, timer: Entity) -> None:

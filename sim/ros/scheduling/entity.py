@@ -97,6 +97,9 @@ class Entity:
     due = NEVER
     """When the entity becomes ready by time alone, in nanoseconds of the run's clock."""
 
+    reset_unheard = False
+    """Whether a timer was reset when no EventsExecutor heard of it; the one that adds it will."""
+
     __class_getitem__: ClassVar[Any] = classmethod(GenericAlias)
 
     def __init__(self, node: OwnerNode, name: str, callback_group: CallbackGroup) -> None:

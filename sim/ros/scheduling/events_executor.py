@@ -228,6 +228,7 @@ class EventsExecutor(Executor):
         if timer not in self._registered or timer is self._taken:
             return
         if timer.kind is EntityKind.TIMER:
+            timer.reset_unheard = False
             self._timers[_clock_of(timer)].check_soon()
         else:
             self._queue.at(timer.due, partial(_report_due, timer, timer.due))
