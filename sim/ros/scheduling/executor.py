@@ -37,12 +37,10 @@ class Executor:
 
     threads = 1
     """How many callbacks can run at the same time."""
-    _registered: Collection[Entity] = ()
-    """The entities that it keeps in use until its next update, though they are destroyed before."""
+    _registered: Collection[Entity] = ()  # kept in use until the next update, though destroyed before
     already_spinning = "Executor is already spinning"
     """The message of the RuntimeError for a nested or second spin."""
-    replies_in_tasks = False
-    """Whether what a service's coroutine returns is sent by a task of its own."""
+    replies_in_tasks = False  # whether a task of its own sends what a service's coroutine returns
 
     def __init__(self, *, context: Context | None = None) -> None:
         self._context = get_default_context() if context is None else context
