@@ -2,6 +2,8 @@
 
 from collections.abc import Callable
 
+import pytest
+
 import sim.ros.rclpy as rclpy
 from lessons.catalogue import lesson_on
 from sim.ros.node.node import Node
@@ -38,6 +40,20 @@ def test_a_callback_that_returns_no_response_leaves_its_caller_waiting() -> None
     assert told.cure == "end serve with: return response"
     found = run.one("unreturned-response")
     assert lesson_on(found.rule.kind(found)) is None
+
+
+@pytest.mark.parametrize(("returned", "kind"), [(True, "bool"), (SetBool.Request(), "SetBool_Request")])
+def test_a_callback_that_returns_something_else_is_told_of_what_type_that_is(
+    returned: object, kind: str
+) -> None:
+    def serve(_: object, response: object) -> object:
+        return returned
+
+    told = served_by(serve).explained("unreturned-response")
+    assert told.what == (
+        f"serve returned a value of type {kind}, and not its response, so the caller of /s waits for ever"
+    )
+    assert told.cure == "set the fields of the response that serve is given, and return that"
 
 
 def test_a_callback_that_raises_leaves_its_caller_waiting() -> None:

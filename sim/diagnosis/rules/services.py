@@ -1,5 +1,6 @@
 """Rules on service calls that are never answered."""
 
+import re
 from collections.abc import Iterator
 
 from sim.diagnosis.cures import Remedy
@@ -25,6 +26,9 @@ from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind
 from sim.trace.model import EntityInfo, Span, Window
 from sim.trace.timeline import Timeline
+
+_RETURNED = re.compile(r"got <class '(?:[\w<>]+\.)*(\w+)'>$")
+"""The class of what a service's callback returned, in the error that comes of it; real rclpy names none."""
 
 
 class UnreturnedResponse(Rule):
@@ -66,6 +70,12 @@ class UnreturnedResponse(Rule):
             what, error = f"{subject} returned no response", ""
             cure = f"end {subject} with: return response"
             remedies = by_edit(place, cure, return_response)
+            spans = timeline.spans_of(found.subject, Window(found.at, found.at + 1))
+            known = _RETURNED.search(spans[0].error or "") if spans else None
+            if known and known[1] != "NoneType":
+                what = f"{subject} returned a value of type {known[1]}, and not its response"
+                cure = f"set the fields of the response that {subject} is given, and return that"
+                remedies = ()
         return Explanation(
             f"{what}, so the caller of {service} waits for ever{error}{often(found.count)}",
             "only what a service's callback returns is sent to the caller",
