@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dis
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -68,6 +69,15 @@ def has_timeout() -> bool:
         called = frame
     timeout = None if called is None else called.f_locals.get("timeout_sec")
     return timeout is not None and timeout >= 0
+
+
+def is_result_dropped() -> bool:
+    """Whether the learner's code makes nothing of what the function that it called on this thread returns."""
+    frame = own_frame(sys._getframe(1))
+    if frame is None:
+        return False
+    code = dis.get_instructions(frame.f_code)
+    return next((each.opname for each in code if each.offset > frame.f_lasti), "") == "POP_TOP"
 
 
 def place_of_caller() -> str:

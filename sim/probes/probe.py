@@ -15,6 +15,7 @@ from sim.probes.on_path.cbtui_probe.naming import written_at
 from sim.probes.on_path.cbtui_probe.own_lines import awaiting_frames
 from sim.probes.own_code import call_into_ros, has_timeout, is_own, place_of_caller, raised_at
 from sim.probes.traced import MessageContents, TracedEntity, name_of
+from sim.probes.usage_warnings import UsageWarnings
 from sim.trace import events
 from sim.trace.events import AnyEvent, CallbackEnded, CallbackStarted, GroupKind, Reason, Severity
 
@@ -59,6 +60,7 @@ class Probe:
         self._contents = contents
         self._everywhere: dict[int, dict[str, int]] = {}
         self._here = _Here(self._everywhere)
+        self.usage = UsageWarnings(self._now, self._here, self._warn)
         self._threads = count(1)
         self._nodes = count(1)
         self._groups = count(1)

@@ -112,6 +112,12 @@ def test_a_loop_that_may_be_a_short_one_is_not_told(later: list[AnyEvent]) -> No
     assert explained(begun, _in_a_loop(0.2), *later, rule="stays-in-loop") == []
 
 
+def test_a_notice_on_something_else_hides_no_loop() -> None:
+    begun = CallbackStarted(5, 1, 1, 0, 0, 0)
+    notice = Notice(6, Severity.WARN, "words", 1, kind=NoticeKind.REFUSAL_OVERLOOKED)
+    assert len(explained(begun, notice, _in_a_loop(0.2), TimePassed(ns(2.2)), rule="stays-in-loop")) == 1
+
+
 @pytest.mark.parametrize(("condition", "told"), [("time.monotonic() < end", 0), ("not self.done", 1)])
 def test_a_loop_that_a_clock_ends_is_not_told(condition: str, told: int, tmp_path: Path) -> None:
     path = tmp_path / "node.py"

@@ -1,6 +1,7 @@
 """Callbacks that make entities again and again, and keep them or not."""
 
 from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 from typing import Any
 
@@ -57,11 +58,13 @@ def test_a_timer_that_is_made_in_each_call_is_told_with_its_line_and_their_numbe
         (lambda node: node.create_subscription(Int32, "numbers", lambda _: None, 10), "subscription"),
         (lambda node: node.create_client(SetBool, "lamp"), "client"),
         (lambda node: node.create_service(SetBool, "lamp", lambda _, response: response), "service"),
+        (lambda node: node.create_publisher(Int32, "numbers", 10), "publisher"),
     ],
 )
 def test_so_are_other_things_with_their_own_word(make: Make, kind: str) -> None:
     told = making(make).explained("never-destroyed")
     assert told.what.startswith(f"tick makes a {kind} at line ")
+    assert told.what.endswith(" each time it runs: 7 so far, and none was destroyed")
     assert told.cure.endswith(f"destroy_{kind}() the former one")
 
 
@@ -105,5 +108,20 @@ def test_timers_that_cancel_themselves_are_well_be_they_many_before_the_first_is
     assert not is_told(making(make, until=20.0))
 
 
-def test_publishers_do_not_count() -> None:
-    assert not is_told(making(lambda node: node.create_publisher(Int32, "numbers", 10)))
+def test_of_publishers_that_are_not_made_in_each_call_the_latest_doubling_is_told() -> None:
+    calls = count()
+
+    def seldom(node: Node) -> None:
+        if next(calls) % 2:
+            node.create_publisher(Int32, "numbers", 10)
+
+    told = making(seldom, until=26.5).explained("never-destroyed")
+    assert told.what.endswith(" again and again: 10 so far, and none was destroyed")
+
+
+def test_publishers_of_many_topics_and_destroyed_ones_are_well() -> None:
+    names = (f"robot_{number}" for number in count())
+    assert not is_told(making(lambda node: node.create_publisher(Int32, next(names), 10)))
+    assert not is_told(
+        making(lambda node: node.destroy_publisher(node.create_publisher(Int32, "numbers", 10)))
+    )

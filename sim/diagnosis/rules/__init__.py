@@ -9,6 +9,7 @@ from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.leaks import NeverDestroyed
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
 from sim.diagnosis.rules.names import MisspeltTopic
+from sim.diagnosis.rules.overlooked import AnswerOverlooked
 from sim.diagnosis.rules.parameters import ParameterOverruled
 from sim.diagnosis.rules.services import NobodyOffers, ServiceNeverComes, UnreturnedResponse
 from sim.diagnosis.rules.spinning import NestedSpin, SpinInConstructor, SpinNotReached
@@ -34,6 +35,7 @@ RULES: tuple[Rule, ...] = (
     QosMismatch(),
     MisspeltTopic(),
     ParameterOverruled(),
+    AnswerOverlooked(),
     ExceptionSwallowed(),
     ExceptionCaught(),
     UnreturnedResponse(),

@@ -7,6 +7,7 @@ from sim.diagnosis.cures import remedy_for_waits
 from sim.diagnosis.edits.flags import setters
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_location, line_of
 from sim.diagnosis.rules.edits import beside_others, edits_for_reply, edits_for_waiting
+from sim.diagnosis.rules.overlooked import KINDS as OVERLOOKED
 from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, must_answer, often, who
@@ -48,9 +49,7 @@ class EndlessWait(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each wait that the engine reported."""
-        for notice in view.timeline.notices:
-            if not notice.entity or notice.kind in (NoticeKind.OVERRULED, NoticeKind.CANCEL_IGNORED):
-                continue
+        for notice in _on_waits(view.timeline):
             if notice.kind is not NoticeKind.NO_PROGRESS or not _computes(notice, view):
                 stuck, until = frozenset([notice.entity]), _until(notice, view)
                 yield Finding(self, notice.t, until, notice.entity, event=notice, stuck=stuck)
@@ -117,12 +116,18 @@ class WaitsForLock(Rule):
         )
 
 
+def _on_waits(timeline: Timeline) -> Iterator[Notice]:
+    """Yield the notices on callbacks that do not go on."""
+    others = (NoticeKind.OVERRULED, NoticeKind.CANCEL_IGNORED, NoticeKind.PUBLISHERS_KEPT, *OVERLOOKED)
+    return (each for each in timeline.notices if each.entity and each.kind not in others)
+
+
 def _at_locks(timeline: Timeline) -> list[Position]:
     """Return where threads wait for locks at the end of a timeline, the longest wait first, one per thread.
 
     Callbacks with a notice of the engine are left out.
     """
-    told = {notice.entity for notice in timeline.notices}
+    told = {notice.entity for notice in _on_waits(timeline)}
     at_end = Window(timeline.end, timeline.end + 1)
     last = (each for thread in timeline.threads for each in timeline.positions_on(thread, at_end)[-1:])
     waiting = (
@@ -148,8 +153,8 @@ class StillComputing(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each call that the engine reported."""
-        for notice in view.timeline.notices:
-            if notice.entity and notice.kind is NoticeKind.NO_PROGRESS and _computes(notice, view):
+        for notice in _on_waits(view.timeline):
+            if notice.kind is NoticeKind.NO_PROGRESS and _computes(notice, view):
                 stuck = frozenset([notice.entity])
                 until = _until(notice, view)
                 yield Finding(self, notice.t, until, notice.entity, notice.entity, event=notice, stuck=stuck)
@@ -191,7 +196,7 @@ class StaysInLoop(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each running call that was in one loop for all of the last seconds."""
-        told = {notice.entity for notice in view.timeline.notices}
+        told = {notice.entity for notice in _on_waits(view.timeline)}
         for span in view.now.running.values():
             since = _in_loop_since(span, view, self.threshold)
             if since is not None and span.entity not in told:

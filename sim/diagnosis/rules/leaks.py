@@ -1,11 +1,12 @@
 """The rule on callbacks that make one entity after another and keep them all."""
 
+from collections import defaultdict
 from collections.abc import Iterator
 
 from sim.diagnosis.rule import Explanation, Finding, Rule, is_models, line_location
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import who
-from sim.trace.events import EntityId, EntityKind
+from sim.trace.events import EntityId, EntityKind, Notice, NoticeKind
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 
@@ -15,6 +16,10 @@ _WHY = {
     EntityKind.CLIENT: "each of them stays, and the executor looks at all of them again and again",
     EntityKind.SERVICE: "each of them stays and answers: a request is handled once more with each",
 }
+
+_WHY_NO_PUBLISHER = (
+    "each of them stays, and has to find its subscriptions first: what it publishes at once may reach nobody"
+)
 
 
 class NeverDestroyed(Rule):
@@ -42,17 +47,34 @@ class NeverDestroyed(Rule):
             ):
                 about, begun = f"{making.file}:{making.line}", min(calls.values())
                 yield Finding(self, begun, view.end, making.maker, first, about, size=len(calls))
+        yield from self._publishers(view)
+
+    def _publishers(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each line of publishers, as the engine reports it whenever their number has doubled."""
+        told: defaultdict[tuple[str, int], list[Notice]] = defaultdict(list)
+        for notice in view.timeline.notices:
+            if notice.kind is NoticeKind.PUBLISHERS_KEPT:
+                told[notice.place].append(notice)
+        for (file, line), notices in told.items():
+            number, last = self.threshold << len(notices) - 1, notices[-1]
+            if number == view.timeline.calls_of(last.entity, Window(0, last.t + 1)):
+                number = _calls(last.entity, view.timeline)  # each call made one
+            about = f"{file}:{line}"
+            yield Finding(self, notices[0].t, view.end, last.entity, about=about, size=number, event=last)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        kind = timeline.entities[found.culprit].kind
-        file, line = timeline.entities[found.culprit].made_at
+        if isinstance(found.event, Notice):
+            kind, why, (file, line) = "publisher", _WHY_NO_PUBLISHER, found.event.place
+        else:
+            maker = timeline.entities[found.culprit]
+            kind, why, (file, line) = maker.kind.value, _WHY[maker.kind], maker.made_at
         always = found.size == _calls(found.subject, timeline)
         often = "each time it runs" if always else "again and again"
         return Explanation(
-            f"{who(found.subject, timeline)} makes a {kind.value} at line {line} {often}: "
+            f"{who(found.subject, timeline)} makes a {kind} at line {line} {often}: "
             f"{found.size} so far, and none was destroyed",
-            _WHY[kind],
-            f"make it once, in __init__, or destroy_{kind.value}() the former one",
+            why,
+            f"make it once, in __init__, or destroy_{kind}() the former one",
             line_location(file, line),
         )
 

@@ -124,6 +124,7 @@ class Client(ClientOrService, Entity):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
         self.require_alive()
         future: Future[Any] = Future()
+        future._early_check = self._probe.usage.result_check()
         copy = copy_message(request)
         with self._host.lock:
             call = self._probe.call_id()

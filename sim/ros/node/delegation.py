@@ -22,11 +22,11 @@ class Delegated(Generic[PartT]):
         attribute = self._attribute
 
         @wraps(method)
-        def call(node: Any, /, *args: ParametersT.args, **kwargs: ParametersT.kwargs) -> ResultT:
+        def delegated(node: Any, /, *args: ParametersT.args, **kwargs: ParametersT.kwargs) -> ResultT:
             return method(getattr(node, attribute), *args, **kwargs)
 
-        method.__qualname__ = call.__qualname__ = f"Node.{method.__name__}"
-        return call
+        method.__qualname__ = delegated.__qualname__ = f"Node.{method.__name__}"
+        return delegated
 
     def view(self, of: Any) -> property:
         """Delegate a read-only property."""

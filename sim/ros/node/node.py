@@ -83,6 +83,7 @@ class Node:
             [*overrides, *(parameter_overrides or ())],
             self._publish_parameter_change,
             self._context.probe.parameter_overruled,
+            self._context.probe.usage.refused,
             allow_undeclared=allow_undeclared_parameters,
         )
         self._graph_queries = Graph(self)

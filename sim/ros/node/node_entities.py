@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -40,6 +41,7 @@ class NodeEntities:
         self._context = node.context
         self._agenda = node._agenda
         self._publishers: list[Publisher] = []
+        self._made_at: Counter[tuple[str, tuple[str, int]]] = Counter()
         self.default_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
         self.overrides: NodeOverrides | None = None
@@ -132,6 +134,9 @@ class NodeEntities:
             callback_group=callback_group,
         )
         self._publishers.append(publisher)
+        alike = publisher.topic_name, publisher.made_at
+        self._made_at[alike] += 1
+        self._context.probe.usage.publishers_kept(self._made_at[alike], publisher.made_at)
         self._agenda.report_many(len(self._publishers), "publishers")
         return publisher
 
@@ -278,6 +283,7 @@ class NodeEntities:
         if publisher not in self._publishers:
             return False
         self._publishers.remove(publisher)
+        self._made_at[publisher.topic_name, publisher.made_at] -= 1
         publisher.destroy()
         return True
 

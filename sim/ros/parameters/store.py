@@ -45,7 +45,8 @@ class ParameterChange:
 class ParameterStore:
     """The parameters of a node by name. Callbacks run on the thread that sets parameters, the newest first.
 
-    ``publish`` is called with every change, ``overruled`` with each name that a callback sets without effect.
+    ``publish`` is called with every change, ``overruled`` with each name that a callback sets without effect,
+    ``refused`` with the names that are refused together, and the reason.
     """
 
     def __init__(
@@ -53,10 +54,12 @@ class ParameterStore:
         overrides: Iterable[AnyParameter],
         publish: Callable[[ParameterChange], None],
         overruled: Callable[[str], None],
+        refused: Callable[[Sequence[str], str], None],
         *,
         allow_undeclared: bool,
     ) -> None:
         self._publish = publish
+        self._refused = refused
         self._nested_sets = NestedSetDetector(overruled)
         self._parameters: dict[str, AnyParameter] = {}
         self._descriptors: dict[str, Any] = {}
@@ -243,17 +246,18 @@ class ParameterStore:
             if not chosen:
                 return _result(_NOTHING_LEFT)
         self._require_declared(chosen)
-        if reason := self._objection_to(chosen):
-            return _result(reason)
-        result = self._ask_callbacks(chosen)
-        if result.successful:
-            change = ParameterChange()
-            for parameter in chosen:
-                if parameter.type_ is _NOT_SET:
-                    self._drop(parameter, change)
-                else:
-                    self._store(parameter, change)
-            self._finish_setting(chosen, change)
+        reason = self._objection_to(chosen)
+        result = _result(reason) if reason else self._ask_callbacks(chosen)
+        if not result.successful:
+            self._refused([each.name for each in chosen], result.reason)
+            return result
+        change = ParameterChange()
+        for parameter in chosen:
+            if parameter.type_ is _NOT_SET:
+                self._drop(parameter, change)
+            else:
+                self._store(parameter, change)
+        self._finish_setting(chosen, change)
         return result
 
     def _objection_to(self, parameters: list[AnyParameter]) -> str:

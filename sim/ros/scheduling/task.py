@@ -30,6 +30,7 @@ class Future(Generic[T]):
     """
 
     def __init__(self, *, executor: Executor | None = None) -> None:
+        self._early_check: Callable[[], None] | None = None
         self._done = False
         self._cancelled = False
         self._result: T | None = None
@@ -75,6 +76,8 @@ class Future(Generic[T]):
 
     def result(self) -> T | None:
         """Return the result, or None if there is none yet; raise the exception if one was set."""
+        if self._early_check is not None and not self._settled():
+            self._early_check()
         if self._exception is not None:
             self._exception_fetched = True
             raise self._exception

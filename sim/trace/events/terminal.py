@@ -3,7 +3,17 @@
 from enum import StrEnum
 
 from sim.trace.events.event import TraceEvent
-from sim.trace.events.fields import CallbackId, LineId, LoggerName, Maybe, ProcessId, Text, ThreadId, WireOnly
+from sim.trace.events.fields import (
+    CallbackId,
+    LineId,
+    LoggerName,
+    Maybe,
+    ProcessId,
+    SourcePlace,
+    Text,
+    ThreadId,
+    WireOnly,
+)
 
 
 class Severity(StrEnum):
@@ -78,6 +88,12 @@ class NoticeKind(StrEnum):
     """A parameter callback sets the parameter that is being set; the requested value is stored after that."""
     CANCEL_IGNORED = "cancel ignored"
     """An execute callback goes on after the cancel of its goal was accepted, and has not asked for that."""
+    EARLY_RESULT = "early result"
+    """A callback asks a future for its result as soon as the request is sent, so it is None."""
+    REFUSAL_OVERLOOKED = "refusal overlooked"
+    """A parameter is refused, and the program makes nothing of the answer that says so."""
+    PUBLISHERS_KEPT = "publishers kept"
+    """Callbacks have made several publishers at one line, and destroyed none."""
     FORGED = "forged"
     """A program records events that only the run may record."""
 
@@ -98,6 +114,8 @@ class Notice(TraceEvent, frozen=True, tag="notice"):
     """The part of ``text`` that says what is wrong, if a callback waits."""
     advice: WireOnly[str] = ""
     """The part of ``text`` that says what to do about it."""
+    place: WireOnly[SourcePlace] = ("", 0)
+    """The program's own line that it is about, if it is about one."""
 
 
 class KeyboardAsked(TraceEvent, frozen=True, tag="keyboard"):

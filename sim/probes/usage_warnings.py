@@ -1,0 +1,80 @@
+"""Records where a program misuses what rclpy gives it, though nothing fails."""
+
+import threading
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Protocol
+
+from sim.probes.own_code import call_into_ros, is_result_dropped
+from sim.trace.events import NoticeKind
+
+_AT_ONCE = 10_000_000
+"""Nanoseconds after a request in which no reply can be expected; on virtual time none pass in between."""
+
+PUBLISHERS = 5
+"""How many publishers of one topic and line are worth a warning, as is each time that these have doubled."""
+
+
+class _Here(Protocol):
+    entity: int
+    begun: int
+
+
+class UsageWarnings:
+    """Warns once for each line, or number.
+
+    ``here`` is the state of the calling thread, ``warn`` records a notice.
+    """
+
+    def __init__(self, now: Callable[[], int], here: _Here, warn: Callable[..., None]) -> None:
+        self._now = now
+        self._here = here
+        self._warn = warn
+        self._told: set[tuple[str, int, int]] = set()
+
+    def result_check(self) -> Callable[[], None]:
+        """Return what to call when the result of the request that is sent now is asked for and not there.
+
+        It warns if the same call of a callback asks at once.
+        """
+        sent, by = self._now(), self._caller()
+
+        def asked() -> None:
+            if self._here.entity and self._caller() == by and self._now() - sent < _AT_ONCE:
+                problem = "result() is asked for as soon as the request is sent, and is None"
+                advice = "use it in a done-callback of the future"
+                self._tell("result", NoticeKind.EARLY_RESULT, problem, advice)
+
+        return asked
+
+    def refused(self, names: Sequence[str], reason: str) -> None:
+        """Warn if the program drops the answer that parameters were refused."""
+        if is_result_dropped():
+            were = "was" if len(names) == 1 else "were"
+            problem = f"{', '.join(names)} {were} refused{reason and ': '}{reason}"
+            advice = "look at the results that set_parameters() returns"
+            self._tell("delegated", NoticeKind.REFUSAL_OVERLOOKED, problem, advice)
+
+    def publishers_kept(self, number: int, place: tuple[str, int]) -> None:
+        """Warn of so many publishers of a topic that were made at a line; the more, the more seldom."""
+        rounds, rest = divmod(number, PUBLISHERS)
+        if self._here.entity and place[1] and rounds.bit_count() == 1 and rest == 0:
+            problem = f"{number} publishers of a topic were made in callbacks, and none was destroyed"
+            advice = "make one in __init__"
+            self._tell_of(place, NoticeKind.PUBLISHERS_KEPT, problem, advice, number)
+
+    def _caller(self) -> tuple[int, int, int]:
+        return threading.get_ident(), self._here.entity, self._here.begun
+
+    def _tell(self, function: str, kind: NoticeKind, problem: str, advice: str) -> None:
+        called, file, line = call_into_ros()
+        if called == function and line:
+            self._tell_of((file, line), kind, problem, advice)
+
+    def _tell_of(
+        self, place: tuple[str, int], kind: NoticeKind, problem: str, advice: str, number: int = 0
+    ) -> None:
+        if (*place, number) not in self._told:
+            self._told.add((*place, number))
+            told = {"kind": kind, "problem": problem, "advice": advice, "place": place}
+            self._warn(f"{problem} ({Path(place[0]).name}:{place[1]}); {advice}", self._here.entity, **told)
