@@ -36,7 +36,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "self.adder.call(",
             "await the future in an async def cook",
         ),
-        ("spin_once", "nested-spin", "rclpy.spin_once(self)", "leave spin_once() out"),
+        ("spin_once", "nested-spin", "rclpy.spin_once(self)", "return from go, and go on in on_open"),
         ("wait_for_event", "endless-wait", "self.opened.wait()", "give go a callback group of its own"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("call_in_script", "self-made-deadlock", "client.call(", "give ask a callback group of its own"),

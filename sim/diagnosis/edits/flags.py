@@ -1,6 +1,7 @@
 """Loops that only ask for what another function sets: which function, and the edit that lets it run."""
 
 import ast
+from contextlib import suppress
 
 from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.replies import is_idle
@@ -22,6 +23,14 @@ def setters(source: SourceEditor, line: int) -> tuple[str, ...]:
     return tuple(each.name for each in functions if asked & _set_by(source, each))
 
 
+@asked_of_file
+def sleeps(source: SourceEditor, line: int) -> bool:
+    """Return whether a ``while`` that only asks lets time pass in each round."""
+    with suppress(NotSimpleError):
+        return _sleeps(_asking(source, line))
+    return False
+
+
 def _set_by(source: SourceEditor, function: ast.FunctionDef) -> set[str]:
     """Return the attributes and global variables that a function sets."""
     shared = {name for each in source.nodes(ast.Global, function) for name in each.names}
@@ -34,7 +43,7 @@ def _set_by(source: SourceEditor, function: ast.FunctionDef) -> set[str]:
 def sleep_in_loop(source: SourceEditor, line: int) -> None:
     """Let the ``while`` at a line that only asks sleep in each round, if it does not yet."""
     loop = _asking(source, line)
-    if any(map(is_idle, (each for each in loop.body if not isinstance(each, ast.Pass)))):
+    if _sleeps(loop):
         raise NotSimpleError
     has_time = any(name.name == "time" for each in source.nodes(ast.Import) for name in each.names)
     sleep, last = "time.sleep(0.01)" if has_time else "sleep(0.01)", loop.body[-1]
@@ -46,12 +55,16 @@ def sleep_in_loop(source: SourceEditor, line: int) -> None:
         source.import_names("time", ["sleep"])
 
 
+def _sleeps(loop: ast.While) -> bool:
+    return any(is_idle(each) and not isinstance(each, ast.Pass) for each in loop.body)
+
+
 def _asking(source: SourceEditor, line: int) -> ast.While:
-    """Return the ``while`` at a line if all it does is to ask, to log, and to let time pass."""
-    loops = [each for each in source.nodes(ast.While) if each.lineno == line]
-    if len(loops) != 1 or not all(is_idle(each) or _asks_or_logs(each) for each in loops[0].body):
+    """Return the innermost ``while`` around a line if all it does is to ask, to log, and to let time pass."""
+    loops = [each for each in source.nodes(ast.While) if each.lineno <= line <= (each.end_lineno or 0)]
+    if not loops or not all(is_idle(each) or _asks_or_logs(each) for each in loops[-1].body):
         raise NotSimpleError
-    return loops[0]
+    return loops[-1]
 
 
 def _asks_or_logs(statement: ast.stmt) -> bool:

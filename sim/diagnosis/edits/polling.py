@@ -54,19 +54,22 @@ def go_on_where_set(source: SourceEditor, line: int) -> None:
     """Move the statements after the wait at a line to the method that sets the awaited attribute.
 
     They run there once the wait would be over. Only for a loop that only waits for an attribute that one
-    other method sets, and that the callback has reset before.
+    other method sets, and that the callback has reset before; if in an ``if``, then in the last one.
     """
     callback = source.callback_at(line)
-    wait = _statement_at(callback, line)
-    place = callback.body.index(wait)
-    rest, awaited = callback.body[place + 1 :], _attributes(wait)
+    wait, body, before = _statement_at(callback, line), callback.body, list[ast.stmt]()
+    while isinstance(wait, ast.If) and wait is body[-1] and not wait.orelse:
+        before, body = [*before, *body[:-1]], wait.body
+        wait = next(each for each in body if line <= (each.end_lineno or 0))
+    rest, awaited = body[body.index(wait) + 1 :], _attributes(wait)
+    before += body[: body.index(wait)]
     if not isinstance(wait, ast.While) or wait.orelse or not all(map(is_idle, wait.body)):
         raise NotSimpleError
-    me, reset = callback.args.args[0].arg, set().union(*map(_stores, callback.body[:place]))
+    me, reset = callback.args.args[0].arg, set().union(*map(_stores, body[: body.index(wait)]))
     names = {each.id for each in source.nodes(ast.Name, wait.test)}
     if not awaited <= reset or names != {me} or "was_waiting" in source.text:
         raise NotSimpleError
-    check_rest(callback, callback.body[:place], rest, "")
+    check_rest(callback, before, rest, "")
     methods = (each for each in source.nodes(ast.FunctionDef) if each.name != "__init__")
     setters = [each for each in methods if each is not callback and awaited & _stores(each)]
     if len(setters) != 1 or not rest or setters[0].args.args[0].arg != me:
@@ -75,12 +78,12 @@ def go_on_where_set(source: SourceEditor, line: int) -> None:
     if isinstance(last, ast.Return) or source.callback_at(last.lineno) is not setters[0]:
         raise NotSimpleError
     waits = source.code_of(wait.test)
-    blank, deeper = indentation(last), last.col_offset + wait.col_offset - callback.col_offset
+    blank, deeper = indentation(last), last.col_offset + callback.body[0].col_offset - callback.col_offset
     moved = source.lines_moved(wait.end_lineno or 0, rest[-1], deeper)
     source.replace_lines(wait, rest[-1], "")
     begin, end = f"was_waiting = {waits}", f"if was_waiting and {_negated(source, wait.test)}:"
-    body = source.lines_behind(first.lineno - 1, last)
-    source.replace_lines(first, last, f"{blank}{begin}\n{body}{blank}{end}\n{moved}")
+    setting = source.lines_behind(first.lineno - 1, last)
+    source.replace_lines(first, last, f"{blank}{begin}\n{setting}{blank}{end}\n{moved}")
 
 
 def _statement_at(callback: ast.FunctionDef, line: int) -> ast.stmt:
@@ -144,6 +147,8 @@ def leave_out(source: SourceEditor, line: int) -> None:
     if not around or not isinstance(statement, ast.Expr) or not isinstance(statement.value, ast.Call):
         raise NotSimpleError
     is_alone = len(around[-1]) == 1
+    if any(each.body == [statement] for each in source.nodes(ast.While)):
+        raise NotSimpleError  # the loop would compute for ever
     source.replace_lines(statement, statement, f"{indentation(statement)}pass\n" if is_alone else "")
 
 

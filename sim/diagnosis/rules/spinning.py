@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy
+from sim.diagnosis.edits.flags import setters
 from sim.diagnosis.edits.polling import leave_out
 from sim.diagnosis.edits.spins import never_made
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, is_models, line_location
@@ -224,6 +225,12 @@ def _cure(clash: SpinClashed, subject: str, timeline: Timeline) -> str:
             "that the future's done-callback sets"
         )
     if not clash.function.endswith("future_complete"):
+        others = [each for each in setters(clash.file, clash.line) if each != subject]
+        if others and not must_answer(clash.entity, timeline):
+            return (
+                f"return from {subject}, and go on in {listed(others)}: callbacks run by themselves as soon "
+                f"as {subject} returns"
+            )
         return (
             f"leave {clash.function}() out, and a loop around it, too: callbacks run by themselves as soon "
             f"as {subject} returns"

@@ -6,7 +6,7 @@ from textwrap import indent
 import pytest
 
 from sim.diagnosis.edits.flags import setters, sleep_in_loop
-from sim.diagnosis.edits.polling import go_on_where_set, look_again, one_round_a_call, step_by_step
+from sim.diagnosis.edits.polling import go_on_where_set, leave_out, look_again, one_round_a_call, step_by_step
 from tests.diagnosis.edits.edited_source import changed, edited, node
 
 
@@ -94,6 +94,35 @@ def test_what_follows_a_wait_goes_on_in_the_method_that_sets_what_is_waited_for(
         "-            rclpy.spin_once(self)",
         "-        self.log(self.answer)",
     ]
+
+
+def test_a_wait_in_the_if_that_ends_a_callback_goes_on_there_too() -> None:
+    text = """
+        def on_done(self, message):
+            self.done = message.data
+
+        def step(self):
+            self.count += 1
+            if self.state == "IDLE":
+                self.done = False
+                while not self.done:
+                    rclpy.spin_once(self, timeout_sec=0.1)  # here
+                self.state = "IDLE"
+        """
+    assert changed(node(text), go_on_where_set) == [
+        "+        was_waiting = not self.done",
+        "+        if was_waiting and self.done:",
+        '+            self.state = "IDLE"',
+        "-            while not self.done:",
+        "-                rclpy.spin_once(self, timeout_sec=0.1)  # here",
+        '-            self.state = "IDLE"',
+    ]
+    assert changed(node(f"{text.rstrip()}\n            self.count += 1"), go_on_where_set) is None
+
+
+def test_what_lets_time_pass_in_a_loop_is_not_left_out_alone() -> None:
+    loop = "while not self.done:\n        self.spin_once()  # here"
+    assert changed(node(f"def step(self):\n    {loop}"), leave_out) is None
 
 
 def test_the_docstring_of_the_method_that_goes_on_stays_its_first_line() -> None:
