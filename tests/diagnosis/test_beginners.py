@@ -162,6 +162,21 @@ def test_it_is_told_who_sets_what_a_loop_waits_for() -> None:
     assert told[0].why.endswith("does, and it waits for what on_closed sets")
 
 
+def test_a_loop_that_sleeps_is_not_told_to_sleep(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    text = (PROGRAMS / "busy_wait_in_service.py").read_text()
+    path.write_text(
+        text.replace("            pass\n", "            time.sleep(0.05)\n").replace(
+            "import rclpy", "import time\n\nimport rclpy", 1
+        )
+    )
+    timeline = run_to_end(program_setup(path, 4.0)).timeline
+    (told,) = (
+        each.rule.explain(each, timeline) for each in diagnose(timeline) if each.rule.id == "stays-in-loop"
+    )
+    assert told.cure == "give close a callback group of its own"
+
+
 def test_a_circle_through_a_joined_thread_names_the_thread_and_is_over_with_its_timeout(
     tmp_path: Path,
 ) -> None:

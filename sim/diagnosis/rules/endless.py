@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from sim.diagnosis.cures import remedy_for_waits
-from sim.diagnosis.edits.flags import setters
+from sim.diagnosis.edits.flags import setters, sleeps
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_location, line_of
 from sim.diagnosis.rules.edits import beside_others, edits_for_reply, edits_for_waiting
 from sim.diagnosis.rules.overlooked import KINDS as OVERLOOKED
@@ -266,12 +266,12 @@ def _leaving(entity: EntityId, loop: CodeLocation | None, timeline: Timeline) ->
     subject, others = who(entity, timeline), _setters(entity, loop, timeline)
     if others:
         room = beside_others(entity, timeline).words(timeline)
+        is_asleep = loop is not None and sleeps(loop.file, loop.first_line)
         if must_answer(entity, timeline):
-            return f"sleep() in the loop, and {room}"
-        return (
-            f"return from {subject}, and go on in {listed(others)}; "
-            f"to wait inside {subject}, with a sleep() in the loop, {room}"
-        )
+            return room if is_asleep else f"sleep() in the loop, and {room}"
+        sleeping = "" if is_asleep else ", with a sleep() in the loop"
+        inside = f"to wait inside {subject}{sleeping}, {room}"
+        return f"return from {subject}, and go on in {listed(others)}; {inside}"
     text = _LEAVE if timeline.entities[entity].kind is EntityKind.TIMER else _LEAVE_FOR_TIMER
     if must_answer(entity, timeline):
         text = _LEAVE_WITH_RESPONSE
