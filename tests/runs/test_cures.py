@@ -146,6 +146,34 @@ def test_where_a_lock_and_a_group_are_in_the_way_of_a_reply_only_a_cure_of_both_
     ]
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("program", "old", "new", "cure"),
+    [
+        (
+            "lock_during_call",
+            "        with self.lock:\n            self.storage.call(Trigger.Request())\n",
+            "        self.lock.acquire()\n        self.storage.call(Trigger.Request())\n"
+            "        self.lock.release()\n",
+            "let go of the lock during the call (diff)",
+        ),
+        (
+            "wait_for_service",
+            "        self.client.wait_for_service()\n",
+            "        if self.client:\n            self.client.wait_for_service()\n",
+            LATER,
+        ),
+    ],
+)
+def test_other_ways_to_write_the_same_have_the_same_cure(
+    program: str, old: str, new: str, cure: str, tmp_path: Path
+) -> None:
+    text = (PROGRAMS / f"{program}.py").read_text()
+    assert old in text
+    (tmp_path / "node.py").write_text(text.replace(old, new, 1))
+    assert helpful("node", tmp_path) == [cure]
+
+
 def test_a_deadlock_is_the_same_whoever_of_two_was_the_last_to_wait() -> None:
     _, timeline = run_of("lock_across_callbacks")
     found = diagnose(timeline)[0]

@@ -4,7 +4,7 @@ import ast
 
 from sim.diagnosis.edits.polling import leave_out
 from sim.diagnosis.edits.replies import future_of, is_at, plain_call
-from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
+from sim.diagnosis.edits.source_editor import Function, NotSimpleError, SourceEditor, indentation
 
 
 def take_together(source: SourceEditor, line: int, other: int) -> None:
@@ -139,10 +139,10 @@ def let_go_during_wait(source: SourceEditor, line: int) -> None:
     wait, blank = waits[0], indentation(block)
     first, begin = (block, _header_end(block)) if wait is block.body[0] else (wait, wait.lineno - 1)
     outside, inside = source.lines_moved(begin, wait, block.col_offset), ""
-    call, me = plain_call(wait), {each.arg for each in function.args.args[:1]}
+    call = plain_call(wait)
     if call is None:
         future_of(wait)
-    elif me & {each.id for each in source.nodes(ast.Name, call.args[0])}:
+    elif _is_of_self(source, call, function):
         raise NotSimpleError
     elif not _only_names(wait, call):
         if "reply" in {each.id for each in source.nodes(ast.Name, function)}:
@@ -153,6 +153,30 @@ def let_go_during_wait(source: SourceEditor, line: int) -> None:
     if inside or wait is not block.body[-1]:
         outside += f"{blank}with {lock}:\n"
     source.replace_lines(first, wait, outside + inside)
+
+
+def release_during_wait(source: SourceEditor, line: int) -> None:
+    """Release the lock that is taken by ``acquire`` before the call at a line, and take it again after that.
+
+    Only for one lock, and if what is called is known without it.
+    """
+    function = source.function_at(line)
+    taken = [each for each in source.nodes(ast.Expr, function) if _method_of(each, "acquire")]
+    wait = source.statement_at(line)
+    call, lock = plain_call(wait), {_acquired(each) for each in taken}
+    after = [each for each in source.nodes(ast.Expr, function) if _method_of(each, "release")]
+    is_held = any(each.lineno < line for each in taken) and any(each.lineno > line for each in after)
+    if call is None or len(lock) != 1 or not is_held or _is_of_self(source, call, function):
+        raise NotSimpleError
+    (name,), blank = lock, indentation(wait)
+    kept = source.lines_behind(wait.lineno - 1, wait)
+    source.replace_lines(wait, wait, f"{blank}{name}.release()\n{kept}{blank}{name}.acquire()\n")
+
+
+def _is_of_self(source: SourceEditor, call: ast.Call, function: Function) -> bool:
+    """Return whether a request is made of what the object has, which others may change."""
+    me = {each.arg for each in function.args.args[:1]}
+    return bool(me & {each.id for each in source.nodes(ast.Name, call.args[0])})
 
 
 def _only_names(statement: ast.stmt, call: ast.Call) -> bool:

@@ -14,15 +14,15 @@ _ONCE = {"cancel", "destroy_timer", "create_timer", "create_rate"}
 def look_again(source: SourceEditor, line: int) -> None:
     """Let a callback return instead of waiting at a line, if its condition does not hold yet.
 
-    A service's callback returns its response as it is. Only for a statement of the callback's body that only
-    waits, or logs while it waits, or that returns if a wait for a service was in vain.
+    A service's callback returns its response as it is. Only for a statement of the callback's body, or of
+    an ``if`` there, that only waits, or logs meanwhile, or returns if a wait for a service was in vain.
     """
     callback = source.callback_at(line)
-    wait = _statement_at(callback, line)
+    wait, path = _within_ifs(callback, line)
     if _asks_in_vain(source, wait):
         return
     missing, meanwhile = _condition(source, wait)
-    before = callback.body[: callback.body.index(wait)]
+    before = [each for body, inside in path for each in body[: body.index(inside)]]
     if any(_stores(part) & _attributes(wait) for part in before):
         raise NotSimpleError  # it would start again at each call
     local = {each.id for each in source.nodes(ast.Name, callback) if isinstance(each.ctx, ast.Store)}
@@ -30,7 +30,7 @@ def look_again(source: SourceEditor, line: int) -> None:
     if used & local or any(each.lineno == wait.lineno for each in meanwhile):
         raise NotSimpleError
     blank = indentation(wait)
-    step = " " * (wait.col_offset - callback.col_offset)
+    step = " " * (callback.body[0].col_offset - callback.col_offset)
     logs = "".join(source.lines_behind(each.lineno - 1, each) for each in meanwhile)
     response = f" {callback.args.args[2].arg}" if len(callback.args.args) == 3 else ""
     source.replace_lines(wait, wait, f"{blank}if {missing}:\n{logs}{blank}{step}return{response}\n")
@@ -57,12 +57,11 @@ def go_on_where_set(source: SourceEditor, line: int) -> None:
     other method sets, and that the callback has reset before; if in an ``if``, then in the last one.
     """
     callback = source.callback_at(line)
-    wait, body, before = _statement_at(callback, line), callback.body, list[ast.stmt]()
-    while isinstance(wait, ast.If) and wait is body[-1] and not wait.orelse:
-        before, body = [*before, *body[:-1]], wait.body
-        wait = next(each for each in body if line <= (each.end_lineno or 0))
+    wait, path = _within_ifs(callback, line)
+    body, before = path[-1][0], [each for body, inside in path for each in body[: body.index(inside)]]
     rest, awaited = body[body.index(wait) + 1 :], _attributes(wait)
-    before += body[: body.index(wait)]
+    if any(inside is not body[-1] or getattr(inside, "orelse", ()) for body, inside in path[:-1]):
+        raise NotSimpleError
     if not isinstance(wait, ast.While) or wait.orelse or not all(map(is_idle, wait.body)):
         raise NotSimpleError
     me, reset = callback.args.args[0].arg, set().union(*map(_stores, body[: body.index(wait)]))
@@ -84,6 +83,19 @@ def go_on_where_set(source: SourceEditor, line: int) -> None:
     begin, end = f"was_waiting = {waits}", f"if was_waiting and {_negated(source, wait.test)}:"
     setting = source.lines_behind(first.lineno - 1, last)
     source.replace_lines(first, last, f"{blank}{begin}\n{setting}{blank}{end}\n{moved}")
+
+
+def _within_ifs(
+    callback: ast.FunctionDef, line: int
+) -> tuple[ast.stmt, list[tuple[list[ast.stmt], ast.stmt]]]:
+    """Return the statement at a line, and the bodies from the callback's to its own, each with its part."""
+    statement = _statement_at(callback, line)
+    path = [(callback.body, statement)]
+    while isinstance(statement, ast.If) and (statement.test.end_lineno or 0) < line:
+        body = next(each for each in (statement.orelse, statement.body) if each and each[0].lineno <= line)
+        statement = next((each for each in body if line <= (each.end_lineno or 0)), statement)
+        path.append((body, statement))
+    return statement, path
 
 
 def _statement_at(callback: ast.FunctionDef, line: int) -> ast.stmt:

@@ -8,6 +8,7 @@ from sim.diagnosis.edits.locks import (
     let_go_during_wait,
     make_one,
     make_reentrant,
+    release_during_wait,
     take_before,
     take_by_one_with,
     take_by_with,
@@ -172,7 +173,8 @@ _CURES = {
 
 
 def _letting_go(place: CodeLocation | None) -> tuple[Remedy, ...]:
-    return by_edit(place, "let go of the lock during the call", let_go_during_wait)
+    words = "let go of the lock during the call"
+    return *by_edit(place, words, let_go_during_wait), *by_edit(place, words, release_during_wait)
 
 
 def _lock_remedies(place: CodeLocation | None, found: Finding, timeline: Timeline) -> tuple[Remedy, ...]:

@@ -8,6 +8,7 @@ from sim.diagnosis.edits.locks import (
     let_go_during_wait,
     make_one,
     make_reentrant,
+    release_during_wait,
     take_before,
     take_by_one_with,
     take_by_with,
@@ -141,6 +142,21 @@ def test_a_lock_is_let_go_of_during_a_call_and_taken_again() -> None:
 )
 def test_what_needs_the_lock_keeps_it_during_a_call(block: str, lines: list[str] | None) -> None:
     assert changed(holding(block), let_go_during_wait) == lines
+
+
+@pytest.mark.parametrize("request_", ["Trigger.Request()", "self.asked"])
+def test_a_lock_that_acquire_takes_is_released_during_a_call_that_is_known_without_it(request_: str) -> None:
+    call = f"    reply = self.client.call({request_})  # here\n"
+    released = changed(
+        node(
+            f"def tick(self):\n    self.lock.acquire()\n    try:\n    {call}"
+            "    finally:\n        self.lock.release()"
+        ),
+        release_during_wait,
+    )
+    added = ["+            self.lock.release()", "+            self.lock.acquire()"]
+    assert released == (None if "self" in request_ else added)
+    assert changed(node(f"def tick(self):\n{call}    self.lock.acquire()"), release_during_wait) is None
 
 
 BY_ACQUIRE = node(

@@ -27,6 +27,16 @@ def test_a_timer_that_waits_looks_again_at_its_next_tick(wait: str, condition: s
     assert [each[9:] for each in lines if each[0] == "+"] == [condition, "    return"]
 
 
+def test_in_an_if_it_returns_too() -> None:
+    wait = "if self.is_on:\n    if self.asks:\n        a = 1\n    else:\n"
+    wait += "        self.client.wait_for_service()  # here\n"
+    assert changed(node(f"def tick(self):\n{indent(wait, '    ')}    self.log()"), look_again) == [
+        "-                self.client.wait_for_service()  # here",
+        "+                if not self.client.service_is_ready():",
+        "+                    return",
+    ]
+
+
 def test_what_a_loop_logs_while_it_waits_is_logged_before_the_return() -> None:
     wait = "while not self.client.wait_for_service(timeout_sec=1.0):  # here\n        self.log('no')"
     assert changed(node(f"def tick(self):\n    {wait}\n    self.go()"), look_again) == [
