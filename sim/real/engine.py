@@ -32,7 +32,7 @@ from sim.real.programs import STOPPED, OnExit, claimed_domain, environment, unbo
 from sim.real.ros2_lines import Ros2Lines
 from sim.real.translation import HOLD, Translation
 from sim.real.watched import WatchedProcesses
-from sim.real.wire import OF_THE_RUN, ProbeLine
+from sim.real.wire import OF_THE_RUN, Hello, ProbeLine
 from sim.trace.events import (
     AnyEvent,
     CommandGiven,
@@ -59,6 +59,13 @@ _TO_GATHER = 500_000_000
 """Nanoseconds for which a watched run waits at first, so that the pasts of all processes are put in order."""
 _TO_BEGIN = 10_000_000_000
 """Nanoseconds to wait for the robot, and for the first node, before the run begins without."""
+_TO_IMPORT = 5_000_000_000
+"""Nanoseconds to wait for a program to import rclpy before the run begins without."""
+_AFTER_OUTPUT = 1_000_000_000
+"""The same once it has printed something, which most programs do only after their imports."""
+
+
+_NO_RCLPY = "the program has not imported rclpy"
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +95,9 @@ class RealEngine:
         self._start = 0
         self._translation = Translation(self._outbox.record, self._begin)
         self._began_to_wait = time.monotonic_ns()
+        self._printed_at: int | None = None
+        self._rclpy_is_awaited = False
+        """Whether no program has imported rclpy, and nothing was said of that."""
         self._python = setup.real.python or sys.executable
         folder = Path(self._folder.name)
         self._programs: LaunchedPrograms | WatchedProcesses
@@ -157,6 +167,7 @@ class RealEngine:
             self._translation.begin_at(time.monotonic_ns())
         if self._cause is None:
             self._programs.start()
+            self._rclpy_is_awaited = self._keyboard is not None
         self._began_to_wait = time.monotonic_ns()
         self._schedule()
         while self._programs.any_run or self._robot_is_all():
@@ -199,6 +210,10 @@ class RealEngine:
         self._programs.look()
         self._lines.look()
         now = time.monotonic_ns()
+        if self._rclpy_is_awaited and now > self._without_rclpy_at:
+            self._rclpy_is_awaited = False
+            self._tell(Severity.WARN, f"{_NO_RCLPY} so far; until then there is only its output to show")
+            self._translation.begin_at(now)
         if now > self._began_to_wait + _TO_BEGIN and self._due:
             self._translation.begin_at(now)
         if self._keyboard is not None or now > self._began_to_wait + _TO_GATHER:
@@ -209,8 +224,16 @@ class RealEngine:
             self._given_up_at = None
             self._kill()
 
+    @property
+    def _without_rclpy_at(self) -> int:
+        """When a run begins in which nothing has imported rclpy."""
+        started = self._began_to_wait + _TO_IMPORT
+        return started if self._printed_at is None else min(started, self._printed_at + _AFTER_OUTPUT)
+
     def _finish(self) -> None:
         outcome = self._programs.outcome()
+        if self._rclpy_is_awaited and self._cause is None and not outcome.failed:
+            self._tell(Severity.WARN, f"{_NO_RCLPY}: there was only its output to show")
         if self._cause is not None:
             if outcome.failed and not self._failed_before:
                 self._tell(Severity.ERROR, outcome.reason)
@@ -250,6 +273,8 @@ class RealEngine:
         self._record(Notice(0, severity, text))
 
     def _take(self, lines: list[ProbeLine], process: int = 0) -> None:
+        if any(isinstance(line, Hello) for line in lines):
+            self._rclpy_is_awaited = False
         self._hold_for(lines)
         self._caller.hear(lines)
         self._lines.hear(lines)
@@ -270,6 +295,7 @@ class RealEngine:
         self._take(told, process)
 
     def _print(self, text: str, error: bool, process: int) -> None:
+        self._printed_at = self._printed_at or time.monotonic_ns()
         self._record(Printed(0, text, error, process))
 
     # the end

@@ -102,6 +102,30 @@ def test_the_run_ends_when_its_time_is_up_and_nothing_had_to_be_forced(starved: 
     assert starved.loss is None
 
 
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        (
+            "import threading\nprint('here')\nthreading.Event().wait()\n",
+            "the program has not imported rclpy so far; until then there is only its output to show",
+        ),
+        ("print('here')\n", "the program has not imported rclpy: there was only its output to show"),
+    ],
+    ids=["goes on", "returns"],
+)
+def test_of_a_program_without_rclpy_its_output_is_shown_and_that_is_told(
+    tmp_path: Path, text: str, sentence: str
+) -> None:
+    path = tmp_path / "plain.py"
+    path.write_text(text)
+    run = run_to_end(msgspec.structs.replace(program_setup(path, 0.5, clock="real"), real=RealRos()))
+    assert [event.text for event in run.events if isinstance(event, Printed)][:1] == ["here"]
+    (told,) = (event for event in run.events if isinstance(event, Notice))
+    assert told.text == sentence
+    assert told.t < 0.2 * SECOND
+    assert not run.ending.failed
+
+
 @pytest.mark.parametrize("ground", ["ros2", "model"])
 def test_what_a_program_raises_when_it_is_ended_is_told_and_no_failure_of_the_run(
     tmp_path: Path, ground: str
