@@ -57,8 +57,8 @@ def find(lesson_id: str) -> Lesson:
         if folder.name == lesson_id:
             raise fault
     if lesson_id.isdecimal():
-        raise UnknownLesson(f"There are {len(lessons())} lessons, and none is number {lesson_id}.")
-    raise UnknownLesson(f"No lesson is called {lesson_id!r}; {_nearest(lesson_id)}'cbtui list' shows all.")
+        raise UnknownLesson(f"there are {len(lessons())} lessons, and none is number {lesson_id}")
+    raise UnknownLesson(f"no lesson is called {lesson_id!r}; {_nearest(lesson_id)}cbtui list shows all")
 
 
 def lesson_on(problem: str) -> Lesson | None:

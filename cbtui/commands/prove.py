@@ -9,6 +9,7 @@ from cbtui.commands.options import changes, inputs, more_lessons
 from cbtui.commands.options.targets import RunTargets, refuse, targets_of
 from cbtui.text.output import say
 from sim.quantities.durations import timestamp
+from sim.quantities.plural import counted
 
 if TYPE_CHECKING:
     from cbtui.runs.compared_runs import RunPair
@@ -107,7 +108,7 @@ def _told(pair: "RunPair", found: "list[Difference]") -> str:
         sum(side.timeline.calls_of(each, pair.window) for each in side.timeline.entities)
         for side in (pair.first, pair.second)
     ]
-    counts = f"{calls[0]} calls on {pair.first.name}, {calls[1]} on {pair.second.name}"
+    counts = f"{counted(calls[0], 'call')} on {pair.first.name}, {calls[1]} on {pair.second.name}"
     seconds = f"{(pair.window.end - pair.window.start) / 1e9:.3g} s"
     if not found:
         return f"✓ the same on both for {seconds}: {counts}\n"

@@ -157,7 +157,10 @@ def _ended(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
 def returning(span: Span, timeline: Timeline) -> str:
     """Return the sentence on the end of a call, and what that frees."""
     name, group = name_of(span.entity, timeline), group_of(span.entity, timeline)
-    return f"{name} returns after {duration(span.end_at(timeline.end) - span.start)}, {group} is free"
+    lasted = duration(span.end_at(timeline.end) - span.start)
+    if timeline.processes_ended.get(timeline.threads[span.thread].process) == span.end:
+        return f"{name} does not return: its process ends, {lasted} after it began"
+    return f"{name} returns after {lasted}, {group} is free"
 
 
 def _blocked(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:

@@ -57,8 +57,8 @@ def test_list_tells_how_far_one_is(capsys: pytest.CaptureFixture[str]) -> None:
     ("arguments", "sentence"),
     [
         (["run", "split-group"], "the nearest is 'split-groups'"),
-        (["open", "nonsense"], "No lesson is called 'nonsense'; 'cbtui list' shows all."),
-        (["run", "999"], " lessons, and none is number 999."),
+        (["open", "nonsense"], "no lesson is called 'nonsense'; cbtui list shows all"),
+        (["run", "999"], " lessons, and none is number 999"),
         (["run", "single-thread", "--threads", "0"], "an executor cannot have 0 threads here; give 1 to 64"),
         (["run", "single-thread", "--threads", "two"], "'two' is not a whole number; give 1 to 64"),
         (["run", "single-thread", "--for", "-1"], "a run cannot last -1 seconds; give more than 0"),

@@ -167,7 +167,7 @@ LESSONS = ["single-thread", "split-groups"]
         (["single-thread"], "required: B"),
         (["NODE", "/no/such.py"], "there is no file /no/such.py"),
         (["/tmp/", "NODE"], "is a folder; name the file in it"),
-        (["nothing", "NODE"], "No lesson is called 'nothing'"),
+        (["nothing", "NODE"], "no lesson is called 'nothing'"),
     ],
 )
 def test_what_cannot_be_compared_is_refused_in_one_sentence(

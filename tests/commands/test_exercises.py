@@ -148,9 +148,9 @@ def test_a_lesson_without_an_exercise_is_refused_with_those_that_have_one(
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
-        (["start", "split-group"], "No lesson is called 'split-group'; the nearest is 'split-groups'"),
-        (["check", "split-group"], "No lesson is called 'split-group'"),
-        (["reset", "split-group"], "No lesson is called 'split-group'"),
+        (["start", "split-group"], "no lesson is called 'split-group'; the nearest is 'split-groups'"),
+        (["check", "split-group"], "no lesson is called 'split-group'"),
+        (["reset", "split-group"], "no lesson is called 'split-group'"),
         (
             ["check", "split-groups"],
             "there is no split_groups.py here; name your file, or begin one with cbtui start",

@@ -49,7 +49,7 @@ def test_a_recording_compared_with_its_lesson_shows_the_same_twice(folder: Path)
         (["run", "--inputs", "x.mcap", "--call", "1"], "leave out --call, --at and --type"),
         (["compare", "/no.mcap", "single-thread"], "/no.mcap cannot be read: No such file or directory"),
         (["compare", "/no.py", "single-thread"], "there is no file /no.py"),
-        (["compare", "no-lesson", "single-thread"], "No lesson is called 'no-lesson'"),
+        (["compare", "no-lesson", "single-thread"], "no lesson is called 'no-lesson'"),
         (
             ["compare", "single-thread", "split-groups", "--from", "9", "--to", "3"],
             "nothing is left to compare",

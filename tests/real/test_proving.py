@@ -9,6 +9,8 @@ import pytest
 
 from cbtui import cli
 from cbtui.commands.options import changes
+from cbtui.commands.prove import _told
+from cbtui.runs.compared_runs import ComparedSide, RunPair
 from cbtui.runs.judged.proving import differences
 from sim.trace.events import EntityId, ThreadId
 from sim.trace.model import Window
@@ -132,6 +134,17 @@ def test_errors_and_ends_are_told() -> None:
     ]
 
 
+def test_one_call_is_not_said_to_be_several() -> None:
+    run = Run()
+    run.callback(run.timer(run.exclusive(run.node("/n")), "tick", 1.0), run.thread("MainThread"), 1.0, 0.1)
+    timeline = Timeline()
+    timeline.extend(run.events)
+    pair = RunPair(
+        ComparedSide("the model", timeline), ComparedSide("real rclpy", timeline), Window(0, ns(2.0))
+    )
+    assert _told(pair, []) == "✓ the same on both for 2 s: 1 call on the model, 1 on real rclpy\n"
+
+
 def test_other_log_lines_are_told_and_other_numbers_are_not() -> None:
     model, real = Ticking(), Ticking()
     for run, number, last in ((model, 0.51, "left"), (real, 0.49, "right")):
@@ -155,7 +168,7 @@ def test_the_order_in_which_a_thread_serves_what_it_kept_waiting_is_told() -> No
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["nothing"], "No lesson is called 'nothing'"),
+        (["nothing"], "no lesson is called 'nothing'"),
         (["no.py"], "there is no file no.py"),
         (["single-thread", "--", "-x"], "a lesson has its own arguments"),
         (["single-thread", "--for", "5", "--call", "6"], "a call at 6 s comes when the run of 5 s is over"),

@@ -8,7 +8,7 @@ from textual.geometry import Size
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.text.cells import visible
 from cbtui.widgets.narrator import ROWS, Narrator, narration
-from sim.trace.events import CallbackAt, Doing, Reason
+from sim.trace.events import CallbackAt, Doing, ProcessAppeared, ProcessEnded, Reason, ThreadAppeared
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
 from tests.widgets.pictures import told
@@ -31,6 +31,17 @@ def test_a_start_tells_the_thread_the_reason_the_order_and_the_group() -> None:
     assert "group B would let it in, but no thread is free" in second
     ended = narration(told(run, until=2.5), ns(2.0))
     assert "tick returns after 1.0 s, group A is free" in ended[0]
+
+
+def test_a_callback_whose_process_is_killed_is_not_said_to_return() -> None:
+    run = Run()
+    run.add(ProcessAppeared(0, 1, "node.py-7"))
+    run.add(ThreadAppeared(0, 1, "MainThread", process=1))
+    tick = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.callback(tick, 1, 1.0, 1.0)
+    run.add(ProcessEnded(ns(2.0), 1, "node.py-7 was killed", 1))
+    ended = narration(told(run, until=2.5), ns(2.0))
+    assert ended[0] == "2.000 s: tick does not return: its process ends, 1.0 s after it began"
 
 
 def test_a_callback_that_takes_no_time_is_told_to_have_returned_where_its_thread_is_idle() -> None:
