@@ -61,6 +61,9 @@ class ConsoleApp(LessonOpener, Protocol):
     def tell_saved(self, sentence: str) -> None:
         """Report what was saved as a screen closed."""
 
+    def collect_later(self) -> None:
+        """Have what a closed screen leaves in memory collected once nobody types."""
+
     def end_later(self, ending: Coroutine[None, None, None]) -> None:
         """End in the background what a closed screen leaves."""
 

@@ -44,7 +44,7 @@ from cbtui.screens.sized import SizedScreen
 from cbtui.screens.windows.diagnoses import problems_note
 from cbtui.screens.windows.jump import JumpScreen
 from cbtui.terminal.compositing import PatchCompositor
-from cbtui.terminal.garbage_collector import collect_now, unfreeze_screen
+from cbtui.terminal.garbage_collector import collect_now
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.diagnosis import (
@@ -252,7 +252,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         """End the run, every recording and every export, whatever way the screen is left."""
         self._exports.leave()
         self.finisher.tell = self.console.tell_saved
-        unfreeze_screen()
+        self.console.collect_later()
         self.console.end_later(self._end())
 
     async def _end(self) -> None:

@@ -15,9 +15,10 @@ from textual.widget import MountError
 from textual.worker import WorkerFailed
 
 from cbtui.terminal.background import BackgroundTasks
-from cbtui.terminal.garbage_collector import survivors_frozen
+from cbtui.terminal.garbage_collector import collect_closed_screens, survivors_frozen
 from cbtui.terminal.interrupts import Interruption, deferred_interrupt, ending_signals_on_loop
 from cbtui.terminal.pending_keys import MOUNT_TIMEOUT, PendingKeysApp
+from cbtui.terminal.textual_internals import forget_drawn_styles
 from cbtui.text.output import shown
 from cbtui.version import own_version
 from lessons.personal import state_folder
@@ -75,6 +76,11 @@ class EndingApp(PendingKeysApp):
         The app waits for it before it exits.
         """
         self._endings.begin(ending)
+
+    def collect_later(self) -> None:
+        """Have what a closed screen leaves in memory collected once nobody types: it holds up a key."""
+        forget_drawn_styles()
+        self.when_idle(collect_closed_screens)
 
     async def on_unmount(self) -> None:
         """Wait for what closed screens have left."""

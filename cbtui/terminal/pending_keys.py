@@ -5,6 +5,8 @@ an action finds only some of them, and removing the screen leaves the others wit
 """
 
 import asyncio
+from collections.abc import Callable
+from functools import partial
 from time import monotonic
 
 from textual.app import App
@@ -19,6 +21,8 @@ MOUNT_TIMEOUT = 3.0
 """Seconds to wait for widgets to be mounted."""
 ENTER_AFTER = 5.0
 """Seconds in which people press the enter that was not needed any more."""
+IDLE = 2.0
+"""Seconds without input after which nobody is taken to be typing."""
 _POLL_INTERVAL = 0.005
 """Seconds between two checks."""
 
@@ -26,6 +30,8 @@ _POLL_INTERVAL = 0.005
 class PendingKeysApp(App[None]):
     """An app that handles input once the screen is mounted, and ignores clicks on removed widgets."""
 
+    _input_at = 0.0
+    """When the last input came."""
     _enter_until = 0.0
     """Until when, as events count time, a first key is ignored if it is enter."""
 
@@ -36,6 +42,14 @@ class PendingKeysApp(App[None]):
     def ignore_enter(self) -> None:
         """Ignore an enter that comes as the next key and soon: what it would confirm was done without it."""
         self._enter_until = monotonic() + ENTER_AFTER
+
+    def when_idle(self, do: Callable[[], object]) -> None:
+        """Call what would hold up a key as soon as nothing was typed or clicked for ``IDLE`` seconds."""
+        left = self._input_at + IDLE - monotonic()
+        if left > 0:
+            self.set_timer(left, partial(self.when_idle, do))
+        else:
+            do()
 
     @property
     def is_mounting(self) -> bool:
@@ -54,6 +68,7 @@ class PendingKeysApp(App[None]):
             if event.key == "enter" and event.time < until:
                 return
         if isinstance(event, InputEvent):
+            self._input_at = monotonic()
             deadline = monotonic() + MOUNT_TIMEOUT
             while self.is_mounting and monotonic() < deadline:
                 await asyncio.sleep(_POLL_INTERVAL)

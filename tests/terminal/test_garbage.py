@@ -1,13 +1,14 @@
 """What has outlived a full collection is not looked at by the next, until a screen is left."""
 
 import gc
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 from textual._styles_cache import StylesCache
 
 from cbtui.screens.menu import MenuScreen
-from cbtui.terminal.garbage_collector import collect_now, survivors_frozen, unfreeze_screen
+from cbtui.terminal.garbage_collector import collect_closed_screens, collect_now, survivors_frozen
+from cbtui.terminal.pending_keys import IDLE, PendingKeysApp
 from tests.support.console import WIDE, RecordedConsole, settle
 from tests.support.runs import shared_group_run
 
@@ -49,8 +50,7 @@ def test_a_collection_takes_what_is_new_and_sets_the_rest_aside() -> None:
         del kept
         collect_now()
         assert Knot.left == 1  # set aside, and so not seen to be garbage
-        unfreeze_screen()
-        collect_now()
+        collect_closed_screens()
         assert Knot.left == 0
 
 
@@ -67,7 +67,7 @@ def test_nothing_is_collected_early_or_set_aside_without_being_asked() -> None:
 
 def test_what_others_set_aside_is_left_alone() -> None:
     gc.freeze()
-    unfreeze_screen()
+    collect_closed_screens()
     assert gc.get_freeze_count() > 0
 
 
@@ -76,6 +76,45 @@ def test_afterwards_all_is_as_before() -> None:
         gc.collect()
         assert gc.get_freeze_count() > 0
     assert gc.get_freeze_count() == 0
+
+
+async def test_what_would_hold_up_a_key_waits_until_nobody_types(monkeypatch: pytest.MonkeyPatch) -> None:
+    now = [100.0]
+    done: list[float] = []
+    told: list[tuple[float, list[float]]] = []
+    timers: list[tuple[float, Callable[[], object]]] = []
+    monkeypatch.setattr("cbtui.terminal.pending_keys.monotonic", lambda: now[0])
+    app = PendingKeysApp()
+    async with app.run_test() as pilot:
+        monkeypatch.setattr(app, "set_timer", lambda delay, call: timers.append((delay, call)))
+        await pilot.press("x")
+        app.when_idle(lambda: done.append(now[0]))
+        now[0] += IDLE - 0.5
+        await pilot.press("y")
+        now[0] += 0.5
+        for _ in range(2):
+            delay, call = timers.pop()
+            told.append((delay, [*done]))
+            call()
+            now[0] += IDLE - 0.5
+    assert told == [(IDLE, []), (IDLE - 0.5, [])]
+    assert done == [100.0 + IDLE + IDLE - 0.5]
+
+
+@pytest.mark.parametrize(("idle", "collected"), [(60.0, 0), (0.0, 1)])
+async def test_what_a_lesson_leaves_is_collected_once_nobody_types(
+    monkeypatch: pytest.MonkeyPatch, idle: float, collected: int
+) -> None:
+    done: list[str] = []
+    monkeypatch.setattr("cbtui.terminal.pending_keys.IDLE", idle)
+    monkeypatch.setattr("cbtui.terminal.ending.collect_closed_screens", lambda: done.append("collected"))
+    app = RecordedConsole("shared-group", shared_group_run().events, 2.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        await pilot.press("q")
+        await settle(pilot)
+        assert isinstance(app.screen, MenuScreen)
+        assert len(done) == collected
 
 
 @pytest.mark.slow
