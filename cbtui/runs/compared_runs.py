@@ -201,7 +201,7 @@ def _check(terms: ComparisonTerms, until: Nanoseconds) -> None:
     for what, at in moments:
         if at >= end:
             raise CannotCompareError(
-                f"a {what} at {at:g} s comes after the {end:g} s that are compared; give --to a later end"
+                f"a {what} at {at:g} s comes after the {end:g} s that are compared; give --for a later end"
             )
 
 

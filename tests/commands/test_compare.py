@@ -143,7 +143,10 @@ LESSONS = ["single-thread", "split-groups"]
         ([*LESSONS, "--to", "0"], "a run cannot last 0 seconds"),
         ([*LESSONS, "--from", "9", "--to", "9"], "nothing is left to compare from 9 s to 9 s"),
         ([*LESSONS, "--call", "-1"], "-1 s is before the run begins"),
-        ([*LESSONS, "--call", "61"], "a call at 61 s comes after the 60 s that are compared; give --to"),
+        (
+            [*LESSONS, "--call", "61"],
+            "a call at 61 s comes after the 60 s that are compared; give --for",
+        ),
         ([*LESSONS, "--at", "5", "ros2 topic list", "--to", "5"], "a line at 5 s comes after the 5 s"),
         ([*LESSONS, "--at", "soon", "ros2 topic list"], "'soon' is not a number"),
         ([*LESSONS, "--threads-a", "0"], "an executor cannot have 0 threads here"),
