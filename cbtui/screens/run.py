@@ -112,9 +112,8 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self.navigation.stepped = self._narration.show_step
         self._sizes = SizeKeys(self, self.panes, self.tell)
         self.bars = BarSelection(lambda: [self.query_one(Lanes)], self.navigation, self.redraw)
-        self.selection = LaneSelection(
-            self, self, runs, self.navigation, self.bars, self.panes, subject.service, subject.lesson
-        )
+        selected = (self.navigation, self.bars, self.panes, subject)
+        self.selection = LaneSelection(self, self, runs, *selected)
         self._exports = Exports(self, runs, self.navigation, self.finisher)
         self._chain = ChainPath(self, runs, self.navigation)
         self._copy = DetailsCopy(self, self, runs, self.navigation, subject)

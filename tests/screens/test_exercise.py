@@ -17,6 +17,7 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.key_bar import KeyBar
+from lessons.catalogue import find
 from lessons.progress import Progress
 from sim.engine.commands import Pause
 from sim.trace.events import AnyEvent
@@ -110,6 +111,17 @@ async def test_e_puts_the_starter_here_and_goes_to_the_exercise(here: Path) -> N
         await pilot.press("e")
         await settle(pilot)
         assert kind_of_screen(app) is LessonScreen
+
+
+async def test_leaving_a_lesson_that_shows_a_problem_comes_back_to_the_exercise(here: Path) -> None:
+    app = ExerciseConsole(Engines([]))
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        app.exercise.selection._show_lesson(find("single-thread"))
+        await settle(pilot)
+        await pilot.press("q")
+        await settle(pilot)
+        assert kind_of_screen(app) is ExerciseScreen
 
 
 @pytest.mark.slow

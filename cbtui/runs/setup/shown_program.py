@@ -89,6 +89,11 @@ class ShownProgram:
     is_own_file: bool = False
     counts_processes: bool = False
 
+    @property
+    def is_learners(self) -> bool:
+        """Whether it is no lesson's own node, but the file of an exercise, or any other program."""
+        return self.lesson is None or self.node_path != self.lesson.node_path
+
     def heading_of(self, timeline: "Timeline") -> str:
         """Return the heading of a run, with what is known at its end."""
         if not self.counts_processes:

@@ -8,6 +8,7 @@ from textual.screen import Screen
 
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import ShownRun
+from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.parts.bars import BarSelection
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.panes import PaneLayout
@@ -32,8 +33,7 @@ if TYPE_CHECKING:
 class LaneSelection(ScreenPart):
     """Moves the selection along the lanes of one run, and between lanes and code.
 
-    ``service`` has a lane before its first call; ``lesson`` is the one on screen; ``cures`` tries the cures
-    of findings, if the run can be made again.
+    ``cures`` tries the cures of findings, if the run can be made again.
     """
 
     screen: Screen[None]
@@ -42,8 +42,7 @@ class LaneSelection(ScreenPart):
     navigation: TimeNavigation
     bars: BarSelection
     panes: PaneLayout
-    service: str
-    lesson: Lesson | None = None
+    subject: ShownProgram
     cures: "CureTrials | None" = None
 
     @property
@@ -122,7 +121,7 @@ class LaneSelection(ScreenPart):
     def _lesson_on(self, found: ExplainedFinding) -> Lesson | None:
         """The lesson that shows a problem, unless it is on screen."""
         lesson = lesson_on(found.finding.rule.kind(found.finding)) if found.is_problem else None
-        return None if lesson == self.lesson else lesson
+        return None if lesson == self.subject.lesson else lesson
 
     async def _take(self, chosen: ChosenStep | None) -> None:
         if chosen is None:
@@ -136,8 +135,8 @@ class LaneSelection(ScreenPart):
             self._go_to_finding(chosen.finding)
 
     def _show_lesson(self, lesson: Lesson) -> None:
-        """Open a lesson; a run of none waits below, paused if it can be."""
-        run, comes_back = self.runs.run, self.lesson is None
+        """Open a lesson; the run of a learner's own file waits below, paused if it can be."""
+        run, comes_back = self.runs.run, self.subject.is_learners
         if comes_back and run.can_be_paced and not run.paused:
             run.pause()
         self.host.console.open_lesson(lesson, over=comes_back)
@@ -172,7 +171,7 @@ class LaneSelection(ScreenPart):
     def _last_of(self, entity: EntityId) -> Selection | None:
         """The lane of a callback, and its last bar up to the moment on screen."""
         timeline = self.runs.timeline
-        lanes = all_lanes(timeline, self.service)
+        lanes = all_lanes(timeline, self.subject.service)
         lane = next((lane for lane in lanes if Selection(lane).entity == entity), None)
         if lane is None:
             return None
