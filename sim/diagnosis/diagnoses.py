@@ -1,6 +1,6 @@
 """The findings of all rules in a run, updated incrementally during the run."""
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from dataclasses import replace
 from typing import TypeAlias
 
@@ -18,7 +18,8 @@ _OUT_OF_ORDER: Nanoseconds = SECOND
 
 _BEFORE_START: Nanoseconds = -1
 
-_FindingKey: TypeAlias = tuple[str, EntityId, str]
+_Occurrences: TypeAlias = dict[tuple[tuple[str, EntityId, str], EntityId], Finding]
+"""The occurrences of a finding that have one subject, as one, by its key and the subject."""
 
 
 class Diagnoses:
@@ -34,7 +35,7 @@ class Diagnoses:
         self._rules = tuple(rules)
         self._timeline: Timeline | None = None
         self._from = _BEFORE_START
-        self._settled: dict[_FindingKey, Finding] = {}
+        self._settled: _Occurrences = {}
 
     def update(self, timeline: Timeline) -> tuple[Finding, ...]:
         """Check what is new in a timeline since the last update; with another timeline, start over."""
@@ -50,7 +51,7 @@ class Diagnoses:
                     _merge(merged, found)
                     if found.until <= self._from:
                         _merge(self._settled, found)
-        self.findings = self._ordered(merged.values(), timeline)
+        self.findings = self._ordered(_worst_of_each_key(merged.values(), timeline), timeline)
         return self.findings
 
     def _start_over(self, timeline: Timeline) -> None:
@@ -59,12 +60,11 @@ class Diagnoses:
         self._from = _BEFORE_START
         self._settled = {}
 
-    def _ordered(self, found: Iterable[Finding], timeline: Timeline) -> tuple[Finding, ...]:
+    def _ordered(self, found: Collection[Finding], timeline: Timeline) -> tuple[Finding, ...]:
         """Return the relevant findings: problems before remarks, then by rule, the earliest first.
 
         A finding that is part of another one follows it.
         """
-        found = tuple(found)
         lasting = [each for each in found if each.until >= timeline.end and each.stuck]
         left = [each for each in found if not (each.rule.is_effect and _is_due_to(lasting, each))]
         left.sort(key=self._rank, reverse=True)
@@ -97,15 +97,30 @@ def diagnose(timeline: Timeline) -> tuple[Finding, ...]:
     return Diagnoses().update(timeline)
 
 
-def _merge(into: dict[_FindingKey, Finding], found: Finding) -> None:
+def _worst_of_each_key(found: Iterable[Finding], timeline: Timeline) -> Collection[Finding]:
+    """Return of findings that differ in their subject only the worst, a relevant one if there is one."""
+    worst: dict[tuple[str, EntityId, str], Finding] = {}
+
+    def rank(each: Finding) -> tuple[bool, int, Nanoseconds]:
+        return each.rule.weigh(each, timeline) is not None, each.size, -each.at
+
+    for each in found:
+        known = worst.get(each.key)
+        if known is None or rank(each) > rank(known):
+            worst[each.key] = each
+    return worst.values()
+
+
+def _merge(into: _Occurrences, found: Finding) -> None:
     """Add an occurrence: the worst one gives the times, of equal ones the earliest.
 
     A rule may date all by the first one.
     """
-    known = into.get(found.key)
+    key = found.key, found.subject
+    known = into.get(key)
     if known is None:
-        into[found.key] = found
+        into[key] = found
         return
     worst = found if (found.size, -found.at) > (known.size, -known.at) else known
     at = min(known.at, found.at) if found.rule.dated_by_first else worst.at
-    into[found.key] = replace(worst, at=at, count=known.count + found.count)
+    into[key] = replace(worst, at=at, count=known.count + found.count)

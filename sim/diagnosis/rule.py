@@ -52,7 +52,7 @@ class Finding:
     """What a rule found: one occurrence, or ``count`` of them with the times of the worst.
 
     ``subject`` is the affected callback, ``culprit`` the one to blame (0: none or unknown); ``about`` is the
-    topic, service or node in question. Occurrences with the same ``key`` are one finding.
+    topic, service or node in question. Of occurrences with the same ``key`` the worst subject's are found.
     ``size`` ranks them, the worst highest, in a unit of the rule; ``detail``, ``thread`` and ``event``, the
     event that shows it, are what the rule needs to explain it.
     """

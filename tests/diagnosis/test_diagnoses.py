@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from sim.diagnosis import RULES, Diagnoses, Finding, Weight, diagnose, findings_text
-from sim.diagnosis.rule import Rule
+from sim.diagnosis.rule import Explanation, Rule
 from sim.diagnosis.timeline_view import TimelineView
 from sim.trace.events import (
     AnyEvent,
@@ -114,6 +114,24 @@ def test_an_update_asks_for_no_more_than_the_last_seconds() -> None:
         timeline.extend(run.events[-1:])
         diagnoses.update(timeline)
     assert rule.starts == [-1, -1, ns(59), ns(119), ns(179)]
+
+
+def test_of_all_that_one_culprit_keeps_the_worst_that_matters_is_found_with_its_own_count() -> None:
+    class Keeps(Rule):
+        id, summary, by_culprit = "keeps", "one keeps others", True
+
+        def check(self, view: TimelineView) -> Iterator[Finding]:
+            for subject, size in ((1, 9), (2, 3), (2, 5), (3, 4)):
+                yield Finding(self, 0, view.end, subject, culprit=7, size=size)
+
+        def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+            raise AssertionError
+
+        def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+            return self.weight if found.subject != 1 else None
+
+    (found,) = Diagnoses([Keeps()]).update(timeline_of(shared_group_run().events))
+    assert (found.subject, found.size, found.count) == (2, 5, 2)
 
 
 def test_problems_come_before_remarks_and_each_rule_has_an_id_of_its_own() -> None:

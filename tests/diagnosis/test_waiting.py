@@ -157,6 +157,26 @@ def test_waits_that_repeat_are_one_finding_with_the_longest() -> None:
     assert worst.lasted == ns(4.75)
 
 
+def test_only_the_waits_of_the_callback_that_is_named_are_counted() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def slow() -> None:
+            simulation.sleep(2.0)
+
+        def quick() -> None: ...
+
+        def other() -> None: ...
+
+        node.create_timer(5.0, slow)
+        node.create_timer(5.1, quick)
+        once(node, 10.5, other)
+        spin(node, None)
+
+    told = diagnosed(program, until=18.0).explained("group-starvation")
+    assert told.what == "quick waited 1.9 s: group A was held by slow (3 times in all)"
+
+
 def test_a_callback_that_waits_for_itself_alone_is_not_starved() -> None:
     def program(simulation: Simulation) -> None:
         node = Node("n")
