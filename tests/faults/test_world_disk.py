@@ -17,7 +17,7 @@ from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import RunState
 from sim.engine.setup import RunSetup
 from sim.recording import read
-from tests.faults.support import ANSWERED, PATIENCE, console_on, node_with, nothing_left, still_here
+from tests.faults.support import PATIENCE, console_on, node_with, nothing_left, still_here
 from tests.support.daily import first_row_daily
 from tests.support.runs import shared_group_run
 
@@ -75,7 +75,7 @@ async def test_a_disk_that_fills_up_ends_the_recording_and_the_run_goes_on(folde
             await console.pilot.press("R")
             await console.until(lambda _: any("not whole" in text for text in said()))
             assert console.screen.runs.run.recording.count is None
-            assert await console.answers() < ANSWERED
+            await console.answers()
         assert console.screen.runs.run.state is RunState.LIVE
         (path,) = folder.glob("*.mcap")
         assert f"The recording {path.name} is not whole: File too large" in said()
