@@ -12,6 +12,7 @@ import pytest
 from textual.notifications import Notification
 
 from cbtui.engines import session
+from sim.engine.programs.ending import TO_LEAVE
 from tests.support import forked_engines, properties, style_sheets
 
 TESTS = Path(__file__).parent
@@ -57,6 +58,13 @@ def engines_copied() -> Iterator[None]:
 def fresh_engines(monkeypatch: pytest.MonkeyPatch) -> None:
     """Start engines as the console does, where the process itself is what is tested."""
     monkeypatch.setattr(session, "SPAWN_CONTEXT", multiprocessing.get_context("spawn"))
+
+
+@pytest.fixture
+def patient_engines(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Give programs, where they are to end by themselves, as long for it as a busy machine may need."""
+    monkeypatch.setattr(forked_engines, "grace", 120.0)
+    monkeypatch.setattr(session, "PROGRAM_EXIT_TIMEOUT", 120.0 + TO_LEAVE)
 
 
 def pytest_sessionstart(session: pytest.Session) -> None:

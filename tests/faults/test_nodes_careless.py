@@ -84,14 +84,16 @@ FAULTS = {
 
 @pytest.mark.parametrize("name", first_daily(*FAULTS))
 def test_a_node_that_goes_on_after_its_fault_is_still_followed_and_can_be_ended(
-    folder: Path, name: str
+    folder: Path, name: str, request: pytest.FixtureRequest
 ) -> None:
     fault, notices, line = FAULTS[name]
+    by_force = name == "threads that are left"
+    if not by_force:
+        request.getfixturevalue("patient_engines")
     with provoked(node_with(folder, fault)) as run:
         run.until(lambda live: still_here(live) and all(_is_told(run, notices, line)))
         assert run.live.alive
         assert run.notices == [*notices]
-        by_force = name == "threads that are left"
         assert any("had not ended" in text for text in _notices_of_the_end(run)) is by_force
 
 

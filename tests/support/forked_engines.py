@@ -9,6 +9,7 @@ import pytest
 
 from cbtui.engines import session
 from cbtui.engines.forking import forking_context
+from sim.engine.programs.ending import GRACE
 
 _PRELOADED = (
     "cbtui.cli_commands",
@@ -17,17 +18,21 @@ _PRELOADED = (
     __name__,
 )
 
+grace = GRACE
+"""Real seconds that the programs of engines which start have to end by themselves."""
+
 
 class _Engine(ForkServerProcess):
-    """A copy that has the environment of the process that asked for it, as a fresh one has."""
+    """A copy with the environment of the process that asked for it, as a fresh one, and its grace period."""
 
     def start(self) -> None:
-        self._environment = dict(os.environ)
+        self._environment, self._grace = dict(os.environ), grace
         super().start()
 
     def run(self) -> None:
         os.environ.clear()
         os.environ.update(self._environment)
+        pytest.MonkeyPatch().setattr("sim.engine.shutdown.GRACE", self._grace)
         super().run()
 
 

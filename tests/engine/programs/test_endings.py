@@ -91,6 +91,7 @@ def check_what_is_left(folder: Path, run: Run) -> None:
     assert not [event for event in run.events if isinstance(event, Notice) and not event.unrepeatable]
 
 
+@pytest.mark.usefixtures("patient_engines")
 @pytest.mark.parametrize("clock", ["virtual", "real"])
 @pytest.mark.parametrize("how", first_daily(*ENDINGS))
 def test_files_exit_functions_and_objects_are_seen_to_however_a_program_ends(
@@ -105,6 +106,7 @@ def test_files_exit_functions_and_objects_are_seen_to_however_a_program_ends(
         assert printed(run)[-5:-3] == ["interrupted", "last line"]
 
 
+@pytest.mark.usefixtures("patient_engines")
 @pytest.mark.parametrize("clock", ["virtual", "real"])
 def test_a_run_that_is_stopped_shows_its_programs_ending_to_the_last_line(tmp_path: Path, clock: str) -> None:
     path = tmp_path / "node.py"
@@ -210,6 +212,7 @@ def test_what_an_exit_function_raises_is_told_with_its_place(tmp_path: Path) -> 
     assert not any("sim/" in line for line in text)
 
 
+@pytest.mark.usefixtures("patient_engines")
 def test_a_callback_that_computes_without_end_hears_of_the_runs_end(tmp_path: Path) -> None:
     source = "try:\n    print('ready')\n    while True: pass\nfinally:\n    print('last line')"
     path = tmp_path / "node.py"
@@ -227,6 +230,7 @@ def test_a_callback_that_computes_without_end_hears_of_the_runs_end(tmp_path: Pa
     assert run.ending.reason == "it was stopped"
 
 
+@pytest.mark.usefixtures("patient_engines")
 @pytest.mark.slow
 @pytest.mark.parametrize("clock", ["virtual", "real"])
 def test_an_interrupted_program_is_answered_no_more_and_may_join_and_shut_down(
@@ -297,6 +301,7 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.usefixtures("patient_engines")
 @pytest.mark.slow
 @pytest.mark.parametrize("clock", ["virtual", "real"])
 def test_a_last_message_fails_as_under_rclpy_once_ctrl_c_has_ended_the_context(
@@ -315,6 +320,7 @@ def test_a_last_message_fails_as_under_rclpy_once_ctrl_c_has_ended_the_context(
     assert notice.endswith("call rclpy.init(signal_handler_options=SignalHandlerOptions.NO)")
 
 
+@pytest.mark.usefixtures("patient_engines")
 @pytest.mark.parametrize("clock", ["virtual", "real"])
 def test_a_program_that_handles_ctrl_c_itself_publishes_a_last_message(tmp_path: Path, clock: str) -> None:
     source = LAST_MESSAGE.format(options="signal_handler_options=SignalHandlerOptions.NO")
