@@ -66,7 +66,12 @@ class Diagnoses:
         A finding that is part of another one follows it.
         """
         lasting = [each for each in found if each.until >= timeline.end and each.stuck]
-        left = [each for each in found if not (each.rule.is_effect and _is_due_to(lasting, each))]
+        hidden = frozenset[str]().union(*(each.rule.hides for each in found))
+        left = [
+            each
+            for each in found
+            if each.rule.id not in hidden and not (each.rule.is_effect and _is_due_to(lasting, each))
+        ]
         left.sort(key=self._rank, reverse=True)
         # Of several findings with one culprit the first by rank is the cause.
         causes = {each.culprit: each for each in left if each.rule.by_culprit}

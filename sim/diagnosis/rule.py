@@ -121,6 +121,8 @@ class Rule(ABC):
     """Whether the rule finds effects of a callback that can never continue."""
     dated_by_first: ClassVar[bool] = False
     """Whether ``at`` is when the first occurrence began; ``until`` is the worst one's end all the same."""
+    hides: ClassVar[frozenset[str]] = frozenset()
+    """The rules that are not told beside a finding: what they advise would not help while that stands."""
     hangs_from: ClassVar[Nanoseconds | None] = None
     """How long what is found has lasted once it counts as a callback that hangs; None if it never does."""
 

@@ -83,6 +83,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "add all nodes to one executor",
         ),
         ("two_executors", "node-never-spins", "viewer_executor.spin()", "add all nodes to one executor"),
+        ("spin_past_executor", "spin-past-executor", "rclpy.spin(n)", "call ex.spin() in its place"),
         ("hides_a_name", "program-raised", "def handle(self, message):", "hides Node.handle"),
         ("input_in_timer", "program-raised", "input(", "read in another thread"),
         ("wait_for_service", "service-never-comes", "self.client.wait_for_service()", "start the node"),

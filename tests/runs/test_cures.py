@@ -79,6 +79,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("two_spins", ["spin all nodes by one executor (diff)"]),
         ("two_spins_of_new_nodes", ["spin all nodes by one executor (diff)"]),
         ("two_executors", ["spin all nodes by one executor (diff)"]),
+        ("spin_past_executor", ["call ex.spin() in its place (diff)"]),
         ("rate_in_main", ["spin the node in a thread beside the loop (diff)"]),
         ("spin_once", ["return from go, and go on where what it waits for is set (diff)"]),
         ("wait_for_event", [APART.replace("tick", "go")]),

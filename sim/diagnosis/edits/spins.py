@@ -1,4 +1,4 @@
-"""Calls of ``spin()`` one after another, of which one is reached, and the edit that makes them one."""
+"""Calls of ``spin()`` that spin less than was meant, and the edits that mend them."""
 
 import ast
 from collections.abc import Collection
@@ -95,11 +95,49 @@ def spin_beside(source: SourceEditor, line: int) -> None:
     raise NotSimpleError
 
 
+@asked_of_file
+def spin_past(source: SourceEditor) -> tuple[int, str]:
+    """Return the line of the first ``rclpy.spin(node)`` that spins past the executor that was given the node.
+
+    With that executor, as the source has it; (0, "") if there is none. The source has to show that nothing
+    else can spin the executor: it is not handed on.
+    """
+    attributes = [each for each in source.nodes(ast.Attribute) if isinstance(each.ctx, ast.Load)]
+    of_what = {each.value: each.attr for each in attributes}
+    members: dict[str, set[str]] = {}
+    for part in source.nodes(ast.expr):
+        if isinstance(part, ast.Name | ast.Attribute) and isinstance(part.ctx, ast.Load):
+            members.setdefault(ast.unparse(part), set()).add(of_what.get(part, ""))
+    calls = [(each, ast.unparse(each.func)) for each in source.nodes(ast.Call) if len(each.args) == 1]
+    having = {
+        ast.unparse(call.args[0]): name.removesuffix(".add_node")
+        for call, name in calls
+        if name.endswith(".add_node") and members.get(name.removesuffix(".add_node"), {""}) <= _SPIN_NOTHING
+    }
+    for call, name in calls:
+        if name in _SPIN_OF_NODE and not call.keywords and ast.unparse(call.args[0]) in having:
+            return call.lineno, having[ast.unparse(call.args[0])]
+    return 0, ""
+
+
+_SPIN_OF_NODE = ("rclpy.spin", "spin")
+_SPIN_NOTHING = {"add_node", "remove_node", "get_nodes", "wake", "shutdown"}
+
+
+def spin_executor(source: SourceEditor, line: int, executor: str) -> None:
+    """Spin an executor in place of the ``rclpy.spin(node)`` at a line."""
+    match source.statement_at(line):
+        case ast.Expr(value=ast.Call(func=function) as call) if ast.unparse(function) in _SPIN_OF_NODE:
+            source.replace(call, f"{executor}.spin()")
+        case _:
+            raise NotSimpleError
+
+
 def _spins_in_turn(source: SourceEditor) -> list[list[ast.Expr]]:
     """Return the statements that spin, if a body has several, for each such body."""
     makers = ((each, ast.unparse(each.value).partition("(")[0]) for each in source.nodes(ast.Assign))
     executors = {ast.unparse(each.targets[0]) for each, maker in makers if maker.endswith("Executor")}
-    spinning = {"rclpy.spin", "spin", *(f"{each}.spin" for each in executors)}
+    spinning = {*_SPIN_OF_NODE, *(f"{each}.spin" for each in executors)}
     bodies = [
         [each for each in body if _spins(each, spinning)]
         for statement in source.nodes(ast.AST)
@@ -112,6 +150,6 @@ def _spins_in_turn(source: SourceEditor) -> list[list[ast.Expr]]:
 def _spins(statement: ast.stmt, spinning: set[str]) -> bool:
     match statement:
         case ast.Expr(value=ast.Call(func=function, args=arguments, keywords=[])):
-            is_rclpys = ast.unparse(function) in ("rclpy.spin", "spin")
+            is_rclpys = ast.unparse(function) in _SPIN_OF_NODE
             return ast.unparse(function) in spinning and len(arguments) == is_rclpys
     return False

@@ -12,7 +12,7 @@ from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.overlooked import AnswerOverlooked
 from sim.diagnosis.rules.parameters import ParameterOverruled
 from sim.diagnosis.rules.services import NobodyOffers, ServiceNeverComes, UnreturnedResponse
-from sim.diagnosis.rules.spinning import NestedSpin, SpinInConstructor, SpinNotReached
+from sim.diagnosis.rules.spinning import NestedSpin, SpinInConstructor, SpinNotReached, SpinPastExecutor
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
 from sim.diagnosis.rules.timing import FallsBehind, OverlappingCallback, OverrunTimer
 from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NodeNeverSpins, NoFreeWorker
@@ -23,6 +23,7 @@ RULES: tuple[Rule, ...] = (
     NestedSpin(),
     SpinInConstructor(),
     SpinNotReached(),
+    SpinPastExecutor(),
     StillComputing(),
     EndlessWait(),
     WaitsForLock(),

@@ -7,7 +7,7 @@ from typing import ClassVar
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.flags import setters
 from sim.diagnosis.edits.polling import leave_out
-from sim.diagnosis.edits.spins import never_made
+from sim.diagnosis.edits.spins import never_made, spin_executor, spin_past
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, is_models, line_location
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning, not_reached
 from sim.diagnosis.timeline_view import TimelineView
@@ -150,10 +150,7 @@ class SpinNotReached(Rule):
         ended = timeline.ended
         if timeline.processes_ended or (ended and ended.failed and not ended.time_was_up):
             return  # spin() has raised, or what came after it has
-        made: defaultdict[str, set[int]] = defaultdict(set)
-        for file, line in (each.made_at for each in timeline.entities.values() if not is_models(each)):
-            made[file].add(line)
-        for file, lines in made.items():
+        for file, lines in _made_in(timeline).items():
             for name in never_made(file, lines):
                 yield Finding(self, self.threshold, view.end, about=name, detail=file)
 
@@ -161,6 +158,59 @@ class SpinNotReached(Rule):
         what, place, remedies = not_reached(found.detail)
         made = f"no {found.about} has been made: {what}"
         return Explanation(made, _NEVER.format("spin"), SPIN_ONCE, place, remedies=remedies)
+
+
+class SpinPastExecutor(Rule):
+    """An executor with threads was given a node and runs nothing: ``rclpy.spin(node)`` spins another one."""
+
+    id = "spin-past-executor"
+    summary = "rclpy.spin(node) spins another executor than the one that was given the node"
+    hides = frozenset(
+        (
+            "group-starvation",
+            "no-free-worker",
+            "stale-data",
+            "dropped-messages",
+            "groups-change-nothing",
+            "threads-never-used",
+        )
+    )
+    threshold: Nanoseconds = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield it if an executor has had no worker for so long, and a file of the program shows why."""
+        timeline = view.timeline
+        if view.end < self.threshold or len(timeline.entities) > SpinNotReached.most:
+            return
+        working = {each.executor for each in timeline.threads.values()}
+        idle = any(each.threads > 1 and each.id not in working for each in timeline.executors.values())
+        if not idle or not view.threads_needed:
+            return
+        for file in _made_in(timeline):
+            line, executor = spin_past(file)
+            if line:
+                yield Finding(self, self.threshold, view.end, about=executor, detail=file, size=line)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        place = line_location(found.detail, found.size)
+        cure = f"call {found.about}.spin() in its place"
+        return Explanation(
+            f"rclpy.spin() of line {found.size} spins another executor; {found.about}, which was given the "
+            "node and has threads, is never spun",
+            "rclpy.spin(node) takes the node into the global executor, which has one thread: a node is in "
+            "one executor at a time",
+            cure,
+            place,
+            remedies=by_edit(place, cure, spin_executor, found.about),
+        )
+
+
+def _made_in(timeline: Timeline) -> dict[str, set[int]]:
+    """Return the lines at which a program made its entities, by file."""
+    made: defaultdict[str, set[int]] = defaultdict(set)
+    for file, line in (each.made_at for each in timeline.entities.values() if not is_models(each)):
+        made[file].add(line)
+    return made
 
 
 _NEVER = "{0}() runs callbacks until the program ends; what is made after it never exists"

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.diagnosis.edits.spins import never_made, spin_beside, spin_together, spins_in_turn
+from sim.diagnosis.edits.spins import never_made, spin_beside, spin_past, spin_together, spins_in_turn
 from tests.diagnosis.edits.edited_source import changed
 
 
@@ -50,6 +50,29 @@ def test_spins_in_turn_are_those_of_one_body(text: str, lines: tuple[int, ...], 
 def test_a_spin_of_a_node_and_one_of_an_executor_stay() -> None:
     text = "import rclpy\none = SingleThreadedExecutor()\nrclpy.spin(a)  # here\none.spin()\n"
     assert changed(text, spin_together) is None
+
+
+MADE = "ex = MultiThreadedExecutor()\nex.add_node(n)\n"
+
+
+@pytest.mark.parametrize(
+    ("text", "past"),
+    [
+        (f"{MADE}rclpy.spin(n)\nex.shutdown()\n", (3, "ex")),
+        (f"{MADE.replace('ex', 'self.ex')}spin(n)\n", (3, "self.ex")),
+        (f"{MADE}rclpy.spin(other)\n", (0, "")),
+        (f"{MADE}rclpy.spin(n, ex)\n", (0, "")),
+        (f"{MADE}rclpy.spin(n, executor=ex)\n", (0, "")),
+        (f"{MADE}Thread(target=ex.spin).start()\nrclpy.spin(n)\n", (0, "")),
+        (f"{MADE}use(ex)\nrclpy.spin(n)\n", (0, "")),
+    ],
+)
+def test_a_spin_goes_past_an_executor_that_nothing_spins(
+    text: str, past: tuple[int, str], tmp_path: Path
+) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(text)
+    assert spin_past(str(path)) == past
 
 
 NODES = """
