@@ -43,7 +43,8 @@ class KeyTurns:
 
     def handled(self, turn: int) -> None:
         """The key of a turn has been handled: the next one follows behind what that has left to be done."""
-        if not self._app.screen.call_later(self._app.call_later, self._next, turn):
+        screens = self._app.screen_stack
+        if not (screens and screens[-1].call_later(self._app.call_later, self._next, turn)):
             self._app.call_later(self._next, turn)
 
     async def _next(self, turn: int) -> None:
@@ -52,8 +53,10 @@ class KeyTurns:
         self._turn += 1
         self._is_free = not self._held
         if self._held:
-            target = self._app.focused or self._app.screen
             await self._handle(self._held.popleft())
+            if not self._app.screen_stack:  # the app ends
+                return
+            target = self._app.focused or self._app.screen
             if target.post_message(KeyHandled(self._turn)):
                 asyncio.get_running_loop().call_later(PATIENCE, self._app.call_later, self._next, self._turn)
             else:

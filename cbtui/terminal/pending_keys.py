@@ -37,7 +37,7 @@ class PendingKeysApp(App[None]):
 
     def __init__(self) -> None:
         super().__init__()
-        self._key_turns = KeyTurns(self, super().on_event)
+        self._key_turns = KeyTurns(self, self._handle)
 
     def ignore_enter(self) -> None:
         """Ignore an enter that comes as the next key and soon: what it would confirm was done without it."""
@@ -62,21 +62,26 @@ class PendingKeysApp(App[None]):
         )
 
     async def on_event(self, event: Event) -> None:
-        """Handle an event; input waits until the screen is mounted."""
+        """Handle an event; input waits until the screen is mounted, a key for the one before."""
         if isinstance(event, Key):  # also one that comes back from a screen that is no longer current
             until, self._enter_until = self._enter_until, 0.0
             if event.key == "enter" and event.time < until:
                 return
         if isinstance(event, InputEvent):
             self._input_at = monotonic()
+        if isinstance(event, Key) and not event.is_forwarded:
+            await self._key_turns.take(event)
+        else:
+            await self._handle(event)
+
+    async def _handle(self, event: Event) -> None:
+        if isinstance(event, InputEvent):
             deadline = monotonic() + MOUNT_TIMEOUT
             while self.is_mounting and monotonic() < deadline:
                 await asyncio.sleep(_POLL_INTERVAL)
             if not self.screen_stack:  # the app ends
                 return
-        if isinstance(event, Key) and not event.is_forwarded:
-            await self._key_turns.take(event)
-        elif not (isinstance(event, MouseDown) and self._is_gone(event)):
+        if not (isinstance(event, MouseDown) and self._is_gone(event)):
             await super().on_event(event)
 
     def on_app_key_handled(self, event: KeyHandled) -> None:

@@ -58,7 +58,7 @@ class MenuList(PageableOptionList, inherit_bindings=False):
         return self._choices[option_id]
 
     def show(self, lessons: Iterable[Taught], files: Iterable[RecentEntry], rows: "MenuRows") -> None:
-        """Show entries; the highlight stays on its entry, or goes to the first one."""
+        """Show entries; the highlight stays on its entry, or goes to the next lesson, or the first entry."""
         before = self.highlighted_option
         options: list[Option] = []
         self._choices = {}
@@ -72,6 +72,7 @@ class MenuList(PageableOptionList, inherit_bindings=False):
             self.choose(str(before.id))
         else:
             self.highlight_first()
+            self.choose(rows.next_id)
 
     def choose(self, option_id: str) -> None:
         """Highlight an entry, if it is shown."""
@@ -109,6 +110,8 @@ class MenuRows:
         self._now = now
         self._next = next_lesson(lessons, stages)
         begun = any(stage is not Stage.UNTOUCHED for stage in stages.values())
+        self.next_id = "" if self._next is None else self._next.id
+        """The id of the lesson to go on with; "" for none."""
         self._invitations = ("◂ go on here", "◂ go on") if begun else ("◂ start here", "◂ start")
 
     def total(self, unit: str) -> str:

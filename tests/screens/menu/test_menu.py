@@ -366,6 +366,17 @@ asyncio.run(main())
     assert HEAVY & set(shown.stdout.split()) == set()
 
 
+async def test_the_menu_begins_at_the_lesson_to_go_on_with() -> None:
+    first, second = lessons()[:2]
+    for place in range(len(first.predictions)):
+        Progress().answer(first.id, place, 0)
+    Progress().see(first.id)
+    Progress().explain(first.id)
+    app = menu()
+    async with app.run_test(size=NARROW):
+        assert app.screen.query_one(MenuList).chosen == second
+
+
 @pytest.mark.slow
 async def test_marks_tell_how_far_the_learner_is_in_each_lesson() -> None:
     plain, exercised = lessons()[0], next(lesson for lesson in lessons() if lesson.exercise is not None)
