@@ -13,6 +13,7 @@ from sim.diagnosis.words import group_of, thread_count
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import Doing, EntityId, EntityKind, Reason
+from sim.trace.figures.waiting import WORTH_TELLING
 from sim.trace.model import Blocked, EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -230,15 +231,16 @@ def _by_cause(left: Sequence[Wait], timeline: Timeline, at: Nanoseconds) -> Iter
             yield f"{why}: {'; '.join(_how_long(wait, timeline, at) for wait in waits)}"
 
 
-def waiting(wait: Wait, timeline: Timeline, at: Nanoseconds) -> str:
-    """Return why a callback that is ready does not run at a moment."""
-    return f"{_how_long(wait, timeline, at)}: {_why(wait, timeline)}"
+def waiting(wait: Wait, timeline: Timeline, at: Nanoseconds, begins: str = "is ready") -> str:
+    """Return why a callback that is ready does not run at a moment; ``begins`` is said of a short wait."""
+    return f"{_how_long(wait, timeline, at, begins)}: {_why(wait, timeline)}"
 
 
-def _how_long(wait: Wait, timeline: Timeline, at: Nanoseconds) -> str:
+def _how_long(wait: Wait, timeline: Timeline, at: Nanoseconds, begins: str = "is ready") -> str:
     entity = timeline.entities[wait.entity]
     queued = timeline.queue(entity.id, at).depth
-    waits = f"has waited since {timestamp(wait.since)}" if wait.since < at else "waits"
+    is_short = at - wait.since < WORTH_TELLING
+    waits = begins if is_short else f"has waited since {timestamp(wait.since)}"
     ready = f", {queued} queued" if queued else ", due" if entity.kind is EntityKind.TIMER else ""
     return f"{entity.spoken_name} {waits}{ready}"
 

@@ -20,6 +20,7 @@ from cbtui.widgets.lanes.details import details_of
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, all_lanes
 from cbtui.widgets.lanes.service_calls import LatestCalls
 from cbtui.widgets.lanes.status import LaneStatus
+from cbtui.widgets.narrator import narration
 from cbtui.widgets.scene import paint_scene
 from lessons.catalogue import lessons
 from lessons.description import Actor
@@ -137,6 +138,9 @@ def assert_short_waits_count_nowhere(timeline: Timeline, at: int, files: SourceF
         if isinstance(lane, MemberLane | SoleLane) and lane.entity.id in short:
             assert "late" not in status.of(lane, None).text
             assert "waits" not in details_of(timeline, short[lane.entity.id], at).title
+    told = "; ".join(narration(timeline, at, stepped=True))
+    names = (timeline.entities[each].spoken_name for each in short)
+    assert not any(f"{name} {waits}" in told for name in names for waits in ("waits", "has waited"))
 
 
 def assert_headline_agrees(scene: FactoryScene) -> None:

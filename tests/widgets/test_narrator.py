@@ -27,7 +27,7 @@ def test_a_start_tells_the_thread_the_reason_the_order_and_the_group() -> None:
     run.wait(heard, 1.0, 2.0, Reason.NO_FREE_WORKER, tick)
     first, second = narration(told(run, until=1.5), ns(1.0))
     assert first.startswith("1.000 s: MainThread is free: tick is due, timers come first, group A lets it in")
-    assert second.startswith("heard waits")
+    assert second.startswith("heard is ready")
     assert "group B would let it in, but no thread is free" in second
     ended = narration(told(run, until=2.5), ns(2.0))
     assert "tick returns after 1.0 s, group A is free" in ended[0]

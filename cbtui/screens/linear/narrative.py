@@ -80,7 +80,7 @@ class Narrative:
             for wait in timeline.waits_of(entity.id, window):
                 end = min(now, wait.end_at(now))
                 if wait.holder != wait.entity and end - wait.since >= self.least:
-                    begins = f"{timestamp(wait.start)}: {waiting(wait, timeline, wait.start)}"
+                    begins = f"{timestamp(wait.start)}: {waiting(wait, timeline, wait.start, 'waits')}"
                     took = duration(end - wait.since)
                     ends = f"{timestamp(end)}: {entity.spoken_name} waits no longer, after {took}"
                     yield from self._begin_and_end(entity.id, wait, now, begins, ends)
