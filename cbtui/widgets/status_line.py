@@ -59,6 +59,18 @@ class RunStatus:
     """Nanoseconds since the last callback stopped for ever; None if something moves."""
 
 
+_TENTH = 0.1
+"""The least speed that one decimal place tells."""
+
+
+def speed_text(asked: float | None, slow: float | None) -> str:
+    """Return the speed that was asked for (None: as fast as it goes), and the real one if it is less."""
+    speed = "max" if asked is None else f"×{asked:.1f}"
+    if slow is None:
+        return speed
+    return f"×{slow:.1f} of {speed}" if slow >= _TENTH else f"×{slow:.1g} of {speed}"
+
+
 def status_of(
     title: str,
     run: ShownRun,
@@ -76,9 +88,7 @@ def status_of(
     """
     timeline, recording = run.timeline, run.recording
     at = playhead.now(timeline.end)
-    speed = "max" if run.speed is None else f"×{run.speed:.1f}"
-    if slow is not None:
-        speed = f"×{slow:.1f} of {speed}"
+    speed = speed_text(run.speed, slow)
     pace = _pace(run, speed)
     return RunStatus(
         title=title,

@@ -6,7 +6,7 @@ import pytest
 
 from cbtui.learning.stage import LessonStep, StepState
 from cbtui.runs.live.live_run import RunState
-from cbtui.widgets.status_line import RunStatus, status_row
+from cbtui.widgets.status_line import RunStatus, speed_text, status_row
 from tests.support.builder import ns
 
 LIVE = RunStatus(
@@ -64,6 +64,22 @@ def test_the_line_is(status: RunStatus, width: int, golden: str) -> None:
 @pytest.mark.parametrize("width", range(40, 140, 7))
 def test_the_line_is_as_wide_as_it_is_asked_to_be(width: int) -> None:
     assert len(line(LIVE, width)) == width
+
+
+@pytest.mark.parametrize(
+    ("asked", "slow", "text"),
+    [
+        (None, None, "max"),
+        (1.0, None, "×1.0"),
+        (2.0, 0.34, "×0.3 of ×2.0"),
+        (1.0, 0.036, "×0.04 of ×1.0"),
+        (1.0, 0.0, "×0 of ×1.0"),
+    ],
+)
+def test_a_speed_however_small_is_not_told_as_none(
+    asked: float | None, slow: float | None, text: str
+) -> None:
+    assert speed_text(asked, slow) == text
 
 
 def test_a_program_in_which_nothing_moves_is_not_only_live() -> None:
