@@ -313,10 +313,7 @@ class AxisMark:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """The state of a run at ``at``: running and waiting callbacks, queues, pending calls.
-
-    ``log_position`` is the number of log lines written by then.
-    """
+    """The state of a run at ``at``: running and waiting callbacks, queues, pending calls."""
 
     at: Nanoseconds
     running: Mapping[ThreadId, Span] = field(default_factory=dict)
@@ -325,4 +322,3 @@ class Moment:
     queues: Mapping[EntityId, Queue] = field(default_factory=dict)
     holders: Mapping[GroupId, tuple[EntityId, ...]] = field(default_factory=dict)
     pending_calls: tuple[Call, ...] = ()
-    log_position: int = 0

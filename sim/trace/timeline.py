@@ -376,7 +376,6 @@ class Timeline:
             LazyMapping(self.entities, lambda entity: self.queue(entity, at)),
             self._holders(at),
             self._run.calls.pending(at),
-            self.logs_until(at),
         )
 
     def _holders(self, at: Nanoseconds) -> dict[GroupId, tuple[EntityId, ...]]:
