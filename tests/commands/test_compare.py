@@ -73,9 +73,11 @@ def test_a_lesson_can_be_compared_with_itself_with_other_threads() -> None:
 
 
 def test_a_lesson_can_be_compared_with_itself_with_a_callback_in_another_group() -> None:
-    words = ("--for", "8", "--call", "2.55", "--group-b", "odom_callback=own", "--threads-b", "2")
+    groups = ("--group-a", "scan_callback=own", "--group-b", "odom_callback=own")
+    words = ("--for", "8", "--call", "2.55", *groups, "--threads-b", "2")
     text = told("compare", "shared-group", "shared-group", *words)
-    assert "run B  shared-group, odom own group, 2 threads\n0 to 8 s\n" in text
+    runs = "run A  shared-group, scan own group\nrun B  shared-group, odom own group, 2 threads\n"
+    assert f"{runs}0 to 8 s\n" in text
     assert figures(text, "odom_callback", "lost")[2].endswith("fewer")
 
 
@@ -156,6 +158,7 @@ LESSONS = ["single-thread", "split-groups"]
         ([*LESSONS, "--", "-some"], "only a file takes arguments; leave out what follows --"),
         (["RECORDING", "single-thread", "--threads-a", "2"], "leave out --threads-a"),
         (["single-thread", "RECORDING", "--threads-b", "2"], "leave out --threads-b"),
+        (["single-thread", "RECORDING", "--group-b", "timer_callback=own"], "leave out --group-b"),
         (["single-thread", "RECORDING", "--distro-b", "kilted"], "leave out --distro-b"),
         ([*LESSONS, "--distro-a", "noetic"], "'noetic' is no distribution; give humble, jazzy"),
         ([*LESSONS, "--on-a", "ros2", "--distro-a", "jazzy"], "leave out --distro-a; --python-a names"),
