@@ -183,9 +183,19 @@ def test_a_circle_through_a_joined_thread_names_the_thread_and_is_over_with_its_
 ) -> None:
     text = (PROGRAMS / "join_in_timer.py").read_text()
     found = diagnose(run_to_end(program_setup(PROGRAMS / "join_in_timer.py", 4.0)).timeline)[0]
-    assert found.ring == ("tick", "the end of a thread", "Thread-1 (work)", "/fetch", "group A", "tick")
+    ring = ("tick", "the end of a thread", "Thread-1 (work)", "/fetch", "group A", "tick")
+    assert found.ring == ring
+    program = tmp_path / "node.py"
+    program.write_text(
+        text.replace("self.client.call(", "time.sleep(1.0)\n        self.client.call(").replace(
+            "import threading", "import threading\nimport time"
+        )
+    )
+    timeline = run_to_end(program_setup(program, 4.0)).timeline
+    found = diagnose(timeline)[0]
+    assert found.ring == ring, "the callback is first, though its thread began to wait last"
+    assert found.rule.explain(found, timeline).why.startswith("the thread waits for what comes only once")
     for end, there in ((".join()", ".join(timeout=9.0)"), ("Request())", "Request(), timeout_sec=9.0)")):
-        program = tmp_path / "node.py"
         program.write_text(text.replace(end, there))
         timeline = run_to_end(program_setup(program, 4.0)).timeline
         told = [each.rule.explain(each, timeline) for each in diagnose(timeline)]

@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 
 from sim.diagnosis import Explanation, diagnose
+from sim.diagnosis.edits.cancelling import end_if_cancelled
 from sim.diagnosis.edits.code_edit import diff
+from tests.diagnosis.edits.edited_source import changed
 from tests.support.engine_runs import run_program
 
 PROGRAM = """
@@ -32,7 +34,9 @@ def accepted(future):
 
 rclpy.init()
 node = rclpy.create_node("node")
-ActionServer(node, Fibonacci, "fib", execute, cancel_callback=lambda goal: CancelResponse.ACCEPT)
+server = ActionServer(
+    node, Fibonacci, "fib", execute, cancel_callback=lambda goal: CancelResponse.ACCEPT
+)
 client = ActionClient(node, Fibonacci, "fib")
 timer = node.create_timer(0.5, ask)
 executor = MultiThreadedExecutor(3)
@@ -41,10 +45,13 @@ executor.spin()
 """
 
 
-def told(folder: Path, look: str = "pass", wait: float = 1.0, seconds: float = 6.0) -> list[Explanation]:
-    text = PROGRAM.replace("LOOK", look).replace("WAIT", str(wait))
+def told(
+    folder: Path, look: str = "pass", wait: float = 1.0, seconds: float = 6.0, program: str = PROGRAM
+) -> list[Explanation]:
+    text = program.replace("LOOK", look).replace("WAIT", str(wait))
     timeline = run_program(folder, text, seconds=seconds).timeline
-    found = (each for each in diagnose(timeline) if each.rule.id == "cancel-ignored")
+    found = [each for each in diagnose(timeline) if each.rule.id in ("cancel-ignored", "endless-wait")]
+    assert {each.rule.id for each in found} <= {"cancel-ignored"}
     return [each.rule.explain(each, timeline) for each in found]
 
 
@@ -79,9 +86,45 @@ def test_a_callback_that_looks_is_not_told(tmp_path: Path, look: str) -> None:
     assert told(tmp_path, look) == []
 
 
+def test_a_callback_that_looked_only_before_the_cancel_is_told(tmp_path: Path) -> None:
+    assert len(told(tmp_path, "each or goal.is_cancel_requested")) == 1
+
+
+@pytest.mark.parametrize(("seconds", "times"), [(4.9, 0), (5.1, 1)])
+def test_a_goal_is_expected_to_look_from_its_execution_on(tmp_path: Path, seconds: float, times: int) -> None:
+    late = """
+timers = []
+def put_off(goal):
+    def begin():
+        timers[0].cancel()
+        goal.execute()
+    timers.append(node.create_timer(2.5, begin))
+server.register_handle_accepted_callback(put_off)
+client ="""
+    assert len(told(tmp_path, wait=0.1, seconds=seconds, program=PROGRAM.replace("client =", late))) == times
+
+
 def test_a_goal_that_ends_soon_after_its_cancel_is_not_told(tmp_path: Path) -> None:
     assert told(tmp_path, wait=2.5) == []
 
 
 def test_a_goal_whose_cancel_comes_after_its_end_is_not_told(tmp_path: Path) -> None:
     assert told(tmp_path, wait=4.5, seconds=9.0) == []
+
+
+@pytest.mark.parametrize(
+    ("execute", "loops"),
+    [
+        ("def execute(goal):\n    for a in b:\n        for c in d:\n            work()  # here", 1),
+        ("def execute(goal):\n    for a in b:\n        work()  # here\n        goal.is_cancel_requested", 0),
+        ("def execute(goal, more):\n    for a in b:\n        work()  # here", 0),
+        ("def execute(goal):\n    work()  # here", 0),
+    ],
+    ids=["two loops", "asks already", "other parameters", "no loop"],
+)
+def test_the_innermost_loop_of_a_callback_that_does_not_ask_yet_is_edited(execute: str, loops: int) -> None:
+    lines = changed(
+        f"server = ActionServer(node, Turn, 'turn', execute)\n{execute}\n", end_if_cancelled, ("", 1)
+    )
+    expected = ["if goal.is_cancel_requested:", "    goal.canceled()", "    return Turn.Result()"]
+    assert lines == ([f"+            {each}" for each in expected] if loops else None)

@@ -28,7 +28,7 @@ class CancelIgnored(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each goal that the engine reports; of several at once, until the first one ends."""
         for notice in view.timeline.notices:
-            if notice.kind is NoticeKind.CANCEL_IGNORED and notice.t <= view.end:
+            if notice.kind is NoticeKind.CANCEL_IGNORED:
                 spans = view.timeline.spans_of(notice.entity, Window(notice.t, notice.t + 1))
                 until = min((span.end_at(view.end) for span in spans), default=view.end)
                 yield Finding(self, notice.t - _LATE, until, notice.entity)
