@@ -2,12 +2,13 @@
 
 import errno
 import os
+import signal
 import socket
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from multiprocessing.connection import Connection
 
 from sim.trace.events import AnyEvent, EventsLost, Logged, Notice, Printed, Severity, encode
@@ -39,6 +40,16 @@ _IN_THE_PIPE = 1 << 12
 
 TRACE_CLOSED = 86
 """The exit code of an engine whose program has closed the trace's pipe."""
+
+
+@contextmanager
+def _no_interrupt() -> Iterator[None]:
+    """Hold SIGINT back from the calling thread: half a batch makes all that follows it unreadable."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 class Outbox:
@@ -116,8 +127,8 @@ class Outbox:
             self._waiting.append(Notice(t, Severity.INFO, text))
 
     def flush(self) -> None:
-        """Send all waiting events. A reader that is gone is not an error."""
-        with self._sending:
+        """Send all waiting events. A reader that is gone is not an error; an interrupt waits till then."""
+        with _no_interrupt(), self._sending:
             waiting = len(self._waiting)
             while waiting > 0 or self._lost > self._lost_told:
                 # After a pause of the reader, batches are no larger than usual.

@@ -3,7 +3,9 @@
 import multiprocessing
 import time
 from collections import deque
-from threading import Thread
+from contextlib import suppress
+from signal import SIGINT, pthread_kill
+from threading import Thread, main_thread
 
 import pytest
 
@@ -108,3 +110,24 @@ def test_a_reader_that_has_gone_away_is_no_error() -> None:
     box.record(_lines(0, 1)[0])
     box.flush()
     box.close(RunEnded(1, "done", failed=False))
+
+
+def test_an_interrupt_waits_until_a_batch_is_sent_whole() -> None:
+    far, near = multiprocessing.Pipe()
+    box = Outbox(near, may_wait=True, before_batch=_nothing, pack=lambda _: bytes(1 << 24))
+    box.record(TimePassed(5))
+    received: list[int] = []
+
+    def interrupt_and_read() -> None:
+        far.poll(None)  # it is being sent, and does not fit into the pipe
+        pthread_kill(main_thread().ident or 0, SIGINT)
+        with suppress(EOFError):
+            received.append(len(far.recv_bytes()))
+
+    reader = Thread(target=interrupt_and_read)
+    reader.start()
+    with pytest.raises(KeyboardInterrupt):
+        box.flush()
+    near.close()
+    reader.join()
+    assert received == [1 << 24]
