@@ -1,7 +1,7 @@
 """A view of the latest part of a run: what several rules query is computed once."""
 
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
@@ -11,6 +11,9 @@ from sim.trace.events import EntityId, EntityKind, NodeId, ProcessId, Reason, Th
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Blocked, Call, EntityInfo, Moment, Nanoseconds, Position, Span, Wait, Window
 from sim.trace.timeline import Timeline
+
+_FEW = 100
+"""Entities of a program that is looked into at each check, idle ones included."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +94,12 @@ class TimelineView:
         Idle entities break no rule, and cost nothing.
         """
         return (each for each in self._active if not kinds or each.kind in kinds)
+
+    @property
+    def few_entities(self) -> Collection[EntityInfo]:
+        """All entities, idle ones included; none if there are many, as this has to stay cheap."""
+        every = self.timeline.entities
+        return every.values() if len(every) <= _FEW else ()
 
     @cached_property
     def _active(self) -> list[EntityInfo]:

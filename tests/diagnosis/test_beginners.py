@@ -83,6 +83,13 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "add all nodes to one executor",
         ),
         ("two_executors", "node-never-spins", "viewer_executor.spin()", "add all nodes to one executor"),
+        (
+            "sim_time_without_clock",
+            "clock-never-starts",
+            "use_sim_time",
+            "start what publishes",
+        ),
+        ("period_of_zero", "always-due", "1 // RATE", "give it a period in seconds"),
         ("spin_past_executor", "spin-past-executor", "rclpy.spin(n)", "call ex.spin() in its place"),
         ("hides_a_name", "program-raised", "def handle(self, message):", "hides Node.handle"),
         ("input_in_timer", "program-raised", "input(", "read in another thread"),

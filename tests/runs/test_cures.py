@@ -79,6 +79,8 @@ FIT = "define it with the parameters it is called with (diff)"
         ("two_spins", ["spin all nodes by one executor (diff)"]),
         ("two_spins_of_new_nodes", ["spin all nodes by one executor (diff)"]),
         ("two_executors", ["spin all nodes by one executor (diff)"]),
+        ("sim_time_without_clock", ["leave use_sim_time false (diff)"]),
+        ("period_of_zero", ["keep the fraction of the period (diff)"]),
         ("spin_past_executor", ["call ex.spin() in its place (diff)"]),
         ("rate_in_main", ["spin the node in a thread beside the loop (diff)"]),
         ("spin_once", ["return from go, and go on where what it waits for is set (diff)"]),

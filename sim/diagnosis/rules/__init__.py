@@ -2,6 +2,7 @@
 
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.cancelling import CancelIgnored
+from sim.diagnosis.rules.clocks import AlwaysDue, ClockNeverStarts
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
 from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing, WaitsForLock
 from sim.diagnosis.rules.errors import ExceptionCaught, ExceptionSwallowed, ProgramRaised, SpinRaised
@@ -24,6 +25,8 @@ RULES: tuple[Rule, ...] = (
     SpinInConstructor(),
     SpinNotReached(),
     SpinPastExecutor(),
+    AlwaysDue(),
+    ClockNeverStarts(),
     StillComputing(),
     EndlessWait(),
     WaitsForLock(),

@@ -1,8 +1,7 @@
 """Rules on spinning in the wrong place: inside a callback, and inside a node's constructor."""
 
 from collections import defaultdict
-from collections.abc import Iterator
-from typing import ClassVar
+from collections.abc import Iterable, Iterator
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.flags import setters
@@ -25,7 +24,7 @@ from sim.diagnosis.words import (
 )
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import Doing, EntityKind, GroupKind, SpinClashed
-from sim.trace.model import Nanoseconds, Position, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Position, Window
 from sim.trace.timeline import Timeline
 
 
@@ -137,20 +136,18 @@ class SpinNotReached(Rule):
     id = "spin-not-reached"
     summary = "a second spin() is not reached, nor the node that is made for it"
     threshold: Nanoseconds = SECOND
-    most: ClassVar[int] = 100
-    """Entities of a program that is looked into: to look at all of them at each check has to stay cheap."""
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each class of nodes of which no entity was made, while the program spins."""
         timeline = view.timeline
-        if view.end < self.threshold or not timeline.executors or len(timeline.entities) > self.most:
+        if view.end < self.threshold or not timeline.executors:
             return
         if timeline.program_at(view.end) is not None:
             return
         ended = timeline.ended
         if timeline.processes_ended or (ended and ended.failed and not ended.time_was_up):
             return  # spin() has raised, or what came after it has
-        for file, lines in _made_in(timeline).items():
+        for file, lines in _made_in(view.few_entities).items():
             for name in never_made(file, lines):
                 yield Finding(self, self.threshold, view.end, about=name, detail=file)
 
@@ -180,13 +177,13 @@ class SpinPastExecutor(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield it if an executor has had no worker for so long, and a file of the program shows why."""
         timeline = view.timeline
-        if view.end < self.threshold or len(timeline.entities) > SpinNotReached.most:
+        if view.end < self.threshold:
             return
         working = {each.executor for each in timeline.threads.values()}
         idle = any(each.threads > 1 and each.id not in working for each in timeline.executors.values())
         if not idle or not view.threads_needed:
             return
-        for file in _made_in(timeline):
+        for file in _made_in(view.few_entities):
             line, executor = spin_past(file)
             if line:
                 yield Finding(self, self.threshold, view.end, about=executor, detail=file, size=line)
@@ -205,10 +202,10 @@ class SpinPastExecutor(Rule):
         )
 
 
-def _made_in(timeline: Timeline) -> dict[str, set[int]]:
-    """Return the lines at which a program made its entities, by file."""
+def _made_in(entities: Iterable[EntityInfo]) -> dict[str, set[int]]:
+    """Return the lines at which a program made entities, by file."""
     made: defaultdict[str, set[int]] = defaultdict(set)
-    for file, line in (each.made_at for each in timeline.entities.values() if not is_models(each)):
+    for file, line in (each.made_at for each in entities if not is_models(each)):
         made[file].add(line)
     return made
 

@@ -1,0 +1,42 @@
+"""Edits of timers that are never due, or always."""
+
+import ast
+
+from sim.diagnosis.edits.program_file import asked_of_file
+from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
+
+
+def keep_the_fraction(source: SourceEditor, line: int) -> None:
+    """Divide by ``/`` in place of ``//`` in what a call at a line gets first."""
+    calls = [each for each in source.nodes(ast.Call, source.statement_at(line)) if each.args]
+    periods = [each.args[0] for each in calls if isinstance(each.args[0], ast.BinOp)]
+    whole = [each for each in periods if isinstance(each.op, ast.FloorDiv)]
+    if len(whole) != 1:
+        raise NotSimpleError
+    source.replace(whole[0], f"{source.code_of(whole[0].left)} / {source.code_of(whole[0].right)}")
+
+
+@asked_of_file
+def sim_time_set_at(source: SourceEditor) -> int:
+    """Return the line of the only call that sets ``use_sim_time`` to ``True``; 0 for none or several."""
+    found = _sim_time_on(source)
+    return found[0].lineno if len(found) == 1 else 0
+
+
+def leave_sim_time_off(source: SourceEditor, line: int) -> None:
+    """Set ``use_sim_time`` to ``False`` at a line."""
+    for each in _sim_time_on(source):
+        if each.lineno == line:
+            source.replace(each, "False")
+
+
+def _sim_time_on(source: SourceEditor) -> list[ast.Constant]:
+    """Return the ``True`` of each call that names ``use_sim_time`` first."""
+    calls = [each for each in source.nodes(ast.Call) if each.args]
+    values = [
+        value
+        for call in calls
+        if isinstance(call.args[0], ast.Constant) and call.args[0].value == "use_sim_time"
+        for value in (*call.args[1:], *(each.value for each in call.keywords))
+    ]
+    return [each for each in values if isinstance(each, ast.Constant) and each.value is True]

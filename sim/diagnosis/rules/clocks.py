@@ -1,0 +1,108 @@
+"""Rules on timers that are never due, or always."""
+
+from collections.abc import Iterable, Iterator
+
+from sim.diagnosis.edits.timers import keep_the_fraction, leave_sim_time_off, sim_time_set_at
+from sim.diagnosis.rule import (
+    Explanation,
+    Finding,
+    Rule,
+    by_edit,
+    entity_of,
+    is_models,
+    line_location,
+    made_at,
+    place_of,
+)
+from sim.diagnosis.timeline_view import TimelineView
+from sim.diagnosis.words import listed, who
+from sim.quantities.nanoseconds import SECOND
+from sim.trace.events import EntityId, EntityKind
+from sim.trace.model import EntityInfo, Nanoseconds, Window
+from sim.trace.timeline import Timeline
+
+
+class ClockNeverStarts(Rule):
+    """The timers of a node with ``use_sim_time`` never run: nothing has been sent on ``/clock``.
+
+    A timer of another clock runs all the same: only one that should have run twice by now is told.
+    """
+
+    id = "clock-never-starts"
+    summary = "timers follow /clock, on which nothing is sent"
+    threshold: Nanoseconds = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield for each such node the first of its timers."""
+        timeline = view.timeline
+        if view.end < self.threshold or _CLOCK in timeline.names_sent:
+            return
+        every = view.few_entities
+        for clock in every:
+            if clock.name == _CLOCK and is_models(clock) and not _calls(clock.id, timeline):
+                still = _never_ran(clock, every, timeline)
+                if still:
+                    yield Finding(self, 0, view.end, still[0], clock.id)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        still = _never_ran(timeline.entities[found.culprit], timeline.entities.values(), timeline)
+        file = entity_of(found, timeline).file
+        line = sim_time_set_at(file)
+        never = f"never {'runs' if len(still) == 1 else 'run'}"
+        return Explanation(
+            f"{listed(who(each, timeline) for each in still)} {never}: use_sim_time is true, and nothing has "
+            f"been sent on {_CLOCK}",
+            f"the time of such a node is what {_CLOCK} says last: it is 0 until something comes, and no "
+            "timer is due",
+            f"start what publishes {_CLOCK} (a simulator, or ros2 bag play --clock); without one leave "
+            "use_sim_time false",
+            line_location(file, line) or place_of(found.subject, timeline),
+            remedies=by_edit(line_location(file, line), "leave use_sim_time false", leave_sim_time_off),
+        )
+
+
+_CLOCK = "/clock"
+
+
+def _never_ran(clock: EntityInfo, among: Iterable[EntityInfo], timeline: Timeline) -> list[EntityId]:
+    """Return the timers of a clock's node that should have run twice by now, if none of them has."""
+    return [
+        each.id
+        for each in among
+        if each.kind is EntityKind.TIMER
+        and each.node == clock.node
+        and 2 * each.period <= timeline.end
+        and not _calls(each.id, timeline)
+    ]
+
+
+class AlwaysDue(Rule):
+    """A timer's period is 0, so that it is called again and again without a pause."""
+
+    id = "always-due"
+    summary = "a timer of period 0 is called without a pause"
+    hides = frozenset(("still-computing",))
+    threshold = 1000
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each timer with that many calls."""
+        for entity in view.entities(EntityKind.TIMER):
+            calls = _calls(entity.id, view.timeline) if entity.period == 0 else 0
+            if calls >= self.threshold:
+                yield Finding(self, 0, view.end, entity.id, entity.id, size=calls)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        subject, made = who(found.subject, timeline), made_at(entity_of(found, timeline))
+        return Explanation(
+            f"the period of {subject} is 0 s: it is due all the time, and has run {found.size} times",
+            "a timer is due again as soon as its period is over: with 0 the executor never rests, and on "
+            "virtual time no time goes by",
+            "give it a period in seconds; // leaves the fraction off: 1 // 50 is 0, and 1 / 50 is 0.02",
+            made or place_of(found.subject, timeline),
+            for_ever=timeline.started is not None and timeline.started.clock != "real",
+            remedies=by_edit(made, "keep the fraction of the period", keep_the_fraction),
+        )
+
+
+def _calls(entity: EntityId, timeline: Timeline) -> int:
+    return timeline.calls_of(entity, Window(0, timeline.end + 1))

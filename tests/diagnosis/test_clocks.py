@@ -1,0 +1,47 @@
+"""Timers that are never due, or always: by a clock that does not go, or a period of zero."""
+
+from pathlib import Path
+
+import pytest
+
+from sim.diagnosis import Weight, diagnose
+from tests.support.engine_runs import run_program
+
+FOLLOWER = """
+import rclpy
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rosgraph_msgs.msg import Clock as Time
+
+rclpy.init()
+node = Node("follower", parameter_overrides=[Parameter("use_sim_time", value=True)])
+node.create_timer(0.5, lambda: None)
+{more}
+rclpy.spin(node)
+"""
+TICKS = """
+publisher = node.create_publisher(Time, "/clock", 10)
+node.create_timer(0.2, lambda: publisher.publish(Time()), clock=Clock(clock_type=ClockType.STEADY_TIME))
+"""
+
+
+@pytest.mark.parametrize(("more", "until", "told"), [("", 2.0, True), ("", 0.9, False), (TICKS, 2.0, False)])
+def test_timers_that_follow_a_clock_that_is_never_sent_are_told(
+    more: str, until: float, told: bool, tmp_path: Path
+) -> None:
+    found = diagnose(run_program(tmp_path, FOLLOWER.replace("{more}", more), until).timeline)
+    assert ("clock-never-starts" in {each.rule.id for each in found}) is told
+
+
+def test_a_timer_of_period_zero_that_is_called_once_is_no_problem(tmp_path: Path) -> None:
+    text = """
+import rclpy
+
+rclpy.init()
+node = rclpy.create_node("later")
+timer = node.create_timer(0.0, lambda: timer.cancel())
+rclpy.spin(node)
+"""
+    run = run_program(tmp_path, text, 2.0)
+    assert not [each for each in diagnose(run.timeline) if each.rule.weight is Weight.PROBLEM]
