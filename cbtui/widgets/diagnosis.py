@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
-from operator import attrgetter
 
 from cbtui.keys.action import Scope
 from cbtui.keys.keymap import STANDARD, Keymap
@@ -19,8 +18,8 @@ from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of
 from sim.trace.events import EntityKind, KeyboardAsked, Notice, NoticeKind, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
-from sim.trace.figures.waiting import WORTH_TELLING, waits_for_others
-from sim.trace.model import AxisMarkKind, Call, Moment, Nanoseconds, Wait, Window
+from sim.trace.figures.waiting import WORTH_TELLING, next_in_turn, waits_for_others, waits_since
+from sim.trace.model import AxisMarkKind, Call, EntityInfo, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 
 _SERIOUS: Nanoseconds = SECOND
@@ -187,16 +186,17 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
     if raised:
         time = f"at {raised[-1].at / 1e9:.1f} s: "
         return Diagnosis(f"{time}{raised[-1].text}", DiagnosisLevel.WAITS, time=time)
-    own = (wait for wait in moment.waiting.values() if moment.at - wait.since >= WORTH_TELLING)
-    for_itself = min(own, key=attrgetter("since"), default=None)
+    turns = next_in_turn(moment, timeline)
+    since, for_itself = min(((since, entity) for entity, since in turns.items()), default=(moment.at, 0))
     in_a_call = _in_a_call(moment, timeline)
     threads, briefly = _threads_needed(timeline, peak)
     pending = unanswered(LatestCalls(timeline).latest, moment.at)
-    if for_itself is None:
+    if moment.at - since < WORTH_TELLING:
         nothing = _no_reply(pending, moment.at, timeline) or "nothing waits"
         return Diagnosis(in_a_call or f"{nothing}; {threads}", DiagnosisLevel.FINE)
     nothing = "no other callback waits" if pending else "nothing else waits"
-    text = f"{_overdue(for_itself, moment.at, timeline)}; {in_a_call or nothing}"
+    overdue = _overdue(timeline.entities[for_itself], moment, since)
+    text = f"{overdue}; {in_a_call or nothing}"
     if in_a_call:
         return Diagnosis(text, DiagnosisLevel.FINE)
     return Diagnosis(f"{text}; {briefly}", DiagnosisLevel.FINE, at_length=f"{text}; {threads}")
@@ -261,22 +261,22 @@ def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
     return None
 
 
-def _overdue(wait: Wait, at: Nanoseconds, timeline: Timeline) -> str:
-    """The text on a callback that only waits for its own previous call."""
-    name, waited = name_of(wait.entity, timeline), duration(at - wait.since)
-    match timeline.entities[wait.entity].kind:
+def _overdue(entity: EntityInfo, moment: Moment, since: Nanoseconds) -> str:
+    """The text on a callback that only waits for its own previous call, or is about to be called again."""
+    does, waited = "still runs" if entity.id in moment.waiting else "is next", duration(moment.at - since)
+    match entity.kind:
         case EntityKind.TIMER:
-            return f"{name} still runs, due {waited} ago"
+            return f"{entity.spoken_name} {does}, due {waited} ago"
         case EntityKind.SUBSCRIPTION:
-            return f"{name} still runs, and the next message has waited {waited} for it"
+            return f"{entity.spoken_name} {does}, and the next message has waited {waited} for it"
         case EntityKind.SERVICE:
-            return f"{name} still runs, and the next request has waited {waited} for it"
-    return f"{name} still runs, ready again {waited} ago"
+            return f"{entity.spoken_name} {does}, and the next request has waited {waited} for it"
+    return f"{entity.spoken_name} {does}, ready again {waited} ago"
 
 
 def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosis:
     longest = waits[0]
-    waited = moment.at - longest.since
+    waited = moment.at - waits_since(longest, moment.queues[longest.entity])
     others = (
         f"; {len(waits) - 1} more wait" if len(waits) > 2 else "; 1 more waits" if len(waits) == 2 else ""
     )

@@ -13,8 +13,8 @@ from sim.diagnosis.words import group_of, thread_count
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import Doing, EntityId, EntityKind, Reason
-from sim.trace.figures.waiting import WORTH_TELLING
-from sim.trace.model import Blocked, EntityInfo, Nanoseconds, Span, Wait, Window
+from sim.trace.figures.waiting import WORTH_TELLING, next_in_turn
+from sim.trace.model import Blocked, EntityInfo, Moment, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 ROWS = 4
@@ -257,8 +257,21 @@ def _why(wait: Wait, timeline: Timeline) -> str:
             return "nobody spins its node"
 
 
+def _turn(entity: EntityInfo, since: Nanoseconds, moment: Moment) -> str:
+    """Say what a callback that waits for no other one is to take, and when."""
+    queued, waited = moment.queues[entity.id].depth, moment.at - since
+    is_ready = f"has {queued} queued" if queued else "is ready again"
+    lasted = f"{', the next' if queued else ''} for {duration(waited)}" if waited else ""
+    when = "its last call still runs" if entity.id in moment.waiting else "it is free to run"
+    return f"{entity.spoken_name} {is_ready}{lasted}: {when}"
+
+
 def _at_rest(timeline: Timeline, at: Nanoseconds) -> str:
-    busy = len(timeline.moment(at).running)
+    moment = timeline.moment(at)
+    turns = next_in_turn(moment, timeline)
+    if turns:
+        return "; ".join(_turn(timeline.entities[entity], since, moment) for entity, since in turns.items())
+    busy = len(moment.running)
     threads = max(busy, thread_count(timeline))
     if busy == threads:
         return "nothing else is ready"

@@ -255,6 +255,8 @@ class QueuedMessage:
     id: MessageId | CallId
     since: Nanoseconds
     """When it was published or sent; if that is unknown, when it arrived."""
+    arrived: Nanoseconds
+    """When it was queued."""
 
     def age(self, at: Nanoseconds) -> Nanoseconds:
         """Its age at ``at``."""
@@ -276,6 +278,11 @@ class Queue:
     def oldest(self) -> Nanoseconds | None:
         """The origin time of the next message; None for an empty queue."""
         return self.messages[0].since if self.messages else None
+
+    @property
+    def next_arrived(self) -> Nanoseconds | None:
+        """When the next message was queued; None for an empty queue."""
+        return self.messages[0].arrived if self.messages else None
 
 
 @dataclass(slots=True)

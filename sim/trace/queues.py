@@ -93,8 +93,8 @@ class QueueHistory:
         arrivals, messages = (list(self._arrived.column(column, queued)) for column in (0, 1))
 
         def message_at(place: int) -> QueuedMessage:
-            since = origin_time(messages[place])
-            return QueuedMessage(messages[place], arrivals[place] if since is None else since)
+            since, arrived = origin_time(messages[place]), arrivals[place]
+            return QueuedMessage(messages[place], arrived if since is None else since, arrived)
 
         places: Sequence[int] = range(len(messages))
         if len(self._left_early):

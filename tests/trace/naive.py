@@ -182,7 +182,7 @@ class Naive:
 
     def _queued(self, entity: EntityId, message: MessageId, arrived: int) -> QueuedMessage:
         born = self.born(entity, message)
-        return QueuedMessage(message, arrived if born is None else born)
+        return QueuedMessage(message, arrived if born is None else born, arrived)
 
     def running(self, at: int) -> dict[ThreadId, Span]:
         """The top of each thread's stack of calls."""

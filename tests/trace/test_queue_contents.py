@@ -139,8 +139,8 @@ LATE_DROP, EARLY_READY = ev.MessageDropped(30, 1, 2, 1), ev.EntityReady(30, 1, 3
 @pytest.mark.parametrize("events", [(DROP, READY), (EARLY_READY, LATE_DROP), (READY, LATE_DROP)])
 def test_a_full_queue_may_tell_its_loss_before_or_after_the_arrival(events: tuple[AnyEvent, ...]) -> None:
     timeline = timeline_of(ev.EntityReady(10, 1, 1, 1), ev.EntityReady(20, 1, 2, 2), *events)
-    assert timeline.queue(1, 29) == Queue(2, 0, [QueuedMessage(1, 10), QueuedMessage(2, 20)])
-    assert timeline.queue(1, 30) == Queue(2, 1, [QueuedMessage(2, 20), QueuedMessage(3, 30)])
+    assert timeline.queue(1, 29) == Queue(2, 0, [QueuedMessage(1, 10, 10), QueuedMessage(2, 20, 20)])
+    assert timeline.queue(1, 30) == Queue(2, 1, [QueuedMessage(2, 20, 20), QueuedMessage(3, 30, 30)])
 
 
 def test_a_message_is_as_old_as_its_publishing() -> None:
@@ -159,7 +159,7 @@ def test_a_request_is_as_old_as_its_sending_whatever_message_bears_its_number() 
         ev.ServiceCalled(5, 7, "/name", 0, "request"),
         ev.EntityReady(9, 1, 1, 7),
     )
-    assert timeline.queue(1, 12).messages == [QueuedMessage(7, 5)]
+    assert timeline.queue(1, 12).messages == [QueuedMessage(7, 5, 9)]
 
 
 def test_a_reply_is_as_old_as_its_arrival_whatever_message_bears_its_number() -> None:
@@ -169,7 +169,7 @@ def test_a_reply_is_as_old_as_its_arrival_whatever_message_bears_its_number() ->
         ev.ServiceCalled(5, 7, "/name", 0, "request"),
         ev.EntityReady(9, 1, 1, 7),
     )
-    assert timeline.queue(1, 12).messages == [QueuedMessage(7, 9)]
+    assert timeline.queue(1, 12).messages == [QueuedMessage(7, 9, 9)]
 
 
 def test_who_takes_a_request_has_not_seen_the_scan_of_its_number() -> None:

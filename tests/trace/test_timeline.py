@@ -277,7 +277,7 @@ def test_an_entity_that_is_gone_neither_waits_nor_has_a_queue() -> None:
 def test_a_queue_of_which_arrivals_were_lost_still_tells_its_depth() -> None:
     timeline = Timeline()
     timeline.extend([ev.EntityReady(5, 1, 4, 9)])
-    assert timeline.queue(1, 5) == Queue(4, 0, [QueuedMessage(9, 5)])
+    assert timeline.queue(1, 5) == Queue(4, 0, [QueuedMessage(9, 5, 5)])
 
 
 def test_drops_that_are_recorded_late_count_from_their_own_time() -> None:

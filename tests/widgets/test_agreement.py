@@ -29,13 +29,14 @@ from sim.quantities.durations import duration
 from sim.trace.descriptions import name_of
 from sim.trace.events import GroupId, Reason
 from sim.trace.figures.concurrency import Concurrency
-from sim.trace.figures.waiting import WORTH_TELLING, waits_for_others
+from sim.trace.figures.summary import summarise
+from sim.trace.figures.waiting import WORTH_TELLING, waits_for_others, waits_since
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
 from tests.support.engine_runs import run_to_end
-from tests.support.runs import dummy_server_run, shared_group_run, split_groups_run
-from tests.widgets.pictures import plain
+from tests.support.runs import Run, dummy_server_run, shared_group_run, split_groups_run
+from tests.widgets.pictures import plain, told
 
 FILES = SourceFiles(Path("node.py"), "", {})
 _RUNS = (shared_group_run, split_groups_run, dummy_server_run)
@@ -87,6 +88,50 @@ def test_all_panes_say_the_same_of_any_moment_of_a_lesson(lesson: Lesson) -> Non
         assert_panes_agree(timeline, moments.randrange(timeline.end), files)
 
 
+def test_a_subscription_slower_than_its_messages_tells_everywhere_how_long_the_next_one_has_waited() -> None:
+    run = Run()
+    thread = run.thread("MainThread")
+    scan = run.subscription(run.exclusive(run.node("/n")), "/scan", "scan_callback", depth=100)
+    for place in range(30):
+        run.message(scan, 1.0 + place / 10)
+    for since, begun in ((1.1, 1.0), (2.0, 2.0), (3.0, 3.0)):
+        run.wait(scan, since, begun + 1, Reason.GROUP_HELD, scan)
+        run.callback(scan, thread, begun, 1.0)
+    timeline = told(run, until=4.0)
+    at = ns(3.5)
+    wait = timeline.moment(at).waiting[scan]
+    belt = scene_of(timeline, at, ns(0.1)).areas[0].belts[0]
+    assert diagnosis_at(timeline, at, Concurrency(timeline)).text.startswith(
+        "scan_callback still runs, and the next message has waited 2.2 s for it"
+    )
+    assert wait_texts(belt, timeline, at)[0] == "waits 2.2 s: its last call still runs"
+    assert "next in its queue since 1.300 s" in details_of(timeline, wait, at).facts
+    third = timeline.spans_of(scan, Window(ns(3.0), ns(3.1)))[-1]
+    assert "waited 1.8 s: its last call still ran" in details_of(timeline, third, at).facts
+    (figures,) = summarise(timeline).callbacks
+    assert figures.longest_wait is not None
+    assert figures.longest_wait.length == ns(2.7)
+
+
+def test_between_two_calls_a_queue_is_not_told_as_nothing_that_waits() -> None:
+    run = Run()
+    scan = run.subscription(run.exclusive(run.node("/n")), "/scan", "scan_callback", depth=100)
+    for place in range(9):
+        run.message(scan, 1.0 + place / 10)
+    run.wait(scan, 1.1, 2.0, Reason.GROUP_HELD, scan)
+    run.callback(scan, run.thread("MainThread"), 1.0, 1.0)
+    timeline = told(run, until=2.0)
+    assert diagnosis_at(timeline, ns(2.0), Concurrency(timeline)).text.startswith(
+        "scan_callback is next, and the next message has waited 900 ms for it"
+    )
+    runs, ended = narration(timeline, ns(1.5)), narration(timeline, ns(2.0))
+    assert runs[1] == "scan_callback has 1 queued: its last call still runs"
+    assert ended == (
+        "2.000 s: scan_callback returns after 1.0 s, group A is free",
+        "scan_callback has 8 queued, the next for 900 ms: it is free to run",
+    )
+
+
 def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
     """Compare what lanes, factory, scene, code and diagnosis line say of a moment."""
     moment, scene = timeline.moment(at), scene_of(timeline, at, ns(0.1))
@@ -112,7 +157,7 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
         if wait == waits[0] and not told.stays:
             reasons.add(told.text)
         for text in reasons:
-            assert duration(at - wait.since) in text
+            assert duration(at - waits_since(wait, moment.queues[wait.entity])) in text
             is_held = wait.reason is Reason.GROUP_HELD
             assert any(words in text for words in ("held by", "seat taken by")) == is_held
             assert name_of(wait.holder, timeline) in text or not is_held
@@ -130,7 +175,11 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
 def assert_short_waits_count_nowhere(timeline: Timeline, at: int, files: SourceFiles) -> None:
     """What has only just become ready waits in no pane, as the diagnosis line does not count it."""
     moment = timeline.moment(at)
-    short = {each.entity: each for each in moment.waiting.values() if at - each.since < WORTH_TELLING}
+    short = {
+        each.entity: each
+        for each in moment.waiting.values()
+        if at - waits_since(each, moment.queues[each.entity]) < WORTH_TELLING
+    }
     in_code = [mark for marks in marks_at(timeline, at, files).values() for mark in marks]
     assert not any("waits" in mark.texts[0] for mark in in_code if mark.entity in short)
     status = LaneStatus(timeline, Window(0, at + 1), moment, LatestCalls(timeline), Charset.BRAILLE, 25)

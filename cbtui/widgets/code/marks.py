@@ -12,7 +12,7 @@ from cbtui.widgets.lanes.names import short_thread
 from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.events import Doing, EntityId
-from sim.trace.figures.waiting import WORTH_TELLING
+from sim.trace.figures.waiting import WORTH_TELLING, waits_since
 from sim.trace.model import EntityInfo, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
@@ -157,11 +157,12 @@ def _doing(
         texts = (f"▶ {threads} {lasted}", f"▶ {lasted}")
         return CallbackActivity.RUNS, (*_blocked_text(running, moment, lasted), *texts), running[0].start
     wait = moment.waiting.get(entity.id)
-    if wait is not None and moment.at - wait.since >= WORTH_TELLING:
-        hatch, lasted = GLYPHS[Charset.BRAILLE].hatch[wait.reason], duration(moment.at - wait.since)
+    since = moment.at if wait is None else waits_since(wait, moment.queues[entity.id])
+    if wait is not None and moment.at - since >= WORTH_TELLING:
+        hatch, lasted = GLYPHS[Charset.BRAILLE].hatch[wait.reason], duration(moment.at - since)
         waited = f"{hatch} waits {lasted}"
         whys = (f"{waited}: {why_waiting(wait, timeline)}", waited, f"{hatch} {lasted}")
-        return CallbackActivity.WAITS, whys, wait.since
+        return CallbackActivity.WAITS, whys, since
     recent = timeline.spans_of(entity.id, Window(moment.at - JUST_NOW, moment.at + 1))
     if recent:
         return CallbackActivity.RAN, (f"· {_threads(recent[-1:], timeline)}",), recent[-1].start

@@ -11,6 +11,7 @@ from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.descriptions import name_of
 from sim.trace.events import EntityKind, GroupKind, Reason
+from sim.trace.figures.waiting import waits_since
 from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -110,7 +111,7 @@ def wait_texts(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, .
     wait = belt.wait
     if wait is None:
         return ()
-    took = duration(max(0, now - wait.since))
+    took = duration(max(0, now - waits_since(wait, belt.queue)))
     verb = "late" if belt.entity.kind is EntityKind.TIMER else "waits"
     full = [f"{verb} {took}: {why}" for why in _why(belt, timeline)]
     brief = [f"{took}: {why}" for why in _why(belt, timeline)]

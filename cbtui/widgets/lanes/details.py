@@ -11,7 +11,7 @@ from cbtui.widgets.lanes.selection import Bar, Selection
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import doing_of, name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind
-from sim.trace.figures.waiting import WORTH_TELLING
+from sim.trace.figures.waiting import WORTH_TELLING, waits_since
 from sim.trace.model import Call, EntityInfo, Nanoseconds, Position, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -79,7 +79,8 @@ def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
     yield from _blocked(timeline, span, now)
     waits = _waits_before(timeline, span)
     if waits:
-        yield f"waited {duration(span.start - waits[0].since)}: {_reasons(timeline, waits)}"
+        since = waits_since(waits[-1], timeline.queue(span.entity, span.start - 1))
+        yield f"waited {duration(span.start - since)}: {_reasons(timeline, waits)}"
     entity = timeline.entities.get(span.entity)
     if entity is not None:
         yield from _cause(timeline, span, entity)
@@ -177,8 +178,9 @@ def _of_wait(timeline: Timeline, wait: Wait, now: Nanoseconds) -> Iterator[str]:
     until = now if wait.end is None or wait.end > now >= wait.start else wait.end
     yield f"{duration(max(0, until - wait.start))} from {timestamp(wait.start)}"
     yield _reason(timeline, wait)
-    if wait.since < wait.start:
-        yield f"ready since {timestamp(wait.since)}"
+    since = waits_since(wait, timeline.queue(wait.entity, max(until - 1, wait.start)))
+    if since < wait.start:
+        yield f"{'ready' if since == wait.since else 'next in its queue'} since {timestamp(since)}"
     if wait.workers_busy:
         yield "no thread was free either"
     entity = timeline.entities.get(wait.entity)

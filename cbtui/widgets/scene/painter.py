@@ -12,6 +12,7 @@ from lessons.description import Actor
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.descriptions import doing_of, why_waiting
+from sim.trace.figures.waiting import waits_since
 from sim.trace.model import EntityInfo, Moment, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -117,7 +118,8 @@ def _state(entity: EntityInfo, timeline: Timeline, moment: Moment) -> _State:
     wait = moment.waiting.get(entity.id)
     if wait is not None:
         reasons = filter(None, (why_waiting(wait, timeline), losses))
-        return _State(0.0, f"waits {duration(at - wait.since)}", "; ".join(reasons), True)
+        waited = duration(at - waits_since(wait, moment.queues[entity.id]))
+        return _State(0.0, f"waits {waited}", "; ".join(reasons), True)
     before = timeline.spans_of(entity.id, Window(max(0, at - _BACK), at + 1))
     if before:
         since = at - before[-1].end_at(at)

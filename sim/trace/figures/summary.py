@@ -8,6 +8,7 @@ from itertools import groupby, pairwise
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, RobotMoved, VelocityCommanded
 from sim.trace.figures.concurrency import threads_at_once
+from sim.trace.figures.waiting import waits_since
 from sim.trace.incremental import Incremental, collect, run_to_end, split
 from sim.trace.model import Call, EntityInfo, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
@@ -18,7 +19,7 @@ _BETWEEN_POSES: Nanoseconds = 20_000_000
 
 @dataclass(frozen=True, slots=True)
 class LongestWait:
-    """The longest wait of a ready callback; ``why`` is the reason of most of that time."""
+    """The longest wait of a callback, or of its next message; ``why`` is the reason of most of that time."""
 
     length: Nanoseconds
     why: str
@@ -139,7 +140,8 @@ def _longest(waits: Iterable[Wait], timeline: Timeline) -> LongestWait | None:
     for _, each in groupby(waits, key=lambda wait: wait.since):
         series = list(each)
         ends = [wait.end_at(timeline.end) for wait in series]
-        length = max(ends) - series[0].start
+        last, end = series[-1], max(ends)
+        length = end - waits_since(last, timeline.queue(last.entity, max(last.start, end - 1)))
         if length > (longest.length if longest else 0):
             shares: defaultdict[str, int] = defaultdict(int)
             for wait, end in zip(series, ends, strict=True):

@@ -1,9 +1,23 @@
 """The callbacks that wait for others: one answer for every pane and sentence."""
 
-from sim.trace.model import Moment, Nanoseconds, Wait
+from sim.trace.events import EntityId, EntityKind
+from sim.trace.model import Moment, Nanoseconds, Queue, Wait
+from sim.trace.timeline import Timeline
 
 WORTH_TELLING: Nanoseconds = 10_000_000
 """Shorter waits are the usual hand-over between callbacks, and are not reported."""
+
+
+def waits_since(wait: Wait, queue: Queue) -> Nanoseconds:
+    """Return since when a callback, or the message that it is to take next from its queue, has waited.
+
+    A callback that took one message while others were queued has waited for less time than they have; if its
+    queue loses messages, for longer, which counts unless only its own last call keeps it from running.
+    """
+    arrived = queue.next_arrived
+    if arrived is None:
+        return wait.since
+    return arrived if wait.holder == wait.entity else min(arrived, wait.since)
 
 
 def waits_for_others(moment: Moment) -> list[Wait]:
@@ -12,6 +26,21 @@ def waits_for_others(moment: Moment) -> list[Wait]:
     The longest is first.
     """
     waits = (wait for wait in moment.waiting.values() if wait.holder != wait.entity)
-    return sorted(
-        (wait for wait in waits if moment.at - wait.since >= WORTH_TELLING), key=lambda wait: wait.since
-    )
+    ordered = sorted((waits_since(wait, moment.queues[wait.entity]), wait.entity) for wait in waits)
+    return [moment.waiting[entity] for since, entity in ordered if moment.at - since >= WORTH_TELLING]
+
+
+def next_in_turn(moment: Moment, timeline: Timeline) -> dict[EntityId, Nanoseconds]:
+    """Return the callbacks that wait for no other one, and since when they or their next messages wait.
+
+    Their own last calls keep them from running, or are just over, and the executor is about to look again.
+    """
+    kinds = (EntityKind.SUBSCRIPTION, EntityKind.SERVICE)
+    found = {
+        entity: arrived
+        for entity in sorted(timeline.active_since(moment.at))
+        if entity not in moment.waiting and timeline.entities[entity].kind in kinds
+        if (arrived := moment.queues[entity].next_arrived) is not None
+    }
+    own = (wait for wait in moment.waiting.values() if wait.holder == wait.entity)
+    return found | {wait.entity: waits_since(wait, moment.queues[wait.entity]) for wait in own}
