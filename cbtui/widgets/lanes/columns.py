@@ -1,7 +1,7 @@
 """Aggregates intervals column by column, so that the cost of a lane does not depend on their number."""
 
 from bisect import bisect_left
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from math import inf
 from operator import attrgetter
 from typing import Generic, NamedTuple, Protocol, TypeAlias, TypeVar
@@ -332,3 +332,14 @@ def stretches(columns: Sequence[LaneColumn[I] | None]) -> list[MergedColumns[I]]
             found.append(MergedColumns(place, [column], top))
         before = top
     return found
+
+
+def nested_stretches(columns: Sequence[LaneColumn[I] | None]) -> Iterator[tuple[int, int]]:
+    """Yield the stretches of columns in which calls lie inside each other: the first, and the one after."""
+    first = None
+    for place, column in enumerate((*columns, None)):
+        if column is not None and column.at_once > 1:
+            first = place if first is None else first
+        elif first is not None:
+            yield first, place
+            first = None

@@ -9,7 +9,7 @@ from cbtui.text.cells import CellRow, fit
 from cbtui.widgets.lanes.axis import draw_axis
 from cbtui.widgets.lanes.bars import BarPainter
 from cbtui.widgets.lanes.cache import LaneCache, LaneSummary
-from cbtui.widgets.lanes.columns import I, IntervalBudget, LaneColumn, LaneColumns, latest
+from cbtui.widgets.lanes.columns import I, IntervalBudget, LaneColumn, LaneColumns, latest, nested_stretches
 from cbtui.widgets.lanes.keys import USUAL_KEYS
 from cbtui.widgets.lanes.labels import LaneLabels
 from cbtui.widgets.lanes.names import more_lanes
@@ -85,12 +85,13 @@ class LanePainter:
         path: Sequence[ChainStep] = (),
         told: Nanoseconds | None = None,
         kept: Collection[EntityId] = (),
+        end: Nanoseconds | None = None,
     ) -> LanePicture:
         """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells.
 
         Words and figures are of the moment ``told``, ``now`` unless given. With ``whole`` there is an
         overview, up to that end; else only where it takes no room. ``path`` stands out on its lanes; the
-        lanes of the callbacks ``kept`` stay longest.
+        lanes of the callbacks ``kept`` stay longest. The run is drawn up to ``end``, if given.
         """
         if timeline is not self.cache.timeline:
             self.cache = LaneCache(timeline)
@@ -103,7 +104,8 @@ class LanePainter:
         chosen = None if selection is None else selection.lane
         lanes = choose_lanes(every, room, timeline, scale.window, chosen, kept)
         moment = timeline.moment(now if told is None else told)
-        frame = _LaneFrame(self, timeline, scale, layout, now, moment, selection, path)
+        known = timeline.end if end is None else end
+        frame = _LaneFrame(self, timeline, scale, layout, now, moment, selection, path, known)
         rows, shown = [], list[Lane]()
         more = rows_granted(lanes, timeline, room - len(lanes) if width >= ROOMY_FROM else 0)
         for lane in lanes if height > 0 else ():
@@ -122,17 +124,6 @@ class LanePainter:
         return LanePicture(tuple(tuple(row) for row in rows), tuple(shown), layout, scale, complete, overview)
 
 
-def _several(columns: Sequence[LaneColumn[Span] | None]) -> Iterator[tuple[int, int]]:
-    """Yield the stretches of columns in which calls lie inside each other: the first, and the one after."""
-    first = None
-    for place, column in enumerate((*columns, None)):
-        if column is not None and column.at_once > 1:
-            first = place if first is None else first
-        elif first is not None:
-            yield first, place
-            first = None
-
-
 class _LaneFrame:
     """One picture while it is painted."""
 
@@ -146,6 +137,7 @@ class _LaneFrame:
         moment: Moment,
         selection: Selection | None,
         path: Sequence[ChainStep],
+        end: Nanoseconds,
     ) -> None:
         self._painter = painter
         self._cache = painter.cache
@@ -160,7 +152,7 @@ class _LaneFrame:
         self.unseen = False
         self._charset = painter.charset
         self._glyphs = GLYPHS[painter.charset]
-        self._edge = max(now, timeline.end) if timeline.ended is None else timeline.end
+        self._edge = max(now, end) if timeline.ended is None else end
         self._calls = LatestCalls(timeline)
         self._numbers = {group: place for place, group in enumerate(timeline.groups)}
         self._labels = LaneLabels(timeline, layout.names, self._glyphs, self._numbers)
@@ -240,7 +232,9 @@ class _LaneFrame:
         columns = self._cache.columns(self._timeline.positions_on, lane.thread.id)
         calls = self._summed(self._cache.spans(lane), unseen)
         if not unseen:  # the first rows are dropped first
-            nested = [each for stretch in _several(calls) for each in self._nested(lane.thread, *stretch)]
+            nested = [
+                each for stretch in nested_stretches(calls) for each in self._nested(lane.thread, *stretch)
+            ]
             self._bars.nested(rows[-1], nested)
             self._bars.inside(rows[0], self._summed(columns, unseen))
         self.unseen = self.unseen or bool(unseen)

@@ -76,6 +76,8 @@ class Lanes(PaintedWidget, can_focus=True):
     _painter = LanePainter(looks=INTERVALS_PER_FRAME)
     _picture: LanePicture | None = None
     _laid_out_for = 0
+    _end: Nanoseconds = 0
+    """The end of the run when the timeline was set; it may have grown before the picture is painted."""
     _goes_on = False
 
     class BarPicked(Message):
@@ -215,6 +217,7 @@ class Lanes(PaintedWidget, can_focus=True):
             self.path,
             self.told,
             self.kept,
+            self._end,
         )
         self._picture = picture
         if not picture.complete:
@@ -256,6 +259,7 @@ class Lanes(PaintedWidget, can_focus=True):
 
     def watch_timeline(self) -> None:
         """Paint again, with another height if there are new lanes."""
+        self._end = self.timeline.end
         # Hidden lanes are not laid out, so the layout is requested until it was done.
         if self._rows_of_lanes(self.size.width) != self._laid_out_for:
             self.refresh(layout=True)

@@ -48,6 +48,22 @@ async def test_a_timeline_that_grew_is_painted_when_it_is_set_again() -> None:
         assert lines_of(lanes) != before
 
 
+async def test_what_came_since_the_timeline_was_set_does_not_make_now_a_past_moment() -> None:
+    app = OneWidget()
+    events = shared_group_run().events
+    async with app.run_test(size=(80, 24)) as pilot:
+        lanes = app.query_one(Lanes)
+        lanes.timeline.extend(event for event in events if event.t < ns(5))
+        lanes.window, lanes.now = Window(0, ns(10)), lanes.timeline.end
+        lanes.timeline = lanes.timeline
+        lanes.timeline.extend(event for event in events if ns(5) <= event.t < ns(6))
+        await pilot.pause()
+        assert "now▲" in lines_of(lanes)[-1]
+        lanes.timeline = lanes.timeline
+        await pilot.pause()
+        assert "cursor▲" in lines_of(lanes)[-1]
+
+
 async def test_only_lines_that_changed_are_drawn_again() -> None:
     app = OneWidget()
     async with app.run_test(size=(80, 24)) as pilot:
