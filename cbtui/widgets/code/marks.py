@@ -72,7 +72,8 @@ LineMarks: TypeAlias = dict[int, LineMark]
 def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, LineMarks]:
     """Return the lines at which callbacks are at a moment, or the program waits, and the calls to there.
 
-    Sleeps that follow each other at one line are one position, so the text tells how long it has been there.
+    Sleeps that follow each other at one line are one position, so the text tells how long it has been there,
+    and whether that may be more than one sleep.
     """
     found: defaultdict[SourceFile, LineMarks] = defaultdict(dict)
     groups, running = list(timeline.groups), timeline.moment(at).running
@@ -87,19 +88,24 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
         for frame in (*calls, here):
             file = files.of(frame.file)
             if file is not None:
-                texts = tuple(_at_line(position, timeline, at)) if frame is here else ()
+                texts = tuple(_at_line(position, timeline, at, file)) if frame is here else ()
                 found[file][frame.line] = LineMark(texts, number)
     return dict(found)
 
 
-def _at_line(position: Position, timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+def _at_line(position: Position, timeline: Timeline, at: Nanoseconds, file: SourceFile) -> Iterator[str]:
     """Yield the texts of the innermost line; how long it has been there only if that is known."""
     lasted, doing = at - position.start, f"▶ {doing_of(position)}"
     if timeline.is_real and lasted < _SAMPLED:
         yield from (doing, "▶", "")
         return
-    since = f"here for {duration(lasted)}" if position.doing is Doing.SLEEPS else duration(lasted)
-    yield from (f"{doing}, {since}", f"▶ {duration(lasted)}", "")
+    if position.doing is not Doing.SLEEPS:
+        full = f"{doing}, {duration(lasted)}"
+    elif position.line in file.looped:
+        full = f"{doing} in a loop, {duration(lasted)} so far"
+    else:
+        full = f"{doing}, here for {duration(lasted)}"
+    yield from (full, f"▶ {duration(lasted)}", "")
 
 
 def fault_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, LineMarks]:

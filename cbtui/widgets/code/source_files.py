@@ -1,8 +1,10 @@
 """The source files of a run's programs, as they were when the run was started or recorded."""
 
+import ast
 import sysconfig
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
 
@@ -38,6 +40,16 @@ class SourceFile:
     def widest(self) -> int:
         """Columns of the longest line."""
         return max((sum(cell_len(word.text) for word in line) for line in self.lines), default=0)
+
+    @cached_property
+    def looped(self) -> Set[int]:
+        """The lines inside loops, counted from 1."""
+        try:
+            nodes = list(ast.walk(ast.parse(self.text)))
+        except (SyntaxError, ValueError):
+            return frozenset()
+        loops = (node for node in nodes if isinstance(node, ast.For | ast.While | ast.AsyncFor))
+        return {line for loop in loops for line in range(loop.lineno, 1 + (loop.end_lineno or loop.lineno))}
 
     def has_changed(self) -> bool:
         """Whether the file on disk has another text; False if it is recorded or cannot be read."""

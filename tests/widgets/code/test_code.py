@@ -84,6 +84,22 @@ def test_a_line_tells_how_long_a_callback_has_been_there_not_how_long_one_sleep_
     assert lines_at(timeline, ns(4.5), files)[files.main][31].texts[0] == told
 
 
+@pytest.mark.parametrize(
+    ("loop", "looped"), [("for second in range(9)", True), ("while True", True), ("if True", False)]
+)
+def test_a_sleep_inside_a_loop_is_not_told_as_one(tmp_path: Path, loop: str, looped: bool) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(f"import time\n{loop}:\n    time.sleep(1)\n")
+    timeline = sleeper(str(path))[1]
+    thread, timer = next(iter(timeline.threads)), list(timeline.entities)[-1]
+    timeline.extend(
+        [CallbackAt(ns(1.0), timer, thread, Doing.SLEEPS, "", ((str(path), "timer_callback", 3),))]
+    )
+    files = SourceFiles(path)
+    told = "in a loop, 3.5 s so far" if looped else ", here for 3.5 s"
+    assert lines_at(timeline, ns(4.5), files)[files.main][3].texts[0].endswith(told)
+
+
 @pytest.mark.parametrize(("sampled", "told"), [(1.0, "▶ sleeps, here for 3.5 s"), (4.42, "▶ sleeps")])
 def test_on_the_real_clock_a_line_that_was_sampled_just_now_gets_no_time(
     path: Path, sampled: float, told: str
