@@ -1,0 +1,195 @@
+"""The cures that the window of findings offers: tried beforehand, and shown with what they edit."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from threading import Event
+
+import pytest
+
+from cbtui.looks.theme import Charset
+from cbtui.runs.judged.cures import Cure, Verdict
+from cbtui.runs.live.findings import ExplainedFinding
+from cbtui.runs.setup.changes import Changes
+from cbtui.screens.windows import diagnoses
+from cbtui.screens.windows.diagnoses import (
+    ChosenStep,
+    DiagnosesScreen,
+    NextStep,
+    cure_details,
+)
+from sim.diagnosis.cures import Remedy
+from sim.diagnosis.edits.code_edit import CodeEdit
+from tests.screens.test_diagnoses import TURNED, console, press, told_of
+from tests.support.exercises import until
+from tests.support.pictures import text_of
+from tests.support.runs import shared_group_run
+
+EDIT = Cure(
+    Changes(), "let it sleep less", "--- a.py\n+++ a.py, the copy\n@@ -1,1 +1,1 @@\n-sleep(9)\n+sleep(1)"
+)
+
+
+APART = Cure(Changes(threads=2), "spin with two threads")
+
+
+class Trial:
+    """Finds that an edit helps, and nothing else; keeps what was tried."""
+
+    def __init__(self, refusal: str = "") -> None:
+        self.tried: list[Cure] = []
+        self.refusal = refusal
+
+    def cures(self, told: ExplainedFinding) -> Sequence[Cure]:
+        return (APART, EDIT) if told.is_problem and not self.refusal else ()
+
+    def judge(
+        self, _told: ExplainedFinding, cure: Cure, _given_up: Event, note: Callable[[int], object]
+    ) -> Verdict:
+        self.tried.append(cure)
+        note(40)
+        return Verdict(cure is EDIT)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("keys", [("t",), ("down", "enter"), ("down", "t")])
+async def test_a_cure_is_offered_once_it_was_found_to_help(keys: tuple[str, ...]) -> None:
+    async with console() as (app, pilot):
+        chosen: list[ChosenStep | None] = []
+        findings, trial = told_of(shared_group_run().until(TURNED)), Trial()
+        await app.push_screen(DiagnosesScreen(findings, Charset.BRAILLE, trial), chosen.append)
+        await app.workers.wait_for_complete()
+        await pilot.pause()
+        assert trial.tried == [APART, EDIT]
+        assert "→ tried, it helps: let it sleep less" in text_of(app)
+        assert "two threads" not in text_of(app)
+        await press(pilot, "down", "down", "t")
+        assert chosen == []
+        await press(pilot, "up", "up", *keys)
+        assert chosen == [ChosenStep(findings[0], NextStep.CURE, EDIT)]
+
+
+async def test_beside_a_cure_that_helps_another_one_is_being_tried() -> None:
+    class EndlessSecond(Trial):
+        def judge(
+            self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
+        ) -> Verdict:
+            return Verdict(cure is APART or given_up.wait(10))
+
+    async with console() as (app, pilot):
+        screen = DiagnosesScreen(told_of(shared_group_run().until(TURNED)), Charset.BRAILLE, EndlessSecond())
+        await app.push_screen(screen)
+        await until(pilot, lambda: "→ tried, it helps: spin with two" in text_of(app))
+        await until(pilot, lambda: "· Another cure is being tried, for " in text_of(app))
+        await press(pilot, "escape")
+
+
+async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Endless(Trial):
+        def judge(
+            self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
+        ) -> Verdict:
+            note(40)
+            return Verdict(given_up.wait(10))
+
+    now = [100.0]
+    monkeypatch.setattr(diagnoses, "monotonic", lambda: now[0])
+    async with console() as (app, pilot):
+        screen = DiagnosesScreen(told_of(shared_group_run().until(TURNED)), Charset.BRAILLE, Endless())
+        await app.push_screen(screen)
+        await until(pilot, lambda: "A cure is being tried, for 0 s now: 20 %." in text_of(app))
+        now[0] += 7
+        await until(pilot, lambda: "A cure is being tried, for 7 s now: 20 %." in text_of(app))
+        await press(pilot, "escape")
+
+
+@pytest.mark.parametrize(
+    ("answer", "told"),
+    [
+        (Verdict(False), "2 cures tried, none helps here: spin with two threads; let it sleep less."),
+        (
+            Verdict(False, "deadlock"),
+            "2 cures tried, none is enough here: spin with two threads (with it this problem is gone, and "
+            "another one comes: deadlock); let it sleep less (with it this problem is gone, and another one "
+            "comes: deadlock).",
+        ),
+        (
+            Verdict(True, "deadlock"),
+            "A cure was tried: with it this problem is gone, and another one comes: deadlock.",
+        ),
+        (
+            Verdict(None),
+            "Whether a cure helps is not known: the run that was made to try one did not show this problem.",
+        ),
+    ],
+)
+async def test_that_no_cure_helps_is_told_with_what_was_tried(answer: Verdict, told: str) -> None:
+    class InVain(Trial):
+        def judge(
+            self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
+        ) -> Verdict:
+            return answer
+
+    async with console() as (app, pilot):
+        findings = told_of(shared_group_run().until(TURNED))
+        await app.push_screen(DiagnosesScreen(findings, Charset.BRAILLE, InVain()))
+        await app.workers.wait_for_complete()
+        await pilot.pause()
+        assert f"· {told}" in " ".join(line.strip("│ ") for line in text_of(app).splitlines())
+
+
+async def test_where_the_code_is_of_no_simple_shape_it_is_told_that_no_cure_is_offered() -> None:
+    [worst, *_] = told_of(shared_group_run().until(TURNED))
+    explanation = replace(worst.explanation, remedies=(Remedy(edit=CodeEdit("a.py", "", print, ())),))
+
+    class Nothing(Trial):
+        def cures(self, told: ExplainedFinding) -> Sequence[Cure]:
+            return ()
+
+    async with console() as (app, pilot):
+        listed = [replace(worst, explanation=explanation)]
+        await app.push_screen(DiagnosesScreen(listed, Charset.BRAILLE, Nothing()))
+        await pilot.pause()
+        assert "· No cure can be offered here: cbtui only makes small changes by itself" in text_of(app)
+
+
+@pytest.mark.slow
+async def test_what_a_cure_edits_is_shown_line_by_line() -> None:
+    async with console() as (app, pilot):
+        await app.push_screen(
+            DiagnosesScreen(told_of(shared_group_run().until(TURNED)), Charset.BRAILLE, Trial())
+        )
+        await app.workers.wait_for_complete()
+        await press(pilot, "down")
+        shown = text_of(app)
+        assert "Your file stays as it is; a copy is run, with these lines:" in shown
+        assert "-sleep(9)" in shown
+        assert "+sleep(1)" in shown
+
+
+async def test_where_no_cure_can_be_tried_problems_say_why_and_remarks_do_not() -> None:
+    async with console() as (app, pilot):
+        findings = told_of(shared_group_run().until(TURNED))
+        await app.push_screen(DiagnosesScreen(findings, Charset.BRAILLE, Trial("Not on this ground.")))
+        await pilot.pause()
+        assert "· Not on this ground." in text_of(app)
+        assert not findings[-1].is_problem
+        await press(pilot, *["down"] * (len(findings) - 1))
+        assert "Not on this ground." not in text_of(app)
+
+
+def test_lines_that_go_and_come_are_coloured_apart() -> None:
+    told = cure_details(EDIT, Charset.BRAILLE)
+    styles = {told.plain[span.start : span.end].strip(): span.style for span in told.spans}
+    assert styles["-sleep(9)"] == "$text-error"
+    assert styles["+sleep(1)"] == "$text-success"
+    assert cure_details(APART, Charset.BRAILLE).plain == "Spin with two threads."
+
+
+def test_a_cure_that_edits_nothing_tells_what_to_write() -> None:
+    cure = replace(APART, code=("executor = MultiThreadedExecutor(num_threads=2)", "executor.spin()"))
+    assert cure_details(cure, Charset.BRAILLE).plain.splitlines() == [
+        "Spin with two threads.",
+        "Your file stays as it is; to have this in it, write:",
+        "executor = MultiThreadedExecutor(num_threads=2)",
+        "executor.spin()",
+    ]
