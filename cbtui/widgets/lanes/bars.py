@@ -29,15 +29,17 @@ _NUMBER = Ink(Role.MARK, selected=True)
 
 @dataclass(frozen=True, slots=True)
 class BarPainter:
-    """Draws calls and waits into rows. ``now`` is the cursor's time, ``told`` that of the words and figures.
+    """Draws calls and waits into rows, up to ``edge``.
 
-    ``numbers`` is the place of each group.
+    ``now`` is the cursor's time, ``told`` that of the words and figures. ``numbers`` is the place of each
+    group.
     """
 
     timeline: Timeline
     glyphs: Glyphs
     now: Nanoseconds
     told: Nanoseconds
+    edge: Nanoseconds
     numbers: dict[int, int]
 
     def thread(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None]) -> None:
@@ -211,9 +213,9 @@ class BarPainter:
                 if row.cells[: stretch.first + 1][-2:] == [self.glyphs.line] * 2:
                     row.cells[stretch.first] = self.glyphs.line_start
                 span = stretch.top
-                runs = f"runs {self._took(span)}".rstrip()
                 thread = short_thread(self.timeline.threads[span.thread].name)
-                texts = (f"{runs} on {thread}", runs, "runs")
+                runs = [f"runs {took}".rstrip() for took in self._took(span)]
+                texts = (*(text for each in runs for text in (f"{each} on {thread}", each)), "runs")
                 free = [place for place, _ in stretch.places() if place not in marks]
                 self._words(row, *_longest_part(free), texts)
             self._failure(row, stretch)
@@ -248,17 +250,22 @@ class BarPainter:
         took = self._took(wait)
         verb = "waits" if wait.end is None or wait.end > self.told else "waited"
         reasons = self._words_of(wait)
-        if not took:
+        if took == [""]:
             return reasons
-        full = (f"{verb} {took}: {reason}" for reason in reasons)
-        return (*full, f"{took}: {reasons[-1]}", *reasons, f"{verb} {took}", took)
+        full = (f"{verb} {each}: {reason}" for each in took for reason in reasons)
+        return (*full, f"{took[-1]}: {reasons[-1]}", *reasons, f"{verb} {took[-1]}", took[-1])
 
-    def _took(self, interval: Interval) -> str:
-        """Return how long an interval has lasted at ``told``; "" if it begins then or later."""
+    def _took(self, interval: Interval) -> list[str]:
+        """Return texts on how long an interval has lasted at ``told``; "" if it begins then or later.
+
+        Of one that is drawn beyond the cursor the first also tells of how long a time that is.
+        """
         if interval.start >= self.told:
-            return ""
-        end = self.timeline.end if interval.end is None else interval.end
-        return duration(max(0, min(end, self.told) - interval.start))
+            return [""]
+        end = self.edge if interval.end is None else interval.end
+        took = duration(max(0, min(end, self.told) - interval.start))
+        goes_on = self.now < min(end, self.edge)
+        return [f"{took} of {duration(end - interval.start)}", took] if goes_on else [took]
 
     def _words_of(self, wait: Wait) -> tuple[str, ...]:
         if wait.reason is Reason.EVENT_QUEUE:

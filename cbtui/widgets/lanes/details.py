@@ -68,7 +68,8 @@ def _who_runs(timeline: Timeline, span: Span) -> str:
 
 def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
     if span.end is None or span.end > now >= span.start:
-        yield f"has run since {timestamp(span.start)}, for {duration(max(0, now - span.start))}"
+        took = _of_all(now - span.start, span, timeline)
+        yield f"has run since {timestamp(span.start)}, for {took}"
     else:
         yield f"took {duration(span.end - span.start)} at {timestamp(span.start)}"
     if span.error:
@@ -176,7 +177,7 @@ def _who_waits(timeline: Timeline, wait: Wait, now: Nanoseconds) -> str:
 
 def _of_wait(timeline: Timeline, wait: Wait, now: Nanoseconds) -> Iterator[str]:
     until = now if wait.end is None or wait.end > now >= wait.start else wait.end
-    yield f"{duration(max(0, until - wait.start))} from {timestamp(wait.start)}"
+    yield f"{_of_all(until - wait.start, wait, timeline)} from {timestamp(wait.start)}"
     yield _reason(timeline, wait)
     since = waits_since(wait, timeline.queue(wait.entity, max(until - 1, wait.start)))
     if since < wait.start:
@@ -213,6 +214,13 @@ def _caller(timeline: Timeline, call: Call) -> str:
 
 
 # words
+
+
+def _of_all(lasted: Nanoseconds, bar: Span | Wait, timeline: Timeline) -> str:
+    """How long a bar has lasted at the cursor, and how long it lasts if that is known to be longer."""
+    whole = duration(bar.end_at(timeline.end) - bar.start)
+    took = duration(max(0, lasted))
+    return took if took == whole else f"{took} of {whole}"
 
 
 def _with_letter(timeline: Timeline, entity: EntityId) -> str:

@@ -156,7 +156,7 @@ class _LaneFrame:
         self._calls = LatestCalls(timeline)
         self._numbers = {group: place for place, group in enumerate(timeline.groups)}
         self._labels = LaneLabels(timeline, layout.names, self._glyphs, self._numbers)
-        self._bars = BarPainter(timeline, self._glyphs, now, self._told, self._numbers)
+        self._bars = BarPainter(timeline, self._glyphs, now, self._told, self._edge, self._numbers)
         self._status = LaneStatus(timeline, scale.window, moment, self._calls, self._charset, layout.statuses)
 
     def lane(self, lane: Lane) -> list[TextRun]:

@@ -86,7 +86,9 @@ def test_what_still_runs_is_measured_up_to_the_cursor() -> None:
     timeline = told(shared_group_run(), until=12.9)
     long = timeline.spans_on(1, Window(ns(5), ns(6)))[0]
     assert "has run since 4.000 s, for 8.9 s" in details_of(timeline, long, ns(12.9)).facts
-    assert "has run since 4.000 s, for 2.0 s" in details_of(timeline, long, ns(6)).facts
+    assert "has run since 4.000 s, for 2.0 s of 8.9 s" in details_of(timeline, long, ns(6)).facts
+    wait = next(iter(timeline.moment(ns(6)).waiting.values()))
+    assert "2.0 s of 8.9 s from 4.003 s" in details_of(timeline, wait, ns(6)).facts
 
 
 def test_a_timer_tells_its_period_and_how_late_it_was() -> None:

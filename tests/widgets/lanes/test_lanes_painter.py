@@ -56,13 +56,13 @@ def test_words_and_figures_are_of_the_moment_that_is_told_and_bars_go_on() -> No
     assert "MainThread  │▎▎▎▎▎A timer_callback ███████████████████████████▌│" in behind
 
 
-def test_no_label_at_a_cursor_in_the_past_knows_how_long_what_begins_there_will_last() -> None:
+def test_a_label_in_the_past_tells_how_much_of_its_bar_is_over_but_not_if_it_begins_there() -> None:
     timeline = told(shared_group_run(), until=12.9)
     window = Window(ns(3.0), ns(12.9))
     shown = plain(LanePainter().paint(timeline, window, ns(4.003), 80, 8).rows)
     assert "odom      │▎▎▎▎▎╱╱ group A held by timer_callback ××" in shown
     assert "scan      │▎▎▎▎▎╱╱ group A held by timer_callback ××" in shown
-    assert "timer     │▎ ▎  ── runs 3.0 ms on MainThread ──" in shown
+    assert "timer     │▎ ▎  ── runs 3.0 ms of 8.9 s on MainThread ──" in shown
 
 
 @pytest.mark.parametrize(
@@ -247,10 +247,10 @@ def test_a_failed_call_is_crossed() -> None:
 @pytest.mark.parametrize(
     ("reason", "words"),
     [
-        (Reason.GROUP_HELD, "╱╱ waits 5.0 s: group A held by tick_callback ╱"),
-        (Reason.NO_FREE_WORKER, "╲╲ waits 5.0 s: no free worker ╲"),
-        (Reason.EVENT_QUEUE, "≡≡ waits 5.0 s: behind others in the event queue ≡"),
-        (Reason.NOBODY_SPINS, "╳╳ waits 5.0 s: nobody spins ╳"),
+        (Reason.GROUP_HELD, "╱╱ waits 5.0 s of 19.0 s: group A held by tick_callback ╱"),
+        (Reason.NO_FREE_WORKER, "╲╲ waits 5.0 s of 19.0 s: no free worker ╲"),
+        (Reason.EVENT_QUEUE, "≡≡ waits 5.0 s of 19.0 s: behind others in the event queue ≡"),
+        (Reason.NOBODY_SPINS, "╳╳ waits 5.0 s of 19.0 s: nobody spins ╳"),
     ],
 )
 def test_each_reason_has_its_texture_and_its_words(reason: Reason, words: str) -> None:
@@ -264,7 +264,7 @@ def test_a_wait_is_told_as_of_the_cursor() -> None:
     timeline = told(shared_group_run())
     before = plain(LanePainter().paint(timeline, Window(0, ns(30)), ns(10), 140, 7).rows)
     after = plain(LanePainter().paint(timeline, Window(0, ns(30)), ns(26), 140, 7).rows)
-    assert "waits 6.0 s: group A held by timer_callback" in before
+    assert "waits 6.0 s of 20.0 s: A held by timer_callback" in before
     assert "waited 20.0 s: group A held by timer_callback" in after
 
 
@@ -378,7 +378,7 @@ def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
         |A exclusive │── held by timer_callback on MainThread ──────────│ held           |
         |  odom      │                         ╱╱ A held by timer ╱╱╱╱╱╱│ queue 1/10     |
         |  scan      │                                                 ┊│ queue 0/10     |
-        |  timer     │── runs 3.5 ms on MainThread ─────────────────────│ on time        |
+        |  timer     │── runs 3.5 ms of 10.0 s on MainThread ───────────│ on time        |
         |seconds     │     4.0026    4.0028    4.0030    4.0032  cursor▲│ 20 µs/col      |
         """
     )
