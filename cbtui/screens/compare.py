@@ -162,7 +162,7 @@ class CompareScreen(SizedScreen[None]):
             TextRun(f"   {duration(shown.length)} on screen", _FAINT),
         )
         for number, side in enumerate(self._sides):
-            self.query_one(f"#run{number}", HeadingLine).words = _about(number, side, at)
+            self.query_one(f"#run{number}", HeadingLine).words = _about(number, side)
             lanes = self._lanes(number)
             # Nothing is known of a run after its end, even of a callback that was still running.
             lanes.window, lanes.now = shown, min(at, side.timeline.end)
@@ -369,10 +369,11 @@ class CompareScreen(SizedScreen[None]):
         self.dismiss()
 
 
-def _about(number: int, side: ComparedSide, at: Nanoseconds) -> tuple[TextRun, ...]:
+def _about(number: int, side: ComparedSide) -> tuple[TextRun, ...]:
     timeline = side.timeline
     state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
-    facts = [text for text in (state, f"lost {timeline.dropped(at)}", executor_label(timeline)) if text]
+    lost = f"lost {timeline.dropped(timeline.end)}"
+    facts = [text for text in (state, lost, executor_label(timeline)) if text]
     name = TextRun(f" {RUNS[number]}  {side.name}", _STRONG)
     return (name, *(TextRun(f"   {fact}", _PLAIN) for fact in facts))
 

@@ -203,6 +203,14 @@ async def test_the_end_of_a_run_is_told_whole_where_its_executor_has_no_room() -
             assert "…" not in line
 
 
+async def test_what_a_run_lost_up_to_its_end_is_told_beside_that_end_wherever_the_cursor_is() -> None:
+    async with compared(*sides()) as (app, pilot):
+        lost = lanes(app)[0].timeline.dropped(ns(14.0))
+        assert f"ends at 14.000 s   lost {lost}   " in text_of(app)
+        await press(app, pilot, "G", *["backspace"] * 8, "1", "enter")
+        assert f"ends at 14.000 s   lost {lost}   " in text_of(app)
+
+
 async def test_a_stretch_that_only_one_run_has_says_so() -> None:
     async with compared(*sides((14.0, 3.0))) as (app, pilot):
         await press(app, pilot, "w")
