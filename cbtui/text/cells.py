@@ -16,16 +16,18 @@ _UNSHOWABLE = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Zs"}
 _PICTURES = {chr(code): chr(0x2400 + code) for code in range(0x20)} | {"\x7f": "␡", "\xa0": " "}
 
 _TAB = 8
-_MOST_COLUMNS = 90
+MOST_COLUMNS = 90
 """The widest lines of running text that are read with ease."""
 
 
-def lines_of_text(text: str, width: int, charset: Charset = Charset.BRAILLE) -> list[str]:
-    """Break running text, made safe to display, into lines of ``width`` columns at most, or 90.
+def lines_of_text(
+    text: str, width: int, charset: Charset = Charset.BRAILLE, most: int = MOST_COLUMNS
+) -> list[str]:
+    """Break running text, made safe to display, into lines of ``width`` columns at most, or of ``most``.
 
     A last word that would be left alone on its line takes the one before it along.
     """
-    shown, width = visible(text, charset), min(width, _MOST_COLUMNS)
+    shown, width = visible(text, charset), min(width, most)
     lines = wrap(shown, width, break_on_hyphens=False)
     if len(lines) > 1 and " " not in lines[-1] and " " in lines[-2]:
         before, _, taken = lines[-2].rpartition(" ")

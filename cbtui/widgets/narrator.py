@@ -6,7 +6,7 @@ from textual.geometry import Size
 from textual.reactive import reactive
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
-from cbtui.text.cells import fit, lines_of_text
+from cbtui.text.cells import MOST_COLUMNS, fit, lines_of_text
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.diagnosis.words import group_of, thread_count
@@ -50,19 +50,25 @@ class Narrator(PaintedWidget):
     charset: reactive[Charset] = painted(Charset.BRAILLE)
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
-        """Paint the sentences, each on as many rows as it takes."""
+        """Paint the sentences, each on as many rows as it takes; on wider ones if they do not fit else."""
         width = max(20, size.width)
-        glyphs = GLYPHS[self.charset]
-        lines: list[tuple[str, Ink]] = []
-        for place, text in enumerate(narration(self.timeline, self.now, self.stepped)):
-            sign = f" {glyphs.forth} " if place == 0 else "   "
-            for line in lines_of_text(text, width - 6, self.charset):
-                lines.append((f"{sign}{line}", _NEXT if place else _FIRST))
-                sign = "     "
+        told = narration(self.timeline, self.now, self.stepped)
+        lines = self._lines(told, width - 6, MOST_COLUMNS)
+        if len(lines) > size.height > 0:
+            lines = self._lines(told, width - 6, width)
         if len(lines) > size.height > 0:
             last, ink = lines[size.height - 1]
-            lines[size.height - 1 :] = [(f"{last} {glyphs.ellipsis}", ink)]
+            lines[size.height - 1 :] = [(f"{last} {GLYPHS[self.charset].ellipsis}", ink)]
         return [[TextRun(fit(line, width, self.charset), ink)] for line, ink in lines]
+
+    def _lines(self, told: Sequence[str], width: int, most: int) -> list[tuple[str, Ink]]:
+        lines: list[tuple[str, Ink]] = []
+        for place, text in enumerate(told):
+            sign = "   " if place else f" {GLYPHS[self.charset].forth} "
+            for line in lines_of_text(text, width, self.charset, most):
+                lines.append((f"{sign}{line}", _NEXT if place else _FIRST))
+                sign = "     "
+        return lines
 
 
 def narration(timeline: Timeline, at: Nanoseconds, stepped: bool = False) -> tuple[str, ...]:

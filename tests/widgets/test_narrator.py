@@ -128,7 +128,21 @@ def test_what_has_no_room_is_told_of_by_an_ellipsis(charset: Charset, at: int, w
     )
     words = visible(" ".join(narration(RUNS[0], at)), charset).split()
     assert " ".join(whole).split()[1:] == words, "nothing is cut but by the height"
-    assert shown == whole or shown[-1].endswith(GLYPHS[charset].ellipsis)
+    is_whole = " ".join(shown).split() == " ".join(whole).split()
+    assert is_whole or shown[-1].endswith(GLYPHS[charset].ellipsis)
+
+
+def test_on_a_wide_screen_sentences_use_its_width_before_any_is_cut() -> None:
+    run = Run()
+    group = run.exclusive(run.node("/n"))
+    thread = run.thread("MainThread")
+    for number in range(6):
+        run.callback(run.timer(group, f"tick_number_{number}", 1.0), thread, 1.0, 0.0)
+    narrator = Narrator()
+    narrator.timeline, narrator.now = told(run, until=1.5), ns(1.0)
+    narrow, wide = (narrator.rows(Size(width, ROWS)) for width in (100, 200))
+    assert narrow[-1][0].text.rstrip().endswith("…")
+    assert not any("…" in row[0].text for row in wide)
 
 
 def test_nothing_has_happened_in_an_empty_run() -> None:

@@ -63,12 +63,15 @@ class Playhead:
         return replace(self, at=at, start=self._start_that_shows(at, end))
 
     def beside(self, timelines: Sequence[Timeline], end: Nanoseconds, step: int) -> "Playhead":
-        """Go to the previous (``step`` < 0) or next event of any run; after the last, follow the end."""
+        """Go to the previous (``step`` < 0) or next event of any run.
+
+        Before the first one is the beginning; after the last, the cursor follows the end.
+        """
         neighbours = [timeline.neighbour(self.now(end), None, step) for timeline in timelines]
         found = [at for at in neighbours if at is not None]
         if found:
             return self.moved_to(min(found) if step > 0 else max(found), end)
-        return self.live() if step > 0 else self
+        return self.live() if step > 0 else self.moved_to(0, end)
 
     def live(self) -> "Playhead":
         """Follow the end again."""

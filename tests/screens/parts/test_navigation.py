@@ -46,6 +46,16 @@ def test_every_move_is_told() -> None:
     assert navigation.playhead.follows
 
 
+def test_before_the_first_event_a_step_back_leads_to_the_beginning() -> None:
+    navigation, _ = over(told(shared_group_run()))
+    first = navigation.timelines()[0].neighbour(0, None, 1)
+    assert first
+    navigation.seek(first)
+    navigation.action_step_back()
+    assert navigation.now == 0
+    assert not navigation.offers("step_back", ())
+
+
 def test_of_two_runs_the_nearer_event_is_next() -> None:
     runs = told(shared_group_run()), told(dummy_server_run())
     navigation, _ = over(*runs)
