@@ -196,3 +196,40 @@ def test_a_long_call_is_told_at_the_line_that_took_most_of_it_or_that_led_to_suc
     place = found.rule.explain(found, timeline).place
     assert place is not None
     assert line in path.read_text().splitlines()[place.first_line - 1]
+
+
+TALKS_FASTER = """
+import time
+
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from std_msgs.msg import Empty
+
+
+def hear(_):
+    time.sleep(0.5)  # too long
+
+
+rclpy.init()
+node = rclpy.create_node("slow")
+news = node.create_publisher(Empty, "t", 10)
+node.create_timer(0.1, lambda: news.publish(Empty()), callback_group=MutuallyExclusiveCallbackGroup())
+node.create_subscription(Empty, "t", hear, {depth})
+executor = MultiThreadedExecutor(2)
+executor.add_node(node)
+executor.spin()
+"""
+
+
+@pytest.mark.parametrize(("depth", "rule"), [(2, "dropped-messages"), (100, "falls-behind")])
+def test_what_is_too_slow_for_its_messages_is_told_at_the_line_that_takes_the_time(
+    tmp_path: Path, depth: int, rule: str
+) -> None:
+    path = tmp_path / "slow.py"
+    path.write_text(TALKS_FASTER.format(depth=depth))
+    timeline = run_to_end(program_setup(path, 4.0)).timeline
+    [found] = [each for each in diagnose(timeline) if each.rule.id == rule]
+    place = found.rule.explain(found, timeline).place
+    assert place is not None
+    assert "too long" in path.read_text().splitlines()[place.first_line - 1]

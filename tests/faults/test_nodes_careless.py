@@ -15,8 +15,8 @@ from tests.support.daily import first_daily
 
 AT = f"node.py:{FIRST}"
 NO_NUMBERS = """\
-velocity = Twist(linear=Vector3(x=float('nan')), angular=Vector3(z=float('inf')))
-self.create_publisher(Twist, 'cmd_vel', 10).publish(velocity)
+self.wheels = getattr(self, 'wheels', None) or self.create_publisher(Twist, 'cmd_vel', 10)
+self.wheels.publish(Twist(linear=Vector3(x=float('nan')), angular=Vector3(z=float('inf'))))
 """
 ALL = Window(0, 1 << 62)
 

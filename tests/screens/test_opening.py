@@ -39,7 +39,7 @@ def console(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> CbtuiApp:
         ((), "e", "opening the exercise"),
         ((), "n", "opening lesson 4: "),
         (("ctrl+r",), "C", "opening …"),
-        (("q",), "enter", "opening lesson 1: Single thread"),
+        (("q",), "enter", "opening lesson 3: Split groups"),
     ],
 )
 async def test_a_key_says_at_once_what_it_opens(

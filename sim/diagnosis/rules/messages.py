@@ -16,6 +16,7 @@ from sim.diagnosis.rule import (
     by_edit,
     entity_of,
     line_location,
+    line_of,
     loop_beside_spin,
     place_of,
 )
@@ -63,19 +64,18 @@ class DroppedMessages(Rule):
         entity = entity_of(found, timeline)
         subject = who(found.subject, timeline)
         waits = timeline.waits_of(entity.id, Window(found.until, found.until + 1))
-        because = ""
+        because, place = "", place_of(found.subject, timeline)
         if waits:
             own = waits[-1].holder == entity.id
+            if own:
+                place = line_of(entity.id, Window(found.at, found.until + 1), timeline)
             because = (
                 f" while its {'last call' if found.count == 1 else 'calls'} ran"
                 if own
                 else f" while it waited ({why_waiting(waits[-1], timeline)})"
             )
         room = remedy_for_waits([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
-        cure, place = (
-            room.words(timeline) or f"let {subject} return sooner",
-            place_of(found.subject, timeline),
-        )
+        cure = room.words(timeline) or f"let {subject} return sooner"
         if waits and waits[-1].reason is Reason.NOBODY_SPINS:
             (loop, how), room = loop_beside_spin(found.until, timeline), Remedy()
             cure, place = (how, loop) if loop else ("keep spinning its node", place)

@@ -136,7 +136,7 @@ async def test_what_the_menu_tells_of_a_lesson(
     app.animation_level = "none"
     predict(app, lessons()[1].id)
     async with app.run_test(size=WIDE) as pilot:
-        await press(pilot, "down")
+        await press(pilot, "home", "down")
         await until(pilot, lambda: bool(engines.sessions))
         engines.latest.end()
         await until(pilot, lambda: app.screen.query_one(Miniature).subject is not None)
