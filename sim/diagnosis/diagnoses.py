@@ -74,7 +74,7 @@ class Diagnoses:
         ]
         left.sort(key=self._rank, reverse=True)
         # Of several findings with one culprit the first by rank is the cause.
-        causes = {each.culprit: each for each in left if each.rule.by_culprit}
+        causes = {each.culprit: each for each in left if each.rule.by_culprit and each.culprit}
         parted = [each if each.due_to in causes else replace(each, due_to=0) for each in left]
         weights = {each.key: each.rule.weigh(each, timeline) for each in parted}
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from lessons.checks import never_stuck
-from sim.diagnosis import Finding, diagnose
+from sim.diagnosis import Finding, Weight, diagnose
 from sim.trace.events import Printed, ProgramAt, SpinClashed
 from tests.support.daily import first_row_daily
 from tests.support.engine_runs import Run, run_program
@@ -345,3 +345,34 @@ def test_a_spin_that_came_back_is_not_said_to_keep_the_next_from_being_reached(
     text = text.replace("class Listener", f"    def stop(self):\n        {last_words}\n\n\nclass Listener")
     found = diagnose(run_program(tmp_path, text, 3.0).timeline)
     assert "spin-not-reached" not in {each.rule.id for each in found}
+
+
+def test_what_a_node_loses_once_a_spin_has_taken_it_is_put_down_to_that_and_no_thread_is_called_spare(
+    tmp_path: Path,
+) -> None:
+    text = program("rclpy.spin_until_future_complete(self, future, timeout_sec=0.5)", MULTI).replace(
+        "        self.create_timer(0.5, self.tick)",
+        "        self.create_subscription(String, 'news', lambda message: None, 2)\n"
+        "        self.create_timer(0.5, self.tick)",
+    )
+    text = text.replace("rclpy.init()", PAPER)
+    run = run_program(tmp_path, text, 4.0)
+    nested, lost = diagnose(run.timeline)
+    assert nested.rule.id == "nested-spin"
+    assert lost.rule.id == "dropped-messages"
+    assert lost.rule.weigh(lost, run.timeline) is Weight.REMARK
+    told = lost.rule.explain(lost, run.timeline)
+    assert "while it waited (nobody spins)" in told.what
+    assert told.cure == "keep spinning its node; a longer queue only delays it"
+
+
+PAPER = """from std_msgs.msg import String
+
+rclpy.init()
+paper = Node("paper")
+publisher = paper.create_publisher(String, "news", 10)
+paper.create_timer(0.05, lambda: publisher.publish(String()))
+printing = SingleThreadedExecutor()
+printing.add_node(paper)
+threading.Thread(target=printing.spin, daemon=True).start()
+"""

@@ -44,6 +44,7 @@ class DroppedMessages(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield the losses of each second as one."""
+        taken = {clash.node: clash.entity for clash in view.timeline.spin_clashes}
         for entity in view.entities():
             losses = view.timeline.losses_of(entity.id, view.window)
             if losses and (over := view.end_of_program(entity)) is not None:
@@ -55,7 +56,7 @@ class DroppedMessages(Rule):
                 holder = waits[-1].holder if waits else 0
                 if waits and waits[-1].reason is Reason.NOBODY_SPINS:
                     ended = raised_last(entity.node, view.timeline)
-                    holder = ended.entity if ended else 0
+                    holder = ended.entity if ended else taken.get(entity.node, 0)
                 yield Finding(
                     self, times[0], times[-1], entity.id, holder, due_to=holder, size=count, count=count
                 )
@@ -63,7 +64,9 @@ class DroppedMessages(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         entity = entity_of(found, timeline)
         subject = who(found.subject, timeline)
-        waits = timeline.waits_of(entity.id, Window(found.until, found.until + 1))
+        taken = any(each.node == entity.node for each in timeline.spin_clashes)
+        at = timeline.end if taken else found.until  # a node is lost when the spin that took it has returned
+        waits = timeline.waits_of(entity.id, Window(at, at + 1))
         because, place = "", place_of(found.subject, timeline)
         if waits:
             own = waits[-1].holder == entity.id

@@ -37,6 +37,8 @@ class NestedSpin(Rule):
 
     id = "nested-spin"
     summary = "a callback spins the executor that runs it"
+    by_culprit = True
+    hides = frozenset(("threads-never-used",))
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each attempt, and one that cannot end as long as it lasts."""
