@@ -66,11 +66,11 @@ class Diagnoses:
         A finding that is part of another one follows it.
         """
         lasting = [each for each in found if each.until >= timeline.end and each.stuck]
-        hidden = frozenset[str]().union(*(each.rule.hides for each in found))
+        hiding = [each for each in found if each.rule.hides]
         left = [
             each
             for each in found
-            if each.rule.id not in hidden and not (each.rule.is_effect and _is_due_to(lasting, each))
+            if not _is_hidden(each, hiding) and not (each.rule.is_effect and _is_due_to(lasting, each))
         ]
         left.sort(key=self._rank, reverse=True)
         # Of several findings with one culprit the first by rank is the cause.
@@ -86,6 +86,15 @@ class Diagnoses:
 
     def _rank(self, found: Finding) -> tuple[int, Nanoseconds, EntityId, str, EntityId]:
         return self._rules.index(found.rule), found.at, found.subject, found.about, found.culprit
+
+
+def _is_hidden(found: Finding, hiding: Iterable[Finding]) -> bool:
+    """Return whether another finding has a rule that hides this one, on the same culprit if both have one."""
+    return any(
+        found.rule.id in each.rule.hides
+        and (not each.culprit or found.culprit in (0, each.culprit) or found.due_to == each.culprit)
+        for each in hiding
+    )
 
 
 def _is_due_to(lasting: Iterable[Finding], found: Finding) -> bool:

@@ -122,7 +122,8 @@ class Rule(ABC):
     dated_by_first: ClassVar[bool] = False
     """Whether ``at`` is when the first occurrence began; ``until`` is the worst one's end all the same."""
     hides: ClassVar[frozenset[str]] = frozenset()
-    """The rules that are not told beside a finding: what they advise would not help while that stands."""
+    """The rules that are not told beside a finding, of its culprit if both have one: their advice would not
+    help while it stands, or says the same."""
     hangs_from: ClassVar[Nanoseconds | None] = None
     """How long what is found has lasted once it counts as a callback that hangs; None if it never does."""
 

@@ -90,6 +90,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "start what publishes",
         ),
         ("period_of_zero", "always-due", "1 // RATE", "give it a period in seconds"),
+        (
+            "lookup_in_timer",
+            "lookup-keeps-transform",
+            "self.buf.lookup_transform(",
+            "give look a callback group",
+        ),
         ("spin_past_executor", "spin-past-executor", "rclpy.spin(n)", "call ex.spin() in its place"),
         ("hides_a_name", "program-raised", "def handle(self, message):", "hides Node.handle"),
         ("input_in_timer", "program-raised", "input(", "read in another thread"),

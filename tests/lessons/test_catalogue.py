@@ -39,6 +39,7 @@ def test_the_lessons_of_a_unit_stand_together() -> None:
         ("deadlock-over-a-lock", "lock-or-group"),
         ("deadlock-over-a-rate", "rate-sleep-in-a-callback"),
         ("deadlock-over-the-clock", "sim-time-in-a-callback"),
+        ("lookup-keeps-transform", "lookup-in-a-callback"),
         ("group-starvation", "single-thread"),
         ("exception-swallowed", "lost-exceptions"),
         ("overrun-timer", "missed-ticks"),

@@ -81,6 +81,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("two_executors", ["spin all nodes by one executor (diff)"]),
         ("sim_time_without_clock", ["leave use_sim_time false (diff)"]),
         ("period_of_zero", ["keep the fraction of the period (diff)"]),
+        ("lookup_in_timer", [APART.replace("tick", "look"), "ask for the newest transform there is (diff)"]),
         ("spin_past_executor", ["call ex.spin() in its place (diff)"]),
         ("rate_in_main", ["spin the node in a thread beside the loop (diff)"]),
         ("spin_once", ["return from go, and go on where what it waits for is set (diff)"]),

@@ -16,6 +16,7 @@ from sim.diagnosis.rules.services import NobodyOffers, ServiceNeverComes, Unretu
 from sim.diagnosis.rules.spinning import NestedSpin, SpinInConstructor, SpinNotReached, SpinPastExecutor
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
 from sim.diagnosis.rules.timing import FallsBehind, OverlappingCallback, OverrunTimer
+from sim.diagnosis.rules.transforms import LookupKeepsTransform
 from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NodeNeverSpins, NoFreeWorker
 
 RULES: tuple[Rule, ...] = (
@@ -45,6 +46,7 @@ RULES: tuple[Rule, ...] = (
     UnreturnedResponse(),
     CancelIgnored(),
     NeverDestroyed(),
+    LookupKeepsTransform(),
     GroupStarvation(),
     NoFreeWorker(),
     BehindOthers(),

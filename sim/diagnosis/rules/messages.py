@@ -8,6 +8,7 @@ from operator import attrgetter
 from sim.diagnosis.cures import Remedy, remedy_for_waits
 from sim.diagnosis.edits.profiles import match_quality, unmatched_beside
 from sim.diagnosis.edits.shared_data import uses_what_is_set
+from sim.diagnosis.edits.transforms import looks_up
 from sim.diagnosis.rule import (
     Explanation,
     Finding,
@@ -20,6 +21,7 @@ from sim.diagnosis.rule import (
     loop_beside_spin,
     place_of,
 )
+from sim.diagnosis.rules.transforms import LISTENER
 from sim.diagnosis.timeline_view import LongWait, TimelineView, raised_last
 from sim.diagnosis.words import listed, often, who
 from sim.quantities.durations import duration
@@ -161,6 +163,8 @@ class StaleData(Rule):
 
 
 def _may_use_what_is_set(sensor: EntityInfo, timer: EntityInfo) -> bool:
+    if sensor.file.endswith(LISTENER):
+        return looks_up(timer.file, timer.first_line)
     is_known = sensor.file and sensor.file == timer.file
     return not is_known or uses_what_is_set(timer.file, sensor.first_line, timer.first_line) is not False
 
