@@ -213,6 +213,8 @@ class CodeView(InkedView):
                 return self.picked is not None and self._marked_at(self.picked) is not None
             case "let_go":
                 return self.picked is not None
+            case "scroll_left" | "scroll_right":  # Textual's; these keys pan the lanes
+                return False
             case "sideways_left":
                 return self.scroll_offset.x > 0
             case "sideways_right":

@@ -255,6 +255,19 @@ async def test_code_that_is_too_wide_is_scrolled_sideways(tmp_path: Path) -> Non
         assert lines_of(app)[0] == before
 
 
+async def test_the_keys_that_pan_the_lanes_do_not_shift_code_that_is_too_wide(tmp_path: Path) -> None:
+    path = tmp_path / "wide.py"
+    path.write_text("# " + "".join(f"{number:>5}" for number in range(30)) + "\n")
+    app = CodeOnly(path)
+    async with app.run_test(size=(40, 6)) as pilot:
+        await show(pilot, Timeline(), 0.0)
+        app.view.focus()
+        before = lines_of(app)[0]
+        await pilot.press("right")
+        await pilot.pause()
+        assert lines_of(app)[0] == before
+
+
 async def test_the_text_of_a_fault_stands_beside_its_line_and_not_on_it(tmp_path: Path) -> None:
     path = tmp_path / "echo.py"
     path.write_text("class Echo:\n    def on_a_word_that_is_said(self):\n        pass\n")
