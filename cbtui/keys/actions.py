@@ -121,6 +121,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("resume", "space", "go on", "Resume: let time go on"),
         ("undo", "u", "undo", "Take back the last choice of who goes on"),
         ("live", "0", "live", "Go back to the present"),
+        ("to_end", "0", "end", "Go to the end"),
         ("predict", "P", "predict", "Say what you expect of the run; your answer is final"),
         ("explain", "a", "explain", "Explain what happened in the run, and why"),
         ("step", "full_stop", "step", "Go on by one decision; looking back, by one event"),
@@ -215,7 +216,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("zoom_out", "less_than_sign", "zoom", "Show a longer stretch of time"),
         ("zoom_in", "greater_than_sign", "zoom", "Show a shorter stretch of time"),
         ("go_to_time", "G", "go to", "Go to a moment"),
-        ("live", "0", "end", "Go to the end"),
+        ("to_end", "0", "end", "Go to the end"),
         ("maximise", "z", "table", "Enlarge the table; press again to go back"),
         ("enlarge_lanes", "Z", "lanes", "Enlarge the lanes; press again to go back"),
         ("scroll_table_up", "up", "scroll", "Scroll the table up"),
@@ -367,7 +368,7 @@ TASKS = {
             "take_over"
         ),
         "Time": (
-            "pause resume step step_back narrate slower faster earlier later go_to_time live zoom_in "
+            "pause resume step step_back narrate slower faster earlier later go_to_time live to_end zoom_in "
             "zoom_out pan_earlier pan_later"
         ),
         "Ask why": (

@@ -108,6 +108,15 @@ async def test_it_can_be_scrubbed_both_ways(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
+async def test_the_way_back_from_the_past_leads_to_its_end_not_to_a_present(tmp_path: Path) -> None:
+    async with replayed(recording(tmp_path)) as (_, pilot):
+        await press(pilot, "left_square_bracket")
+        keys = lines_of(pilot.app)[-1]
+        assert "0 end" in keys
+        assert "0 live" not in keys
+
+
+@pytest.mark.slow
 async def test_it_plays_at_the_chosen_speed_from_its_beginning_and_stands_at_its_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -36,7 +36,6 @@ _OWN_WORDS = {
     "select": "Say what runs and what waits at this moment",
     "narrate": "Say what the executor decided last, and why",
     "diagnoses": "Say what goes wrong, why, and what to do about it; a cure can be tried in a live run",
-    "live": "Go back to the present, or to the end of a recording",
     "leave": "End the run and leave",
     "compare": "Say what differs from the run before",
     "zoom_in": "Report shorter calls and waits, too",

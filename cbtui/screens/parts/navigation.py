@@ -58,7 +58,8 @@ class TimeNavigation(ScreenPart):
             "pan_later": playhead.follows or self.window.end > end,
             "step": playhead.at is None and (run is None or not run.can_step),
             "step_back": self.now == 0,
-            "live": playhead.follows,
+            "live": playhead.follows or run is None,
+            "to_end": playhead.follows or run is not None,
             "later": playhead.at is None,
             "zoom_in": playhead.span == SPANS[0],
             "zoom_out": playhead.span == SPANS[-1],
@@ -107,6 +108,10 @@ class TimeNavigation(ScreenPart):
     def action_live(self) -> None:
         """Follow the end of the run."""
         self.move(self.playhead.live())
+
+    def action_to_end(self) -> None:
+        """Go to the end of what is over."""
+        self.action_live()
 
     def action_zoom_in(self) -> None:
         """Show a shorter stretch of time."""

@@ -15,7 +15,7 @@ from tests.support.fake_session import FakeEngines
 from tests.support.runs import dummy_server_run, shared_group_run
 from tests.widgets.pictures import told
 
-NOW_OR_NEVER = ("live", "later", "step", "pan_later")
+NOW_OR_NEVER = ("to_end", "later", "step", "pan_later")
 """Actions that go towards the present."""
 
 
@@ -33,7 +33,7 @@ def test_at_the_end_of_a_run_that_is_over_only_the_past_is_offered() -> None:
     assert navigation.offers("earlier", ())
     assert navigation.offers("step_back", ())
     navigation.action_earlier()
-    assert all(navigation.offers(action, ()) for action in ("live", "later", "step"))
+    assert all(navigation.offers(action, ()) for action in ("to_end", "later", "step"))
 
 
 def test_every_move_is_told() -> None:
