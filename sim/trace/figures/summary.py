@@ -123,15 +123,22 @@ def _callbacks(timeline: Timeline, whole: Window) -> Iterator[CallbackFigures]:
 
 
 def _names(timeline: Timeline) -> dict[EntityId, str]:
-    """The name of each entity: its callback, with topic, service or node if the name is not unique."""
+    """The name of each entity: its callback, with topic, service or node if the name is not unique.
+
+    The server and a client of an action have its name both, so that the node tells them apart.
+    """
     spoken = {entity.id: entity.spoken_name for entity in timeline.entities.values()}
     shared = Counter(spoken.values())
     return {
         entity.id: spoken[entity.id]
         if shared[spoken[entity.id]] == 1
-        else f"{spoken[entity.id]} ({entity.name or timeline.nodes.get(entity.node, '')})"
+        else f"{spoken[entity.id]} ({_known_by(entity) or timeline.nodes.get(entity.node, '')})"
         for entity in timeline.entities.values()
     }
+
+
+def _known_by(entity: EntityInfo) -> str:
+    return "" if entity.name == entity.spoken_name else entity.name
 
 
 def _longest(waits: Iterable[Wait], timeline: Timeline) -> LongestWait | None:
