@@ -69,7 +69,11 @@ def told_apart(entity: EntityInfo, timeline: Timeline, reply: str) -> str:
         return entity.label
     if entity.kind is EntityKind.SERVICE:
         return entity.name if entity.label in roster.functions else entity.label
-    return f"{entity.label} {reply}" if entity.kind is EntityKind.CLIENT else entity.callback or entity.label
+    if entity.kind is EntityKind.CLIENT:
+        return f"{entity.label} {reply}"
+    if entity.kind is EntityKind.WAITABLE and not entity.callback:  # an action's server or client
+        return f"{timeline.nodes.get(entity.node, '').rpartition('/')[2]} {entity.label}"
+    return entity.callback or entity.label
 
 
 def entity_name(name: str, room: int, ellipsis: str) -> str:

@@ -2,7 +2,7 @@ import pytest
 
 from cbtui.widgets.lanes.names import group_name, more_lanes, service_name, shortened, thread_name, told_apart
 from cbtui.widgets.lanes.rows import ThreadLane, all_lanes, choose_lanes
-from sim.trace.events import GroupKind
+from sim.trace.events import EntityAppeared, EntityKind, GroupKind
 from sim.trace.model import GroupInfo, ThreadInfo, Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -85,6 +85,19 @@ def test_lanes_of_one_group_have_names_of_their_own() -> None:
     timeline = run_timeline(run)
     names = [told_apart(each, timeline, "◂") for each in timeline.entities.values()]
     assert names == ["bake", "bake ◂", "count", "on_count", "words", "lorry", "/lorry"]
+
+
+def test_the_server_and_the_client_of_an_action_are_named_after_their_nodes() -> None:
+    run = Run()
+    for number, name in enumerate(("/robot", "/yard/dispatcher"), start=1):
+        node = run.node(name)
+        part = EntityAppeared(
+            0, number, node, run.exclusive(node), EntityKind.WAITABLE, "/fetch_it", "", "", 0, 0, 0, 0
+        )
+        run.add(part)
+    timeline = run_timeline(run)
+    names = [told_apart(each, timeline, "◂") for each in timeline.entities.values()]
+    assert names == ["robot fetch_it", "dispatcher fetch_it"]
 
 
 def test_where_lanes_are_few_threads_leave_room_for_callbacks_that_run() -> None:
