@@ -150,6 +150,25 @@ def test_a_callback_that_is_slower_than_its_messages_come_is_told_as_long_as_non
     assert slow_listener(0.3, 10).problems() == {("dropped-messages", "hear")}
 
 
+def test_a_burst_of_messages_that_is_served_in_turn_is_well() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        news = node.create_publisher(Int32, "t", 10)
+
+        def hear(_: object) -> None:
+            simulation.sleep(0.5)
+
+        def burst() -> None:
+            for _ in range(8):
+                news.publish(Int32())
+
+        node.create_subscription(Int32, "t", hear, 10)
+        once(node, 1.0, burst, MutuallyExclusiveCallbackGroup())
+        spin(node, 2)
+
+    assert diagnosed(program).problems() == set()
+
+
 @pytest.mark.parametrize("length", [0.09, 0.0])
 def test_a_callback_that_keeps_up_with_its_messages_is_well(length: float) -> None:
     assert slow_listener(length, 100).problems() == set()

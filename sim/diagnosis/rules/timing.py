@@ -180,9 +180,19 @@ class FallsBehind(Rule):
 
 
 def _is_outrun(entity: EntityInfo, last: Span, timeline: Timeline) -> bool:
-    """Whether the calls up to one followed each other at once, each with an older message."""
+    """Whether the calls up to one followed each other at once, each with an older message, and left more.
+
+    Of a burst of messages each is older, too, but fewer and fewer are left.
+    """
     calls = timeline.spans_of(entity.id, Window(0, last.start + 1))[-_CALLS_IN_TURN:]
-    return len(calls) == _CALLS_IN_TURN and all(
-        one.end is not None and other.start - one.end <= (one.end - one.start) // 10 and other.age > one.age
-        for one, other in pairwise(calls)
+    left = [timeline.queue(entity.id, each.start).depth for each in calls]
+    return (
+        len(calls) == _CALLS_IN_TURN
+        and left[0] < left[-1]
+        and all(
+            one.end is not None
+            and other.start - one.end <= (one.end - one.start) // 10
+            and other.age > one.age
+            for one, other in pairwise(calls)
+        )
     )
