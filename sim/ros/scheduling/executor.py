@@ -252,7 +252,7 @@ class Executor:
                 known = [due for due in (deadline, self._waitables_due, *dues) if due is not None]
                 until = self._waits_until = min(known, default=None) if self._cycle.waits else None
                 self._waiting = True
-            if not self._signal.wait(until):
+            if self._context.ok() and not self._signal.wait(until):  # a signal may just have ended it
                 with self._lock:
                     self._cycle.catch_up()
 

@@ -7,7 +7,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import pytest
 
@@ -309,6 +309,26 @@ def test_a_signal_ends_the_contexts(number: signal.Signals, error: type[BaseExce
         executor.spin()
     killer.join()
     assert not rclpy.ok()
+    rclpy.try_shutdown()
+
+
+@pytest.mark.usefixtures("plain_library")
+def test_a_signal_between_the_last_look_and_the_wait_ends_that(monkeypatch: pytest.MonkeyPatch) -> None:
+    rclpy.init(args=[])
+    executor = SingleThreadedExecutor()
+    executor.add_node(Node("n"))
+    look = executor._raise_if_over
+
+    def look_and_kill(condition: Callable[[], bool]) -> None:
+        look(condition)
+        os.kill(os.getpid(), signal.SIGTERM)
+
+    monkeypatch.setattr(executor, "_raise_if_over", look_and_kill)
+    late = threading.Timer(30.0, executor.shutdown)
+    late.start()
+    with pytest.raises(ExternalShutdownException):
+        executor.spin()
+    late.cancel()
     rclpy.try_shutdown()
 
 
