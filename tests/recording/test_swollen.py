@@ -66,7 +66,8 @@ def test_no_recording_that_is_compressed_as_ours_is_bounded(
 
 def test_a_batch_that_is_larger_than_any_is_left_out(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
-    large = batch.pack_batch(NOTICES * 1100)
+    large = batch.pack_batch(NOTICES * (batch._MOST // len(batch.pack_batch(NOTICES)) + 10))
+    assert batch._MOST < len(large) < 1.1 * batch._MOST
     write(path, [[batch.pack_batch(START)], [large], [batch.pack_batch(NOTICES)]])
     recording = read(path)
     tracemalloc.start()
