@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from msgspec.structs import replace
 
 import sim.ros.rclpy as rclpy
 from sim.diagnosis import Explanation, diagnose
@@ -88,8 +89,11 @@ def test_what_comes_out_of_a_pool_and_ends_the_program_well_is_not_swallowed() -
     events = [each for each in run.trace.events if not isinstance(each, RunEnded)]
     ended = RunEnded(max(each.t for each in events), "the program returned", failed=False)
     assert Diagnosed(Trace([*events, ended])).problems() == set()
-    kept = [each for each in events if not isinstance(each, ExceptionSurfaced)]
-    assert Diagnosed(Trace([*kept, ended])).problems() == {("exception-swallowed", "fails")}
+    [surfaced] = [each for each in events if isinstance(each, ExceptionSurfaced)]
+    kept = [each for each in events if each is not surfaced]
+    of_another_line = replace(surfaced, line=surfaced.line + 1)
+    for others in ([], [of_another_line]):
+        assert Diagnosed(Trace([*kept, *others, ended])).problems() == {("exception-swallowed", "fails")}
 
 
 def test_a_single_threaded_executor_swallows_nothing() -> None:

@@ -222,7 +222,9 @@ class ExceptionSwallowed(Rule):
             return None if ended.error in (None, found.detail) else Weight.PROBLEM
         if timeline.end - found.until < self.threshold and ended is None:
             return None
-        if any(each.t >= found.until and each.error == found.detail for each in timeline.surfaced):
+        span = timeline.spans_of(found.subject, Window(found.at, found.at + 1))[-1]
+        surfaced = {(each.error, each.file, each.line) for each in timeline.surfaced if each.t >= found.until}
+        if (found.detail, *span.raised_at) in surfaced:
             return None
         since = Window(found.until, timeline.end + 1)
         pool = pool_of(found.thread, timeline)
