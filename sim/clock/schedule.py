@@ -39,6 +39,10 @@ class Schedule:
         """The index of the chosen one of ``number`` equal candidates; 0 came first."""
         return 0
 
+    def lateness(self) -> int:
+        """The nanoseconds by which a wait with a deadline ends late."""
+        return 0
+
     def hands_over(self) -> bool:
         """Whether a released lock goes to a waiting thread; otherwise the next thread that asks gets it."""
         return True

@@ -1,4 +1,4 @@
-"""Schedules that a seed names: three strategies of choosing threads, and schedules made of moves."""
+"""Schedules that a seed names: four strategies of choosing threads, and schedules made of moves."""
 
 from collections.abc import Callable, Hashable, Sequence
 from itertools import count
@@ -31,6 +31,19 @@ class RandomWalk(Schedule):
     def hands_over(self) -> bool:
         """True with a probability of one half."""
         return self.choose(2) == 0
+
+
+class BusyMachine(RandomWalk):
+    """As `RandomWalk`, on a machine that is busy: one wait in four ends up to ``LATEST`` nanoseconds late.
+
+    So a timer is called late, and a callback that sleeps takes longer.
+    """
+
+    LATEST = 50_000_000
+
+    def lateness(self) -> int:
+        """Any time up to ``LATEST``, or mostly none."""
+        return self.choose(self.LATEST) if self.choose(4) == 0 else 0
 
 
 class PctSchedule(RandomWalk):
@@ -133,6 +146,7 @@ STRATEGIES: dict[str, Callable[[int], Schedule]] = {
     "pos": PartialOrderSampling,
     "pct": PctSchedule,
     "random": RandomWalk,
+    "busy": BusyMachine,
 }
 """The schedules by the name in front of a seed, such as ``pct:5``."""
 DEFAULT_STRATEGY = "pos"

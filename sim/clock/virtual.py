@@ -130,6 +130,8 @@ class VirtualClock:
         me.current_wait = self._deadlines.number()
         if deadline is not None:
             self._recesses.idle_waits += deadline <= self.time.now
+            if deadline > self.time.now:
+                deadline += self._schedule.lateness()
             self._deadlines.add((deadline, me.current_wait, me))
         self._hand_on(me)
         if me.interrupted:

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim.clock.schedule import Schedule, Seed
-from sim.clock.strategies import PctSchedule, schedule_of
+from sim.clock.strategies import BusyMachine, PctSchedule, schedule_of
 
 SEEDS = st.integers(1, 2**63)
 QUESTIONS = st.lists(st.tuples(st.sampled_from("nlc"), st.integers(1, 5)), max_size=60)
@@ -108,7 +108,7 @@ def test_steps_that_conflict_come_in_both_orders_however_many_others_there_are()
     assert first["pos"] > 2 * first["random"]
 
 
-@pytest.mark.parametrize("seed", [3, "pct:3", "pos:3", "random:3"])
+@pytest.mark.parametrize("seed", [3, "pct:3", "pos:3", "random:3", "busy:3"])
 def test_a_seed_with_a_strategy_makes_the_same_choices_again(seed: Seed) -> None:
     questions = [(question, number) for number in range(1, 5) for question in "nlc"] * 4
     assert answers(schedule_of(seed), questions) == answers(schedule_of(seed), questions)
@@ -120,3 +120,11 @@ def test_what_a_schedule_knows_of_a_thread_goes_with_it() -> None:
     schedule.forget("a")
     schedule.forget("never seen")
     assert list(schedule._priorities) == ["b"]
+
+
+def test_on_a_busy_machine_some_waits_end_late_and_elsewhere_none() -> None:
+    busy = BusyMachine(3)
+    late = [busy.lateness() for _ in range(400)]
+    assert 50 < sum(each > 0 for each in late) < 150
+    assert BusyMachine.LATEST / 2 < max(late) < BusyMachine.LATEST
+    assert not any(schedule_of(seed).lateness() for seed in (0, 3, "pct:3", "random:3", "moves:3=1"))

@@ -4,6 +4,7 @@ import threading
 from collections.abc import Callable
 
 from sim.clock import VirtualClock
+from sim.clock.schedule import Schedule
 from tests.support.simulation import EndedClock, no_thread_left
 
 SECOND = 1_000_000_000
@@ -27,6 +28,22 @@ def test_sleeping_takes_exactly_its_time_and_computing_takes_none() -> None:
         assert clock.now() == 3 * SECOND
 
     on_virtual_time(program)
+
+
+def test_on_a_late_machine_waits_end_late_and_those_of_no_time_do_not() -> None:
+    class Late(Schedule):
+        def lateness(self) -> int:
+            return 7
+
+    with no_thread_left():
+        clock = EndedClock(schedule=Late())
+        ends = []
+        for duration in (3 * SECOND, 0):
+            clock.sleep(duration)
+            ends.append(clock.now())
+        assert not clock.auto_reset_event().wait(4 * SECOND)
+        assert [*ends, clock.now()] == [3 * SECOND + 7, 3 * SECOND + 7, 4 * SECOND + 7]
+        clock.wind_up()
 
 
 def test_a_negative_sleep_takes_no_time() -> None:

@@ -96,3 +96,22 @@ class Mine(Node):
     def see(self):
         self.seen = True
 """
+
+JUST_IN_TIME = f"""import time
+{_HEAD}
+
+class Mine(Node):
+    def __init__(self):
+        super().__init__("kettle")
+        self.boiled = False
+        group = ReentrantCallbackGroup()
+        self.create_timer(0.15, self.boil, callback_group=group)
+        self.create_timer(0.27, self.brew, callback_group=group)
+
+    def boil(self):
+        time.sleep(0.1)
+        self.boiled = True
+
+    def brew(self):
+        assert self.boiled, "cold water"
+"""

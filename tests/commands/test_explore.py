@@ -20,7 +20,14 @@ from cbtui.runs.judged.exploring import Exploration, ScheduleFailure, ScheduleRe
 from cbtui.runs.judged.shards import Shard
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
-from tests.commands.exploring_files import CHECK_THEN_ACT, IN_ONE_GROUP, LOCK_ORDER, LOOPS, LOST_UPDATE
+from tests.commands.exploring_files import (
+    CHECK_THEN_ACT,
+    IN_ONE_GROUP,
+    JUST_IN_TIME,
+    LOCK_ORDER,
+    LOOPS,
+    LOST_UPDATE,
+)
 from tests.support.processes import descendants, wait_until_gone
 
 
@@ -50,6 +57,18 @@ def test_an_order_that_fails_is_found_and_the_simplest_that_does_is_told_and_run
     assert command.endswith(" --seed moves:1=1")
     again = cbtui(*shlex.split(command)[1:])
     assert "AssertionError: 1" in again.stdout + again.stderr
+
+
+def test_only_a_busy_machine_shows_what_is_done_just_in_time(file: Path) -> None:
+    file.write_text(JUST_IN_TIME)
+    words = ("explore", str(file), "--schedules", "12", "--for", "0.4")
+    assert "none failed" in cbtui(*words, "--strategy", "random").stdout
+    explored = cbtui(*words, "--strategy", "busy")
+    assert "brew raised AssertionError\n      cold water" in explored.stdout
+    command = next(line for line in explored.stdout.splitlines() if "cbtui run" in line)
+    assert " --seed busy:" in command
+    again = cbtui(*shlex.split(command)[1:])
+    assert "AssertionError: cold water" in again.stdout + again.stderr
 
 
 @pytest.mark.slow
