@@ -84,7 +84,6 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("close", "escape", "close", "Close the window without opening anything"),
     ),
     Scope.LOG: (
-        ("filter", "/", "filter", "Filter the lines by words, level or writer"),
         ("follow", "f", "follow", "Go to the end of the log, and follow it", _FOLLOWING),
         ("stay", "f", "stay", "Stay at these lines of the log", _FOLLOWING),
         ("line_above", "up", "line", "Show the line above whole", "Show the line above or below whole"),

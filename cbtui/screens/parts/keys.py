@@ -40,7 +40,6 @@ _NOT_ON: Mapping[str, tuple[type[Widget], ...]] = {
     "next_pane": _TYPED_INTO,
     "jump": _TYPED_INTO,
     "copy_details": (*_TYPED_INTO, LogLines, CodeView),
-    "filter_log": (LogLines,),
     "open_source": (CodeView,),
 }
 """Widgets that use an action's keys otherwise while they have the focus."""

@@ -9,7 +9,6 @@ from rich.style import Style
 from textual.binding import BindingType
 from textual.events import Click
 from textual.geometry import Offset
-from textual.message import Message
 from textual.reactive import var
 from textual.strip import Strip
 
@@ -64,9 +63,6 @@ class LogLines(FollowingView):
 
     picked: var[int | None] = var(None)
     """The place of the picked line in the whole log."""
-
-    class FilterWanted(Message):
-        """The user wants to choose which lines are shown."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -186,10 +182,6 @@ class LogLines(FollowingView):
         """Post the picked line's time."""
         if self.picked is not None:
             self.post_message(self.MomentPicked(self._search.timeline.logs[self.picked].t))
-
-    def action_filter(self) -> None:
-        """Ask for a filter."""
-        self.post_message(self.FilterWanted())
 
     def action_copy(self) -> None:
         """Copy the picked line, or else the lines in view, in full."""

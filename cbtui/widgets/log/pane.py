@@ -72,7 +72,6 @@ class LogView(Vertical):
         """Whether a filter is on."""
         return bool(self.query_one(LogFilter).value)
 
-    @on(LogLines.FilterWanted)
     def focus_filter(self) -> None:
         """Show the input of the filter, and focus it."""
         entry = self.query_one(LogFilter)

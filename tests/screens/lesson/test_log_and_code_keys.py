@@ -54,9 +54,13 @@ def tabs(app: RecordedConsole) -> str:
     return next(line for line in lines_of(app) if "1 Guide" in line)
 
 
+@pytest.mark.parametrize("pane", ["2", "5"])
 @pytest.mark.parametrize(("key", "line"), [("slash", LogFilter), ("colon", Prompt)])
-async def test_what_is_typed_in_one_go_goes_where_its_first_key_leads(key: str, line: type[Input]) -> None:
+async def test_what_is_typed_in_one_go_goes_where_its_first_key_leads(
+    key: str, line: type[Input], pane: str
+) -> None:
     async with console() as (app, pilot):
+        await press(pilot, pane)
         for each in (key, *"timer"):  # r alone would reset the world
             app.post_message(Key(each, None if each == key else each))
         await until(pilot, lambda: app.screen.query_one(line).value == "timer")

@@ -47,8 +47,8 @@ def texts(app: App[None]) -> list[str]:
 
 
 async def typed(pilot: Pilot[None], text: str) -> None:
-    pilot.app.query_one(LogLines).focus()
-    await pilot.press("slash")
+    pilot.app.query_one(LogView).focus_filter()
+    await pilot.pause()
     pilot.app.query_one(LogFilter).value = text
     await pilot.pause()
     await pilot.pause()
@@ -121,7 +121,8 @@ async def test_escape_clears_the_filter_and_enter_keeps_it() -> None:
         await pilot.press("enter")
         assert app.query_one(LogLines).has_focus
         assert shown(app)[-1] == "level:warn"
-        await pilot.press("slash", "escape")
+        await typed(pilot, "")
+        await pilot.press("escape")
         await pilot.pause()
         assert app.query_one(LogLines).has_focus
         assert texts(app)[-1] == "line 49"
@@ -159,7 +160,8 @@ async def test_a_log_that_stays_shows_the_same_stretch_when_the_filter_goes() ->
         app.query_one(LogLines).scroll_to(y=20, animate=False, immediate=True)
         await pilot.pause()
         assert texts(app)[0] == "line 200"
-        await pilot.press("slash", "escape")
+        await typed(pilot, "")
+        await pilot.press("escape")
         await pilot.pause()
         assert texts(app)[0] == "line 200"
         assert app.pane.note.endswith("stays")
