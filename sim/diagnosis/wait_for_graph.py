@@ -166,7 +166,8 @@ class WaitForGraph:
             if not position.waits_for_lock:
                 text = f"{me} waits for {thread_name(holder, self._timeline)} to end"
                 return Obstacle(WaitedFor.THREAD, text, (holder,))
-            return Obstacle(WaitedFor.LOCK, f"{me} wants the lock that {self._name(holder)} keeps", (holder,))
+            whose = "it keeps itself" if position.holder == position.thread else f"{self._name(holder)} keeps"
+            return Obstacle(WaitedFor.LOCK, f"{me} wants the lock that {whose}", (holder,))
         if position.call == "Rate.sleep":
             timer = self._waiting_of_rclpy(EntityKind.TIMER, span)
             if timer is not None:

@@ -1,7 +1,7 @@
 """All rules, in the order in which their findings are listed: those that stop a program come first."""
 
 from sim.diagnosis.rule import Rule
-from sim.diagnosis.rules.cancelling import CancelIgnored
+from sim.diagnosis.rules.actions import CancelIgnored, GoalNeverExecuted
 from sim.diagnosis.rules.clocks import AlwaysDue, ClockNeverStarts
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
 from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing, WaitsForLock
@@ -45,6 +45,7 @@ RULES: tuple[Rule, ...] = (
     ExceptionCaught(),
     UnreturnedResponse(),
     CancelIgnored(),
+    GoalNeverExecuted(),
     NeverDestroyed(),
     LookupKeepsTransform(),
     GroupStarvation(),

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from itertools import islice
 
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
+from sim.diagnosis.rules.actions import is_execute_callback
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, thread_count, threads_needed
 from sim.quantities.nanoseconds import SECOND
@@ -74,7 +75,11 @@ class GroupsChangeNothing(Rule):
                 "give callbacks that should run at the same time groups of their own",
                 place_of(found.subject, timeline),
             )
-        groups = [each for each in timeline.groups.values() if each.node == subject.node]
+        groups = [
+            each
+            for each in timeline.groups.values()
+            if each.node == subject.node and _callbacks(timeline, each)
+        ]
         plural = len(groups) > 1
         named = listed(_abbreviated([each.letter for each in groups]))
         return Explanation(
@@ -131,5 +136,9 @@ def _node_with_groups(timeline: Timeline) -> EntityInfo | None:
 
 def _callbacks(timeline: Timeline, group: GroupInfo) -> list[EntityInfo]:
     """The first two entities of a group that a program made: those with a callback, and clients."""
-    members = timeline.group_members(group.id)
-    return list(islice((each for each in members if each.callback or each.kind is EntityKind.CLIENT), 2))
+    made = (
+        each
+        for each in timeline.group_members(group.id)
+        if (each.callback or each.kind is EntityKind.CLIENT) and not is_execute_callback(each)
+    )
+    return list(islice(made, 2))

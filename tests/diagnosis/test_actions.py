@@ -1,11 +1,11 @@
-"""The rule on execute callbacks that do not ask whether their goal is cancelled."""
+"""The rules on the goals of actions: accepted and never executed, or going on after their cancel."""
 
 from pathlib import Path
 
 import pytest
 
 from sim.diagnosis import Explanation, diagnose
-from sim.diagnosis.edits.cancelling import end_if_cancelled
+from sim.diagnosis.edits.actions import end_if_cancelled
 from sim.diagnosis.edits.code_edit import diff
 from tests.diagnosis.edits.edited_source import changed
 from tests.support.engine_runs import run_program
@@ -110,6 +110,65 @@ def test_a_goal_that_ends_soon_after_its_cancel_is_not_told(tmp_path: Path) -> N
 
 def test_a_goal_whose_cancel_comes_after_its_end_is_not_told(tmp_path: Path) -> None:
     assert told(tmp_path, wait=4.5, seconds=9.0) == []
+
+
+ACCEPTED = """
+import rclpy
+from example_interfaces.action import Fibonacci
+from rclpy.action import ActionClient, ActionServer
+from rclpy.executors import MultiThreadedExecutor
+
+def execute(goal):
+    goal.succeed()
+    return Fibonacci.Result()
+
+def ask():
+    timer.cancel()
+    client.send_goal_async(Fibonacci.Goal()).add_done_callback(accepted)
+
+def accepted(future):
+    future.result().get_result_async()
+
+goals = []
+rclpy.init()
+node = rclpy.create_node("node")
+server = ActionServer(node, Fibonacci, "fib", execute, handle_accepted_callback=goals.append)
+client = ActionClient(node, Fibonacci, "fib")
+timer = node.create_timer(0.5, ask)
+rclpy.spin(node)
+"""
+
+
+def test_a_goal_that_nobody_executes_is_told_and_nothing_of_groups_that_nobody_made(tmp_path: Path) -> None:
+    timeline = run_program(tmp_path, ACCEPTED, seconds=4.0).timeline
+    (found,) = diagnose(timeline)
+    said = found.rule.explain(found, timeline)
+    assert said.what == (
+        "a goal of /fib was accepted, and execute has never been called: its result has been waited for "
+        "for 3.5 s"
+    )
+    assert said.place is not None
+    assert said.place.first_line == 21
+    (remedy,) = said.remedies
+    assert remedy.edit is not None
+    edited = remedy.edit.applied(ACCEPTED) or ""
+    assert edited == ACCEPTED.replace(", handle_accepted_callback=goals.append", "")
+    after = diagnose(run_program(tmp_path, edited, seconds=4.0).timeline)
+    assert "goal-never-executed" not in {each.rule.id for each in after}
+
+
+@pytest.mark.parametrize(
+    ("program", "seconds"),
+    [
+        (ACCEPTED, 3.0),
+        (ACCEPTED.replace("=goals.append", "=lambda goal: goal.execute()"), 4.0),
+        (ACCEPTED.replace("get_result_async()", "get_result_async()\n    time.sleep(9)"), 4.0),
+    ],
+    ids=["not for long", "executed", "the executor is kept"],
+)
+def test_a_goal_that_may_still_be_executed_is_not_told(tmp_path: Path, program: str, seconds: float) -> None:
+    timeline = run_program(tmp_path, f"import time{program}", seconds=seconds).timeline
+    assert "goal-never-executed" not in {each.rule.id for each in diagnose(timeline)}
 
 
 @pytest.mark.parametrize(

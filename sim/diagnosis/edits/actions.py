@@ -1,4 +1,4 @@
-"""The edit that lets an action's execute callback end its goal when that is cancelled."""
+"""Edits of action servers: what executes a goal, and what ends one that is cancelled."""
 
 import ast
 
@@ -23,6 +23,22 @@ def end_if_cancelled(source: SourceEditor, line: int, server: tuple[str, int]) -
         f"if {goal}.is_cancel_requested:\n{margin}    {goal}.canceled()\n"
         f"{margin}    return {action}.Result()\n{margin}",
     )
+
+
+def execute_accepted_goals(source: SourceEditor, line: int) -> None:
+    """Leave out the ``handle_accepted_callback`` of the action server that is made at a line."""
+    for call in source.nodes(ast.Call, source.statement_at(line)):
+        given = [*call.args, *(each.value for each in call.keywords)]
+        for each in call.keywords:
+            before = [other for other in given if _place(other) < _place(each.value)]
+            if each.arg == "handle_accepted_callback" and before:
+                source.cut_behind(max(before, key=_place), each.value)
+                return
+    raise NotSimpleError
+
+
+def _place(node: ast.expr) -> tuple[int, int]:
+    return node.lineno, node.col_offset
 
 
 def _action_of(source: SourceEditor, callback: str, line: int) -> str:
