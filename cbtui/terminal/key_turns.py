@@ -6,7 +6,7 @@ Of ``/text`` that comes in one go, as over ssh, the letters would act as keys of
 
 import asyncio
 from collections import deque
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterable
 from typing import Any
 
 from textual.app import App
@@ -37,7 +37,7 @@ class KeyTurns:
 
     async def take(self, key: Key) -> None:
         """Handle a key, now or in its turn."""
-        self._held.append(key)
+        self._held.extend(_apart(key))
         if self._is_free:
             await self._next(self._turn)
 
@@ -61,3 +61,10 @@ class KeyTurns:
                 asyncio.get_running_loop().call_later(PATIENCE, self._app.call_later, self._next, self._turn)
             else:
                 self._app.call_later(self._next, self._turn)
+
+
+def _apart(key: Key) -> Iterable[Key]:
+    """Return escape and a letter for alt and a letter, as terminals send both alike and no key has alt."""
+    if not key.key.startswith("alt+") or key.character is None:
+        return [key]
+    return [Key("escape", None), Key(key.character, key.character)]

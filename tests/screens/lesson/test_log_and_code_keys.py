@@ -67,6 +67,14 @@ async def test_what_is_typed_in_one_go_goes_where_its_first_key_leads(
         assert app.screen.query_one(line).has_focus
 
 
+async def test_escape_and_a_letter_that_come_at_once_are_no_letter_with_alt() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "slash", *"timer")
+        app.post_message(Key("alt+f", "f"))
+        await until(pilot, lambda: app.screen.query_one(LogFilter).value == "")
+        await until(pilot, lambda: tabs(app).rstrip().endswith("186 lines · stays"))
+
+
 async def test_a_slash_filters_the_log_from_wherever_one_is() -> None:
     async with console() as (app, pilot):
         await press(pilot, "slash", *"timer")
