@@ -337,7 +337,8 @@ class Rate:
                 return
             tick = self._host.clock.auto_reset_event()
             self._sleepers.append(tick)
-        tick.wait(None)
+        if self._context.ok():  # a signal may just have ended it
+            tick.wait(None)
         if not self._context.ok():
             raise ROSInterruptException
 

@@ -74,7 +74,8 @@ class EventQueue:
                     return None
                 dues = [due for due in (deadline, self._next_appointment()) if due is not None]
                 self._waiting = True
-            self._signal.wait(min(dues, default=None))
+            if not (self._events or self.stopped):  # of a signal that has just come
+                self._signal.wait(min(dues, default=None))
 
     def _wake(self) -> None:
         if self._waiting:

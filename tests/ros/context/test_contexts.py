@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
+from typing import Any
 
 import pytest
 
@@ -22,11 +23,12 @@ from sim.ros.context.signals import (
     install_signal_handlers,
     uninstall_signal_handlers,
 )
-from sim.ros.exceptions import RCLError
+from sim.ros.exceptions import RCLError, ROSInterruptException
 from sim.ros.middleware import host as hosts
 from sim.ros.middleware.process import Process, current_process
 from sim.ros.node.node import Node
 from sim.ros.rclpy._entities.wait_for_message import wait_for_message
+from sim.ros.scheduling.events_executor import EventsExecutor
 from sim.ros.scheduling.executors import (
     ExternalShutdownException,
     MultiThreadedExecutor,
@@ -312,6 +314,21 @@ def test_a_signal_ends_the_contexts(number: signal.Signals, error: type[BaseExce
     rclpy.try_shutdown()
 
 
+def spin_until_signal(executor: Any) -> None:
+    ended_by_test: list[bool] = []
+
+    def end() -> None:
+        ended_by_test.append(True)
+        executor.shutdown()
+
+    late = threading.Timer(10.0, end)
+    late.start()
+    with pytest.raises(ExternalShutdownException):
+        executor.spin()
+    late.cancel()
+    assert not ended_by_test
+
+
 @pytest.mark.usefixtures("plain_library")
 def test_a_signal_between_the_last_look_and_the_wait_ends_that(monkeypatch: pytest.MonkeyPatch) -> None:
     rclpy.init(args=[])
@@ -324,11 +341,39 @@ def test_a_signal_between_the_last_look_and_the_wait_ends_that(monkeypatch: pyte
         os.kill(os.getpid(), signal.SIGTERM)
 
     monkeypatch.setattr(executor, "_raise_if_over", look_and_kill)
-    late = threading.Timer(30.0, executor.shutdown)
-    late.start()
-    with pytest.raises(ExternalShutdownException):
-        executor.spin()
-    late.cancel()
+    spin_until_signal(executor)
+    rclpy.try_shutdown()
+
+
+@pytest.mark.usefixtures("plain_library")
+def test_a_signal_before_an_events_executor_waits_ends_that(monkeypatch: pytest.MonkeyPatch) -> None:
+    rclpy.init(args=[])
+    executor = EventsExecutor()
+    executor.add_node(Node("n"))
+    due = executor._queue._next_appointment
+
+    def due_and_kill() -> int | None:
+        if sys._getframe(1).f_code.co_name == "next":  # which has looked whether the queue is stopped
+            signal.raise_signal(signal.SIGTERM)
+        return due()
+
+    monkeypatch.setattr(executor._queue, "_next_appointment", due_and_kill)
+    spin_until_signal(executor)
+    rclpy.try_shutdown()
+
+
+@pytest.mark.usefixtures("plain_library")
+def test_a_signal_before_a_rate_sleeps_ends_that() -> None:
+    class Killing(list[Any]):
+        def append(self, sleeper: Any) -> None:
+            signal.raise_signal(signal.SIGTERM)
+            super().append(sleeper)
+
+    rclpy.init(args=[])
+    rate = Node("n").create_rate(1.0)
+    rate._sleepers = Killing()
+    with pytest.raises(ROSInterruptException):
+        rate.sleep()
     rclpy.try_shutdown()
 
 
