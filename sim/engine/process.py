@@ -56,6 +56,7 @@ from sim.engine.watchdogs.repeatability import Repeatability
 from sim.engine.watchdogs.standstill import StandstillDetector
 from sim.interpreter import safe_path
 from sim.probes.probe import Probe
+from sim.probes.synchronisers import SynchroniserFollower
 from sim.robot.bullet import WorldUnavailable
 from sim.ros import importing
 from sim.ros.middleware.contents import Contents
@@ -170,6 +171,7 @@ class Engine:
             report_uncaught(self._tell_of_error, program.path, str(Path(program.path).resolve().parent))
         install(self._host)
         importing.install()
+        self._follow_synchronisers()
         self._starter.add_own_interfaces()
         run_edited(setup.texts)
         use_workspace(self._starter.packages, clock)
@@ -191,6 +193,11 @@ class Engine:
             {"outbox": self._outbox, "probe": self._probe, "host": self._host, "clock": clock}
         )
         self._modules = set_engine_apart()
+
+    def _follow_synchronisers(self) -> None:
+        from sim.ros_packages.message_filters import following  # needs rclpy, which is the model from now on
+
+        following.follow = partial(SynchroniserFollower, self._probe, self._clock.now, self._control.record)
 
     def _live_on(self, clock: VirtualClock) -> None:
         """Move Python's waits to the virtual clock, and start the watchdogs.

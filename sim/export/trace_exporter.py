@@ -78,6 +78,7 @@ class TraceExporter:
             ev.CallbackFailed: self._open_calls.fail,
             ev.Published: self._published,
             ev.QosMismatched: self._qos_mismatched,
+            ev.SynchroniserJudged: self._synchroniser_judged,
             ev.ServiceCalled: self._service_called,
             ev.ServiceReplied: self._service_replied,
             ev.RequestLost: self._request_lost,
@@ -268,6 +269,11 @@ class TraceExporter:
         self._add_text(
             "notices", event.t, f"{printable(event.topic)}: quality of service does not match", args
         )
+
+    def _synchroniser_judged(self, event: ev.SynchroniserJudged) -> None:
+        topics = ", ".join(map(printable, event.topics))
+        text = f"synchroniser of {topics}: {'a set' if event.matched else 'nothing'} is handed on"
+        self._add_text("notices", event.t, text, {"line": event.made_at[1]})
 
     def _request_lost(self, event: ev.RequestLost) -> None:
         track = self._layout.service(event.service)

@@ -68,6 +68,7 @@ class RunStores:
         self.shell: History[ShellEvent] = History(attrgetter("t"), ShellEvent, spill)
         self.notices: History[ev.Notice] = History(attrgetter("t"), ev.Notice, spill)
         self.mismatches: History[ev.QosMismatched] = History(attrgetter("t"), ev.QosMismatched, spill)
+        self.synchronisers: dict[tuple[str, int], ev.SynchroniserJudged] = {}
         self.spin_clashes: History[ev.SpinClashed] = History(attrgetter("t"), ev.SpinClashed, spill)
         self.surfaced: History[ev.ExceptionSurfaced] = History(attrgetter("t"), ev.ExceptionSurfaced, spill)
         self.program_positions: History[ev.ProgramAt] = History(attrgetter("t"), ev.ProgramAt, spill)
@@ -133,6 +134,7 @@ class RunStores:
             ev.ExceptionSurfaced: self.surfaced.add,
             ev.Published: self._published,
             ev.QosMismatched: self.mismatches.add,
+            ev.SynchroniserJudged: self._judged,
             ev.ServiceCalled: self._service_called,
             ev.ServiceReplied: self._service_replied,
             ev.RequestLost: self.calls.lose,
@@ -243,6 +245,9 @@ class RunStores:
 
     def _command_given(self, event: ev.CommandGiven) -> None:
         self.marks.add(AxisMark(event.t, AxisMarkKind.COMMAND, event.text))
+
+    def _judged(self, event: ev.SynchroniserJudged) -> None:
+        self.synchronisers[event.made_at] = event
 
     def _printed(self, event: ev.Printed) -> None:
         self.logs.add(event)

@@ -91,6 +91,8 @@ class Timeline:
         """The accesses to shared data that nothing kept apart, in order."""
         self.mismatches: Sequence[ev.QosMismatched] = run.mismatches
         """The incompatible publishers and subscriptions, in order."""
+        self.synchronisers: Mapping[tuple[str, int], ev.SynchroniserJudged] = run.synchronisers
+        """The latest judgement of each synchroniser that had to be judged, by where it is made."""
         self.spin_clashes: Sequence[ev.SpinClashed] = run.spin_clashes
         """The attempts to spin what was already being spun, in order."""
         self.surfaced: Sequence[ev.ExceptionSurfaced] = run.surfaced

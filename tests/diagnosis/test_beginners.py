@@ -89,6 +89,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "use_sim_time",
             "start what publishes",
         ),
+        (
+            "equal_stamps_only",
+            "never-synchronised",
+            "TimeSynchronizer(filters, 10)",
+            "take an ApproximateTimeSynchronizer with slop=0.01",
+        ),
         ("period_of_zero", "always-due", "1 // RATE", "give it a period in seconds"),
         (
             "lookup_in_timer",

@@ -62,6 +62,8 @@ def test_golden_lines() -> None:
         '{"t":1.5,"event":"publish","node":"robot","callback":"timer_callback","entity":"/odom","message_id":7}',
         '{"t":1.5,"event":"qos_mismatch","node":"/sub_node","callback":"odom_callback","entity":"/odom",'
         '"policy":"RELIABILITY","publisher":"node.py:9","subscription":"node.py:12"}',
+        '{"t":1.5,"event":"synchroniser","callback":"odom_callback","made_at":"node.py:14","topics":["/odom"],'
+        '"slop":5e-9,"apart":9e-9,"mostly":9e-9,"matched":false}',
         '{"t":1.5,"event":"topic","entity":"/odom","type":"std_msgs/msg/Bool","definition":"bool data\\n"}',
         '{"t":1.5,"event":"message","entity":"/odom","message_id":7,"size":5}',
         f'{{"t":1.502,"event":"ready",{about},"depth":1,"message_id":7}}',

@@ -14,6 +14,7 @@ from sim.diagnosis.rules.overlooked import AnswerOverlooked
 from sim.diagnosis.rules.parameters import ParameterOverruled
 from sim.diagnosis.rules.services import NobodyOffers, ServiceNeverComes, UnreturnedResponse
 from sim.diagnosis.rules.spinning import NestedSpin, SpinInConstructor, SpinNotReached, SpinPastExecutor
+from sim.diagnosis.rules.synchronisers import NeverSynchronised
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
 from sim.diagnosis.rules.timing import FallsBehind, OverlappingCallback, OverrunTimer
 from sim.diagnosis.rules.transforms import LookupKeepsTransform
@@ -39,6 +40,7 @@ RULES: tuple[Rule, ...] = (
     NobodyOffers(),
     QosMismatch(),
     MisspeltTopic(),
+    NeverSynchronised(),
     ParameterOverruled(),
     AnswerOverlooked(),
     ExceptionSwallowed(),

@@ -10,6 +10,7 @@ from rclpy.duration import Duration
 from rclpy.logging import get_logger
 from rclpy.time import Time
 
+from sim.ros_packages.message_filters import following
 from sim.ros_packages.message_filters.simple_filter import SimpleFilter
 
 __all__ = [
@@ -161,6 +162,7 @@ class TimeSynchronizer(SimpleFilter):
         """Connect to these filters only."""
         filters = list(fs)
         self.queues: list[dict[int, Any]] = [{} for _ in filters]
+        self._follower = following.follow(self, [getattr(each, "topic_name", "") for each in filters])
         self.input_connections = [
             each.registerCallback(self.add, queue, index)
             for index, (each, queue) in enumerate(zip(filters, self.queues, strict=True))
@@ -170,20 +172,23 @@ class TimeSynchronizer(SimpleFilter):
         """Keep a message. If it completes a set, pass the set on and drop older messages."""
         stamp = Time.from_msg(msg.header.stamp).nanoseconds
         with self.lock:
-            self._remember(msg, stamp, my_queue)
+            self._remember(msg, stamp, my_queue, my_queue_index)
             if all(stamp in queue for queue in self.queues):
                 self._hand_on([stamp] * len(self.queues))
                 for queue in self.queues:
                     for older in [each for each in queue if each < stamp]:
                         del queue[older]
 
-    def _remember(self, msg: Any, stamp: int, queue: dict[int, Any]) -> None:
+    def _remember(self, msg: Any, stamp: int, queue: dict[int, Any], index: int | None) -> None:
+        if index is not None:
+            self._follower.got(index, stamp)
         queue[stamp] = msg
         while len(queue) > self.queue_size:
             del queue[min(queue)]
 
     def _hand_on(self, stamps: Sequence[int]) -> None:
         """Pass on the messages of these stamps, one of each filter, and drop them."""
+        self._follower.handed_on()
         chosen = list(zip(self.queues, stamps, strict=True))
         self.signalMessage(*(queue[stamp] for queue, stamp in chosen))
         for queue, stamp in chosen:
@@ -210,7 +215,7 @@ class ApproximateTimeSynchronizer(TimeSynchronizer):
             return
         stamp = time.nanoseconds
         with self.lock:
-            self._remember(msg, stamp, my_queue)
+            self._remember(msg, stamp, my_queue, my_queue_index)
             if stamp not in my_queue:
                 return  # the message is older than all that are kept
             others = [

@@ -7,12 +7,14 @@ from sim.trace.events.fields import (
     Cdr,
     Maybe,
     MessageId,
+    Nanoseconds,
     NodeId,
     ServiceName,
     SourcePlace,
     ThreadId,
     TopicId,
     TopicName,
+    TopicNames,
     TypeName,
     WireOnly,
 )
@@ -44,6 +46,32 @@ class QosMismatched(TraceEvent, frozen=True, tag="qos_mismatch"):
     """Where the program makes the publisher, as ``file:line``."""
     subscription: Maybe[SourcePlace] = ("", 0)
     """Where the program makes the subscription, as ``file:line``."""
+
+
+class SynchroniserJudged(TraceEvent, frozen=True, tag="synchroniser"):
+    """A synchroniser of ``message_filters`` has handed on none of many messages, or after that does.
+
+    It is recorded at most three times for one synchroniser: while a topic has brought nothing, when all have,
+    and once a set is handed on after all. The callback is the one in which that is noticed.
+    """
+
+    entity: CallbackId
+    made_at: SourcePlace
+    """Where the program makes the synchroniser, as ``file:line``."""
+    topics: TopicNames
+    """Topics whose messages it brings together; empty for one that is unknown."""
+    messages: WireOnly[tuple[int, ...]]
+    """How many messages of each topic came."""
+    stamps: WireOnly[tuple[int, ...]]
+    """Newest stamp of each topic, in nanoseconds; 0 also if it was not set."""
+    slop: Nanoseconds
+    """How far the stamps of a set may be apart, less than that; 0: they have to be equal."""
+    apart: Nanoseconds
+    """Least distance of a message of the rarest topic from the nearest of the others."""
+    mostly: Nanoseconds
+    """Distance that three of four messages of the rarest topic do not exceed."""
+    matched: bool
+    """Whether a set has been handed on."""
 
 
 class TopicAppeared(TraceEvent, frozen=True, tag="topic"):

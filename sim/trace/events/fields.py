@@ -153,6 +153,9 @@ LineId: TypeAlias = Annotated[int, JsonForm("line")]
 TopicName: TypeAlias = Annotated[str, JsonForm("entity")]
 """Name of the topic or service."""
 
+TopicNames: TypeAlias = Annotated[tuple[str, ...], JsonForm("topics", convert=list)]
+"""Names of topics."""
+
 ServiceName: TypeAlias = Annotated[str, JsonForm("entity")]
 
 LoggerName: TypeAlias = Annotated[str, JsonForm("node")]
