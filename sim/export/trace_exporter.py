@@ -75,6 +75,7 @@ class TraceExporter:
             ev.CallbackSuspended: self._callback_suspended,
             ev.CallbackResumed: self._callback_resumed,
             ev.SpinClashed: self._spin_clashed,
+            ev.TimesKept: self._times_kept,
             ev.CallbackFailed: self._open_calls.fail,
             ev.Published: self._published,
             ev.QosMismatched: self._qos_mismatched,
@@ -253,6 +254,10 @@ class TraceExporter:
     def _spin_clashed(self, event: ev.SpinClashed) -> None:
         text = f"{event.function}() asks to spin what is being spun"
         self._add_text("notices", event.t, text, {"line": event.line})
+
+    def _times_kept(self, event: ev.TimesKept) -> None:
+        text = f"a clock was set back, and {', '.join(map(printable, event.attributes))} kept"
+        self._add_text("notices", event.t, text, {"by": event.length / 1e9})
 
     # messages and services
 

@@ -5,7 +5,7 @@ lock held or uses nothing shared, and only appends to the sink.
 """
 
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import count
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -201,13 +201,6 @@ class Probe:
         """The ids of the recorded threads, by identifier; any thread may call this."""
         return {ident: here.get("thread", 0) for ident, here in list(self._everywhere.items())}
 
-    def many_made(self, number: int, kind: str) -> None:
-        """Warn that callbacks keep creating entities of one kind; the node has ``number`` of them."""
-        self._warn(
-            f"a node has {number:,} {kind}, and its callbacks make more ({place_of_caller()}): each stays "
-            "until it is destroyed; make what the node needs once, in __init__"
-        )
-
     def node_destroyed_by_itself(self, name: str, entity: TracedEntity) -> None:
         """Warn that the callback on the calling thread destroys its own node."""
         self._warn(
@@ -235,6 +228,10 @@ class Probe:
 
     def _warn(self, text: str, entity: int = 0, **more: Any) -> None:
         self._sink(events.Notice(self._now(), Severity.WARN, text, entity, **more))
+
+    def times_kept(self, node: int, length: int, attributes: Sequence[str]) -> None:
+        """Record that a node still holds times of before its clock was set back, by so much."""
+        self._sink(events.TimesKept(self._now(), node, length, tuple(attributes)))
 
     def spin_clashed(self, node: int = 0, *, refused: bool = False) -> None:
         """Record that the calling thread spins what is being spun; ``node`` was taken from that executor."""

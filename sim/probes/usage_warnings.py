@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from sim.probes.own_code import call_into_ros, is_result_dropped
+from sim.probes.own_code import call_into_ros, is_result_dropped, place_of_caller
 from sim.trace.events import NoticeKind
 
 _AT_ONCE = 10_000_000
@@ -62,6 +62,13 @@ class UsageWarnings:
             problem = f"{number} publishers of a topic were made in callbacks, and none was destroyed"
             advice = "make one in __init__"
             self._tell_of(place, NoticeKind.PUBLISHERS_KEPT, problem, advice, number)
+
+    def many_made(self, number: int, kind: str) -> None:
+        """Warn that callbacks keep creating entities of one kind; the node has ``number`` of them."""
+        self._warn(
+            f"a node has {number:,} {kind}, and its callbacks make more ({place_of_caller()}): each stays "
+            "until it is destroyed; make what the node needs once, in __init__"
+        )
 
     def _caller(self) -> tuple[int, int, int]:
         return threading.get_ident(), self._here.entity, self._here.begun

@@ -223,6 +223,7 @@ _KEYS: dict[type, tuple[str, str]] = {
     ev.GroupAppeared: ("group", "group"),
     ev.EntityAppeared: ("entity", "entity"),
     ev.QosMismatched: ("mismatch", "topic"),
+    ev.TimesKept: ("times kept", "node"),
     ev.SynchroniserJudged: ("synchroniser", "made_at"),
     ev.TopicAppeared: ("topic", "topic"),
     ev.ServiceCalled: ("call", "call"),

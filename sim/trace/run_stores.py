@@ -69,6 +69,7 @@ class RunStores:
         self.notices: History[ev.Notice] = History(attrgetter("t"), ev.Notice, spill)
         self.mismatches: History[ev.QosMismatched] = History(attrgetter("t"), ev.QosMismatched, spill)
         self.synchronisers: dict[tuple[str, int], ev.SynchroniserJudged] = {}
+        self.times_kept: dict[ev.NodeId, ev.TimesKept] = {}
         self.spin_clashes: History[ev.SpinClashed] = History(attrgetter("t"), ev.SpinClashed, spill)
         self.surfaced: History[ev.ExceptionSurfaced] = History(attrgetter("t"), ev.ExceptionSurfaced, spill)
         self.program_positions: History[ev.ProgramAt] = History(attrgetter("t"), ev.ProgramAt, spill)
@@ -129,6 +130,7 @@ class RunStores:
             ev.CallbackSuspended: self._callback_suspended,
             ev.CallbackResumed: self._callback_resumed,
             ev.SpinClashed: self.spin_clashes.add,
+            ev.TimesKept: self._times_kept,
             ev.ProgramAt: self.program_positions.add,
             ev.CallbackFailed: self._callback_failed,
             ev.ExceptionSurfaced: self.surfaced.add,
@@ -245,6 +247,9 @@ class RunStores:
 
     def _command_given(self, event: ev.CommandGiven) -> None:
         self.marks.add(AxisMark(event.t, AxisMarkKind.COMMAND, event.text))
+
+    def _times_kept(self, event: ev.TimesKept) -> None:
+        self.times_kept[event.node] = event
 
     def _judged(self, event: ev.SynchroniserJudged) -> None:
         self.synchronisers[event.made_at] = event

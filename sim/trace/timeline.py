@@ -93,6 +93,8 @@ class Timeline:
         """The incompatible publishers and subscriptions, in order."""
         self.synchronisers: Mapping[tuple[str, int], ev.SynchroniserJudged] = run.synchronisers
         """The latest judgement of each synchroniser that had to be judged, by where it is made."""
+        self.times_kept: Mapping[ev.NodeId, ev.TimesKept] = run.times_kept
+        """The latest times that each node kept over a jump of its clock."""
         self.spin_clashes: Sequence[ev.SpinClashed] = run.spin_clashes
         """The attempts to spin what was already being spun, in order."""
         self.surfaced: Sequence[ev.ExceptionSurfaced] = run.surfaced

@@ -95,6 +95,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "TimeSynchronizer(filters, 10)",
             "take an ApproximateTimeSynchronizer with slop=0.01",
         ),
+        ("time_of_before", "times-kept", "self.done_at = now", "in a jump callback"),
         ("period_of_zero", "always-due", "1 // RATE", "give it a period in seconds"),
         (
             "lookup_in_timer",

@@ -1,10 +1,12 @@
-"""Timers that are never due, or always: by a clock that does not go, or a period of zero."""
+"""Timers that are never due, or always, by a clock that does not go, or a period of zero; and kept times."""
 
 from pathlib import Path
 
 import pytest
 
 from sim.diagnosis import Weight, diagnose
+from sim.diagnosis.edits.clocks import follow_jumps, kept_at
+from sim.diagnosis.edits.code_edit import CodeEdit
 from tests.support.engine_runs import run_program
 
 FOLLOWER = """
@@ -45,3 +47,34 @@ rclpy.spin(node)
 """
     run = run_program(tmp_path, text, 2.0)
     assert not [each for each in diagnose(run.timeline) if each.rule.weight is Weight.PROBLEM]
+
+
+LOOKS = "if self.done_at is None or now >= self.done_at:"
+
+
+@pytest.mark.parametrize(
+    ("change", "into", "until", "told"),
+    [
+        ("look", "look", 2.5, False),
+        ("look", "look", 2.7, True),
+        (LOOKS, "if True:", 4.0, False),
+        (LOOKS, f"{LOOKS[:-1]} or now < self.done_at - Duration(seconds=1.5):", 4.0, False),
+        ("self.ticks < 20", "self.ticks < 99", 4.0, False),
+    ],
+    ids=["too early", "kept", "renewed", "found out", "never set back"],
+)  # fmt: skip
+def test_a_time_is_told_that_a_node_keeps_though_its_clock_is_set_back(
+    change: str, into: str, until: float, told: bool, tmp_path: Path
+) -> None:
+    text = (Path(__file__).parent / "beginners" / "time_of_before.py").read_text()
+    found = diagnose(run_program(tmp_path, text.replace(change, into), until).timeline)
+    assert ("times-kept" in {each.rule.id for each in found}) is told
+
+
+def test_a_time_that_is_set_back_with_the_clock_is_not_told(tmp_path: Path) -> None:
+    path = Path(__file__).parent / "beginners" / "time_of_before.py"
+    text = path.read_text()
+    edit = CodeEdit(str(path), "", follow_jumps, (kept_at(str(path), "done_at"), "done_at"))
+    changed = edit.applied(text)
+    assert changed is not None
+    assert not diagnose(run_program(tmp_path, changed, 4.0).timeline)

@@ -92,6 +92,7 @@ def test_golden_lines() -> None:
         '"loop":"node.py:69"}',
         '{"t":2.25,"event":"spin_clash","node":"/sub_node","callback":"odom_callback",'
         '"function":"spin_until_future_complete","file":"node.py","line":60}',
+        '{"t":2.25,"event":"times_kept","node":"/sub_node","length":8.0,"attributes":["done_at"]}',
         f'{{"t":2.25,"event":"callback_error",{about},"thread":"talker-1 MainThread",'
         '"message":"IndexError: no beam 720","file":"node.py","line":60}',
         f'{{"t":2.25,"event":"callback_end",{about},"thread":"talker-1 MainThread"}}',

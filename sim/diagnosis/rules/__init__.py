@@ -2,7 +2,7 @@
 
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.actions import CancelIgnored, GoalNeverExecuted
-from sim.diagnosis.rules.clocks import AlwaysDue, ClockNeverStarts
+from sim.diagnosis.rules.clocks import AlwaysDue, ClockNeverStarts, TimesKept
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
 from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing, WaitsForLock
 from sim.diagnosis.rules.errors import ExceptionCaught, ExceptionSwallowed, ProgramRaised, SpinRaised
@@ -41,6 +41,7 @@ RULES: tuple[Rule, ...] = (
     QosMismatch(),
     MisspeltTopic(),
     NeverSynchronised(),
+    TimesKept(),
     ParameterOverruled(),
     AnswerOverlooked(),
     ExceptionSwallowed(),

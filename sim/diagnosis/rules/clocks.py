@@ -1,7 +1,9 @@
-"""Rules on timers that are never due, or always."""
+"""Rules on timers that are never due, or always, and on times of a clock that is set back."""
 
 from collections.abc import Iterable, Iterator
+from itertools import chain, islice
 
+from sim.diagnosis.edits.clocks import follow_jumps, kept_at
 from sim.diagnosis.edits.timers import keep_the_fraction, leave_sim_time_off, sim_time_set_at
 from sim.diagnosis.rule import (
     Explanation,
@@ -16,8 +18,10 @@ from sim.diagnosis.rule import (
 )
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, who
+from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind
+from sim.trace.events import TimesKept as Kept
 from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -74,6 +78,39 @@ def _never_ran(clock: EntityInfo, among: Iterable[EntityInfo], timeline: Timelin
         and 2 * each.period <= timeline.end
         and not _calls(each.id, timeline)
     ]
+
+
+class TimesKept(Rule):
+    """A node goes on with times of its simulated clock from before that was set back."""
+
+    id = "times-kept"
+    summary = "a node keeps times of a simulated clock that is set back"
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each node of which the trace says so, with the callback that sets the time if it is known."""
+        for event in view.timeline.times_kept.values():
+            every = view.timeline.entities.values()
+            own = [each for each in every if each.node == event.node and place_of(each.id, view.timeline)]
+            line = kept_at(own[0].file, event.attributes[0]) if own else 0
+            setter = (each for each in own if each.first_line <= line <= each.last_line)
+            for entity in islice(chain(setter, own), 1):
+                yield Finding(self, event.t, view.end, entity.id, event=event)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        event, entity = found.event, entity_of(found, timeline)
+        assert isinstance(event, Kept)
+        line = kept_at(entity.file, event.attributes[0])
+        place, names = line_location(entity.file, line), listed(event.attributes)
+        is_one = len(event.attributes) == 1
+        was, lies, it = ("was", "lies", "it") if is_one else ("were", "lie", "them")
+        return Explanation(
+            f"{names} {was} kept when the simulated clock was set back by {duration(event.length)}",
+            f"rclpy tells timers of a jump, but not what a node remembers: {names} {lies} in the future "
+            "until the clock comes there again",
+            f"set {it} back, or forget {it}, in a jump callback: get_clock().create_jump_callback()",
+            place or place_of(found.subject, timeline),
+            remedies=by_edit(place, f"set {names} back with the clock", follow_jumps, *event.attributes),
+        )
 
 
 class AlwaysDue(Rule):

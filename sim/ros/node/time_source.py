@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from sim.interfaces import message, rcl_interfaces
 from sim.ros.clocks.clock import Clock, ROSClock
 from sim.ros.entities.subscription import Subscription
+from sim.ros.node.kept_times import KeptTimes
 from sim.ros.parameters.parameter import Parameter
 from sim.ros.qos.qos import QoSProfile, ReliabilityPolicy
 from sim.ros.scheduling.entity import OwnerNode
@@ -34,6 +35,7 @@ class TimeSource:
         self._associated_clocks: list[ROSClock] = []
         self._last_time_set = Time(clock_type=ClockType.ROS_TIME)
         self._ros_time_is_active = False
+        self._kept = KeptTimes()
         if node is not None:
             self.attach_node(node)
 
@@ -102,9 +104,16 @@ class TimeSource:
 
     def clock_callback(self, msg: Any) -> None:
         """Set the clocks to the time of a rosgraph_msgs/msg/Clock."""
+        node, before = self._get_node(), self._last_time_set.nanoseconds
         self._last_time_set = Time.from_msg(msg.clock)
+        now = self._last_time_set.nanoseconds
+        if node is not None and now < before:
+            self._kept.jumps_back(node, before, now)
         for clock in self._associated_clocks:
             clock.set_ros_time_override(self._last_time_set)
+        names = [] if node is None else self._kept.still_kept(node, now)
+        if node is not None and names:
+            node.context.probe.times_kept(node.trace_id, self._kept.length, names)
 
     def _subscribe_to_clock_topic(self) -> None:
         node = self._get_node()

@@ -78,7 +78,7 @@ class Agenda:
     def report_many(self, number: int, kind: str) -> None:
         """Report a node whose callbacks create ever more entities, when their number reaches ``MANY``."""
         if number == MANY and self._probe.callback_here():
-            self._probe.many_made(number, kind)
+            self._probe.usage.many_made(number, kind)
 
     def remove(self, entity: Entity) -> bool:
         """Remove an entity; False if it was not on the agenda."""

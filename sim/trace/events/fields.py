@@ -156,6 +156,9 @@ TopicName: TypeAlias = Annotated[str, JsonForm("entity")]
 TopicNames: TypeAlias = Annotated[tuple[str, ...], JsonForm("topics", convert=list)]
 """Names of topics."""
 
+AttributeNames: TypeAlias = Annotated[tuple[str, ...], JsonForm("attributes", convert=list)]
+"""Names of attributes of the node."""
+
 ServiceName: TypeAlias = Annotated[str, JsonForm("entity")]
 
 LoggerName: TypeAlias = Annotated[str, JsonForm("node")]

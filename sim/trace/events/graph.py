@@ -4,6 +4,7 @@ from enum import StrEnum
 
 from sim.trace.events.event import TraceEvent
 from sim.trace.events.fields import (
+    AttributeNames,
     CallbackId,
     EntityId,
     ExecutorId,
@@ -127,6 +128,15 @@ class EntityGone(TraceEvent, frozen=True, tag="entity_gone"):
     """An entity was destroyed."""
 
     entity: EntityId
+
+
+class TimesKept(TraceEvent, frozen=True, tag="times_kept"):
+    """A node still holds times of its simulated clock, half a second after it was set back."""
+
+    node: NodeId
+    length: Nanoseconds
+    """How far the clock was set back."""
+    attributes: AttributeNames
 
 
 class SpinClashed(TraceEvent, frozen=True, tag="spin_clash"):
