@@ -1,10 +1,11 @@
 """Topics and services whose two ends do not meet, as their names or their types differ."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from sim.diagnosis.rules.names import nearest
+from sim.diagnosis.rules.names import is_slip, nearest
 from sim.interfaces import message, service
 from sim.ros.node.node import Node
 from sim.trace.events import ArenaShown
@@ -112,6 +113,56 @@ def test_topics_of_different_names_and_one_that_is_heard_are_well() -> None:
 )
 def test_names_are_alike_but_for_a_letter_their_case_or_their_namespace(name: str, near: str) -> None:
     assert nearest(name, ["/chatter", "/scan" if near == "/scan" else "/robot/scan", "/cmd_vel"]) == near
+
+
+def test_a_slip_in_a_topic_that_another_node_hears_is_told_with_the_name_that_is_meant() -> None:
+    def program(also: str, kind: type) -> Callable[[Simulation], None]:
+        def run(_: Simulation) -> None:
+            node = Node("n")
+            publisher = node.create_publisher(Int32, "chatter", 10)
+            node.create_timer(0.5, lambda: publisher.publish(Int32(data=1)))
+            node.create_subscription(Int32, "chatter", lambda _: None, 10)
+            node.create_subscription(kind, also, lambda _: None, 10)
+            spin(node, None)
+
+        return run
+
+    run = diagnosed(program("chattr", Int32), 2.0)
+    told = run.explained("misspelt-topic")
+    assert told.what.endswith(
+        "nobody publishes on /chattr; did you mean /chatter, which is published by <lambda>?"
+    )
+    assert told.cure == "if one topic is meant, give it one name: subscribe to /chatter"
+    assert len(told.remedies) == 1
+    assert diagnosed(program("chattr", Bool), 2.0).told() == set()
+    assert diagnosed(program("chatter2", Int32), 2.0).told() == set()
+
+
+@pytest.mark.parametrize(
+    ("name", "other", "slip"),
+    [
+        ("/chatter", "/chattr", True),
+        ("/odom", "/odmo", True),
+        ("/cmd_vel", "/cnd_vel", True),
+        ("/joint_state", "/joint_states", True),
+        ("/Scan", "/scan", True),
+        ("/robot/scan", "/robot/scann", False),
+        ("/scan", "/scan2", False),
+        ("/scan1", "/scan2", False),
+        ("/wheel_l", "/wheel_r", False),
+        ("/arm_fl_goal", "/arm_fr_goal", False),
+        ("/left/image", "/right/image", False),
+        ("/image", "/image_raw", False),
+        ("/scan", "/rscan", False),
+        ("/map", "/mop", False),
+        ("/front", "/floor", False),
+    ],
+)
+def test_a_slip_is_a_letter_in_a_word_and_not_what_tells_two_sensors_apart(
+    name: str, other: str, slip: bool
+) -> None:
+    assert is_slip(name, other) is is_slip(other, name) is slip
+    assert not is_slip(name, name)
 
 
 def test_a_topic_with_two_types_is_told_with_both_lines() -> None:

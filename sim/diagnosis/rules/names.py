@@ -1,7 +1,8 @@
 """The rule on misspelt topics, and the likeness of names of topics and services."""
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from difflib import SequenceMatcher
+from functools import lru_cache
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.names import rename, rename_publisher
@@ -24,7 +25,8 @@ class MisspeltTopic(Rule):
     """A subscription's topic has no publisher, and a topic of nearly the same name no subscription.
 
     The robot's ``/cmd_vel`` counts as a subscription's. If that lasts for a while, both ends are probably
-    meant to be one topic.
+    meant to be one topic. Of topics that others hear only one of the same type is taken to be meant, whose
+    name differs by a slip.
     """
 
     id = "misspelt-topic"
@@ -35,18 +37,18 @@ class MisspeltTopic(Rule):
         """Yield each subscription that hears nothing, with the topic that it may be meant for."""
         timeline = view.timeline
         ends = [each for each in timeline.entities.values() if each.kind is EntityKind.SUBSCRIPTION]
-        heard = {each.name for each in ends}
+        heard = {each.name: each.interface_type for each in ends}
         unheard = [name for name in timeline.names_sent if name not in heard]
         unheard = [name for name in unheard if name not in timeline.services_called][:_MOST]
         silent = [each for each in ends if each.made_at[0] and not timeline.sent_on(each.name)][:_MOST]
-        ends_of_pairs = [(each.id, each.name) for each in silent]
+        sent = {name: kind for name, kind in heard.items() if name in timeline.names_sent}
+        pairs = [(each.id, nearest(each.name, unheard) or _meant(each, sent)) for each in silent]
         if timeline.arena is not None and not timeline.sent_on(VELOCITY_TOPIC):
-            ends_of_pairs.append((0, VELOCITY_TOPIC))
-        for entity, name in ends_of_pairs if unheard else ():
-            near = nearest(name, unheard)
+            pairs.append((0, nearest(VELOCITY_TOPIC, unheard)))
+        for entity, near in pairs:
             since = timeline.sent_on(near)[0].at if near else view.end
             if view.end - since >= self.threshold:
-                yield Finding(self, since, view.end, entity, about=near)
+                yield Finding(self, since, view.end, entity, about=near, detail=near if near in sent else "")
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         if not found.subject:
@@ -54,11 +56,16 @@ class MisspeltTopic(Rule):
         end = entity_of(found, timeline)
         first = timeline.sent_on(found.about)[0].sender
         by = "" if first is None else f" by {who(first.entity, timeline)}"
+        silent = f"{who(found.subject, timeline)} hears nothing: nobody publishes on {end.name}"
+        if found.detail:
+            what, cure = f"{silent}; did you mean {found.about}, which is published{by}?", ""
+        else:
+            what = f"{silent}, and nobody hears {found.about}, which is published{by}"
+            cure = f", or publish on {end.name}"
         return Explanation(
-            f"{who(found.subject, timeline)} hears nothing: nobody publishes on {end.name}, and nobody "
-            f"hears {found.about}, which is published{by}",
+            what,
             "a publisher and a subscription meet only if their topics have the same name, letter by letter",
-            f"if one topic is meant, give it one name: subscribe to {found.about}, or publish on {end.name}",
+            f"if one topic is meant, give it one name: subscribe to {found.about}{cure}",
             made_at(end) or place_of(end.id, timeline),
             remedies=renaming(end, found.about, "subscribe to"),
         )
@@ -78,6 +85,12 @@ def _explain_robot(published: str, timeline: Timeline) -> Explanation:
     )
 
 
+def _meant(end: EntityInfo, sent: Mapping[str, str]) -> str:
+    """Return which topic a subscription's may be a slip of, of those of its type; "" for none."""
+    same = (name for name, kind in sent.items() if kind == end.interface_type)
+    return next((name for name in same if is_slip(end.name, name)), "")
+
+
 def nearest(name: str, known: Iterable[str]) -> str:
     """Return which of the known names ``name`` may be a misspelling of; "" for none."""
     likeness = {each: _likeness(name, each) for each in known}
@@ -92,6 +105,29 @@ def _likeness(name: str, other: str) -> float:
     if len(short) >= _SHORTEST and (long.startswith(short) or long.endswith(short)):
         return max(_ALIKE, SequenceMatcher(None, name, other).ratio())
     return SequenceMatcher(None, one, two).ratio()
+
+
+@lru_cache(maxsize=4096)
+def is_slip(name: str, other: str) -> bool:
+    """Return whether two names of one namespace differ as by a slip.
+
+    That is: in case, in two letters that are swapped, or in one letter inside a word, which is wrong or
+    missing in one; an ``s`` may be missing at the end. Names that differ in a digit or in a short word, as
+    those of two sensors do, are no slip.
+    """
+    (space, _, one), (other_space, _, two) = (each.lower().rpartition("/") for each in (name, other))
+    if space != other_space or name == other or min(len(one), len(two)) < _SHORTEST:
+        return False
+    apart = [at for at, (a, b) in enumerate(zip(one, two, strict=False)) if a != b]
+    if len(one) == len(two) and len(apart) != 1:
+        pair = slice(min(apart, default=0), max(apart, default=0) + 1)
+        return not apart or (len(apart) == 2 and len(one[pair]) == 2 and one[pair] == two[pair][::-1])
+    short, long = sorted((one, two), key=len)
+    at = min(apart, default=len(short))
+    if short[at + (len(long) == len(short)) :] != long[at + 1 :]:
+        return False
+    around = long[max(at - 1, 0) : at + 2]
+    return long[at].isalpha() and ((len(around) == 3 and around.isalpha()) or (short + "s" == long))
 
 
 def renaming(end: EntityInfo, name: str, verb: str) -> tuple[Remedy, ...]:
