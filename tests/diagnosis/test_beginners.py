@@ -96,6 +96,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "take an ApproximateTimeSynchronizer with slop=0.01",
         ),
         ("time_of_before", "times-kept", "self.done_at = now", "in a jump callback"),
+        ("published_at_once", "sent-too-early", "self.create_subscription(", "TRANSIENT_LOCAL"),
         ("period_of_zero", "always-due", "1 // RATE", "give it a period in seconds"),
         (
             "lookup_in_timer",

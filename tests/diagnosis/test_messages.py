@@ -1,6 +1,7 @@
 """Messages that are lost, that are old when used, or that never come."""
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -296,6 +297,58 @@ def test_only_the_programs_own_end_of_a_topic_is_to_be_changed(
     told = diagnosed(program).explained("qos-mismatch")
     assert told.cure.startswith(f"let the subscription of {Path(__file__).name}:")
     assert told.cure.endswith(f"{change}: the publisher is outside the program")
+
+
+def early(
+    offered: QoSProfile | int = 10, requested: QoSProfile | int = 10, *, number: int = 1, until: float = 2.0
+) -> Diagnosed:
+    """Messages that are published before, or for a negative number after, a subscription is made."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        publisher = node.create_publisher(Int32, "t", offered)
+        for _ in range(number):
+            publisher.publish(Int32())
+
+        def hear(_: object) -> None: ...
+
+        node.create_subscription(Int32, "t", hear, requested)
+        for _ in range(-number):
+            publisher.publish(Int32())
+        once(node, 1.5, lambda: None)
+        spin(node, None)
+
+    return diagnosed(program, until)
+
+
+def test_what_is_published_before_anybody_listens_is_told_at_the_subscription() -> None:
+    run = early(number=3)
+    assert run.problems() == {("sent-too-early", "hear")}
+    told = run.explained("sent-too-early")
+    assert told.what == "hear hears nothing: all 3 messages of /t were published before it subscribed"
+    assert told.place is not None
+    line = Path(told.place.file).read_text().splitlines()[told.place.first_line - 1]
+    assert "create_subscription" in line
+
+
+@pytest.mark.parametrize(
+    "run",
+    [lambda: early(LATCHED, LATCHED), lambda: early(number=-1), lambda: early(until=0.9)],
+    ids=["kept for it", "published later", "may be published again"],
+)
+def test_what_is_heard_or_may_be_is_not_told_to_be_too_early(run: Callable[[], Diagnosed]) -> None:
+    assert run().told() == set()
+
+
+def test_what_a_timer_publishes_comes_again() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        publisher = node.create_publisher(Int32, "t", 10)
+        node.create_timer(2.0, lambda: publisher.publish(Int32()))
+        once(node, 2.5, lambda: node.create_subscription(Int32, "t", lambda _: None, 10))
+        spin(node, None)
+
+    assert "sent-too-early" not in {rule for rule, _ in diagnosed(program, 3.9).told()}
 
 
 def test_old_data_is_laid_to_what_kept_the_messages_until_then() -> None:

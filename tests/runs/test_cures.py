@@ -82,6 +82,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("sim_time_without_clock", ["leave use_sim_time false (diff)"]),
         ("equal_stamps_only", ["take an ApproximateTimeSynchronizer with slop=0.01 (diff)"]),
         ("time_of_before", ["set done_at back with the clock (diff)"]),
+        ("published_at_once", ["keep the last messages for it (diff)"]),
         ("period_of_zero", ["keep the fraction of the period (diff)"]),
         ("lookup_in_timer", [APART.replace("tick", "look"), "ask for the newest transform there is (diff)"]),
         ("spin_past_executor", ["call ex.spin() in its place (diff)"]),

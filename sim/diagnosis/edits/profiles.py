@@ -47,9 +47,33 @@ def keep_newest(source: SourceEditor, line: int) -> None:
     source.replace(depths[0], "1")
 
 
-def _set_policy(source: SourceEditor, line: int, policy: str, profile: ast.expr, end: str) -> None:
+@asked_of_file
+def published_at(source: SourceEditor, topic: str) -> int:
+    """Return the line of the only call that creates a publisher of a topic by a string; 0 for none."""
+    names = (topic, topic.rpartition("/")[2], topic[1:])
+    lines = [
+        call.lineno
+        for call in source.nodes(ast.Call)
+        if isinstance(call.func, ast.Attribute)
+        and call.func.attr == "create_publisher"
+        and any(isinstance(each, ast.Constant) and each.value in names for each in call.args)
+    ]
+    return lines[0] if len(lines) == 1 else 0
+
+
+def keep_for_late(source: SourceEditor, line: int, publisher: int) -> None:
+    """Let the endpoints at two lines be transient-local, so that the publisher keeps its last messages."""
+    for each in (line, publisher):
+        call, end = _endpoint(source, each)
+        _set_policy(source, each, "DURABILITY", _profile_of(call, end), end, most=True)
+
+
+def _set_policy(
+    source: SourceEditor, line: int, policy: str, profile: ast.expr, end: str, *, most: bool = False
+) -> None:
+    """Let an end request the least there is, or offer the most; with ``most`` each end gets the latter."""
     keyword, kind, requested, offered = _KINDS[policy]
-    value = f"{kind}.{requested.get(end, offered)}"
+    value = f"{kind}.{offered if most else requested.get(end, offered)}"
     made = _made(source, profile)
     if made is None:
         statement = source.statement_at(line)

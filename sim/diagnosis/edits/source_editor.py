@@ -27,6 +27,7 @@ class SourceEditor:
 
     text: str
     _edits: list[tuple[int, int, bytes]] = field(default_factory=list)
+    _imported: dict[str, set[str]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         try:
@@ -162,16 +163,17 @@ class SourceEditor:
         )
 
     def import_names(self, module: str, names: Iterable[str], instead_of: str = "") -> None:
-        """Import names from a module that the source does not import yet.
+        """Import names from a module that the source does not import yet, each once.
 
         They replace the name ``instead_of`` if all its uses are replaced by the edits so far.
         """
         imports = [each for each in self.tree.body if isinstance(each, ast.ImportFrom)]
         ours = [each for each in imports if each.module == module]
         known = {alias.name for each in ours for alias in each.names if alias.asname is None}
-        missing = sorted(set(names) - known)
+        missing = sorted(set(names) - known - self._imported.get(module, set()))
         if not missing:
             return
+        self._imported[module] = {*missing, *self._imported.get(module, ())}
         uses = [self._span(each) for each in self.nodes(ast.Name) if each.id == instead_of]
         replaced = [use for use in uses for start, end, _ in self._edits if start <= use[0] and use[1] <= end]
         gone = [alias for each in ours for alias in each.names if alias.name == instead_of]

@@ -8,7 +8,7 @@ from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing
 from sim.diagnosis.rules.errors import ExceptionCaught, ExceptionSwallowed, ProgramRaised, SpinRaised
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.leaks import NeverDestroyed
-from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
+from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, SentTooEarly, StaleData
 from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.overlooked import AnswerOverlooked
 from sim.diagnosis.rules.parameters import ParameterOverruled
@@ -40,6 +40,7 @@ RULES: tuple[Rule, ...] = (
     NobodyOffers(),
     QosMismatch(),
     MisspeltTopic(),
+    SentTooEarly(),
     NeverSynchronised(),
     TimesKept(),
     ParameterOverruled(),

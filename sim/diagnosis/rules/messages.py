@@ -6,7 +6,7 @@ from itertools import groupby
 from operator import attrgetter
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
-from sim.diagnosis.edits.profiles import match_quality, unmatched_beside
+from sim.diagnosis.edits.profiles import keep_for_late, match_quality, published_at, unmatched_beside
 from sim.diagnosis.edits.shared_data import uses_what_is_set
 from sim.diagnosis.edits.transforms import looks_up
 from sim.diagnosis.rule import (
@@ -167,6 +167,57 @@ def _may_use_what_is_set(sensor: EntityInfo, timer: EntityInfo) -> bool:
         return looks_up(timer.file, timer.first_line)
     is_known = sensor.file and sensor.file == timer.file
     return not is_known or uses_what_is_set(timer.file, sensor.first_line, timer.first_line) is not False
+
+
+class SentTooEarly(Rule):
+    """All messages of a topic were published before a subscription was made, which hears none of them.
+
+    Only what was published outside callbacks counts: a callback may publish again. rclpy's own topics, on
+    which each node publishes when it is made, are left out.
+    """
+
+    id = "sent-too-early"
+    summary = "what is published once comes before its subscription is made"
+    threshold: Nanoseconds = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each subscription that has heard nothing, if nothing has been published for a while."""
+        timeline = view.timeline
+        for each in view.few_entities:
+            if each.kind is not EntityKind.SUBSCRIPTION or not each.made_at[0] or each.name in _OF_RCLPY:
+                continue
+            sent = timeline.sent_on(each.name)
+            if not sent or view.end - sent[-1].at < self.threshold or _has_got(each.id, timeline):
+                continue
+            is_told = any(each.id == mismatch.entity for mismatch in timeline.mismatches)
+            if not is_told and len(sent) <= _FEW_SENT and all(one.sender is None for one in sent):
+                yield Finding(self, sent[0].at, view.end, each.id, about=each.name, size=len(sent))
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        place, one = line_location(*entity_of(found, timeline).made_at), found.size == 1
+        publisher = published_at(place.file, found.about) if place else 0
+        by = f" (line {publisher})" if publisher else ""
+        return Explanation(
+            f"{who(found.subject, timeline)} hears nothing: {'the only' if one else f'all {found.size}'} "
+            f"message{'' if one else 's'} of {found.about} {'was' if one else 'were'} published before it "
+            "subscribed",
+            "a publisher keeps its last messages for later subscriptions only if both are transient-local",
+            f"make the publisher{by} and the subscription TRANSIENT_LOCAL, or publish later",
+            place,
+            remedies=by_edit(place, "keep the last messages for it", keep_for_late, publisher)
+            if publisher
+            else (),
+        )
+
+
+_OF_RCLPY = ("/parameter_events", "/rosout")
+_FEW_SENT = 10
+"""Messages that are looked at: who publishes more outside callbacks does so in a loop."""
+
+
+def _has_got(entity: EntityId, timeline: Timeline) -> bool:
+    queue = timeline.queue(entity, timeline.end)
+    return bool(queue.depth or queue.dropped or timeline.calls_of(entity, Window(0, timeline.end + 1)))
 
 
 class QosMismatch(Rule):
