@@ -13,6 +13,7 @@ from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.narrator import ROWS, Narrator
+from cbtui.widgets.robot import RobotView
 from lessons.personal import state_folder
 from lessons.state_file import StateFile, StateFileTexts
 
@@ -22,6 +23,8 @@ _ACROSS, _DOWN = 24, 14
 _LEAST_ACROSS, _LEAST_DOWN = 4, 3
 _LANES_LEAST, _LANES_MOST = 12, 75
 """Per cent of the screen's height."""
+_SCENE_LEAST = 34
+"""Columns of a scene's pane in which its names and most of its reasons have room."""
 _LANES_BESIDE_NARRATOR = 5
 """Rows that the lanes keep when the narrator takes its rows from them."""
 
@@ -126,9 +129,12 @@ class SizeKeys(ScreenPart):
         """The sizes in force; while the code is read, it usually has room for longer lines."""
         if self._chosen is not None:
             return self._chosen
-        layout = self.screen.layout_now
-        is_read = self.panes.current == "code" and self._has_robot
-        return PaneSizes(layout, left=6, right=5) if is_read else PaneSizes(layout)
+        usual = PaneSizes(self.screen.layout_now)
+        if self.panes.current != "code" or not self._has_robot:
+            return usual
+        least = _SCENE_LEAST if self.screen.query_one(RobotView).actors else 0
+        right = ceil(_ACROSS * least / max(1, self.screen.app.size.width))
+        return PaneSizes(usual.layout, left=6, right=max(5, min(right, usual.right)))
 
     @property
     def _height(self) -> int:

@@ -20,6 +20,8 @@ _COLUMNS, _ROWS = 10, 2
 _GAP = 2
 _BESIDE_LARGE = 60
 """The columns from which words stand beside a large figure."""
+_STATE = 14
+"""Columns of most states, with the space before them."""
 _HALF_WAY: Nanoseconds = 300_000_000
 """Duration of a callback at which its figure has gone half of its way."""
 _BACK: Nanoseconds = 500_000_000
@@ -42,8 +44,9 @@ def paint_scene(
 ) -> list[list[TextRun]]:
     """Return at most ``height`` rows of ``width`` columns.
 
-    Where there is room the figures are twice as large, with the words beside or below them. Without room for
-    all figures, the last ones are words alone; without room for these, a number.
+    Where there is room the figures are twice as large, with the words beside or below them. In few columns
+    the words stand one below the other. Without room for all figures, the last ones are words alone; without
+    room for these, a number.
     """
     moment = timeline.moment(now)
     numbers = {group: place for place, group in enumerate(timeline.groups)}
@@ -52,6 +55,8 @@ def paint_scene(
     is_large = height >= len(actors) * (large + 1) - 1
     scale, below = 2 if is_large else 1, is_large and width < _BESIDE_LARGE
     apart = height >= len(actors) * (_ROWS + 1)
+    longest = max((len(actor.follows) for actor in actors), default=0)
+    is_stacked = apart and not is_large and _COLUMNS + _GAP + longest + _STATE > width
     rows: list[list[TextRun]] = []
     shown = actors if len(actors) <= height else actors[: max(0, height - 1)]
     for place, actor in enumerate(shown):
@@ -66,6 +71,10 @@ def paint_scene(
             lines = _figure(actor.figure, state.progress, ink, charset, scale)
             if below:
                 lines += [[name, words], [reason]]
+            elif is_stacked:
+                lines[0] += [gap, name]
+                lines[1] += [TextRun(" ", _PLAIN), words]
+                lines += [[reason]]
             else:
                 lines[scale - 1] += [gap, name, words]
                 lines[scale] += [gap, reason]
@@ -73,7 +82,7 @@ def paint_scene(
             colon = reason._replace(text=": " if state.reason else "")
             lines = [[TextRun(" " * _COLUMNS, _PLAIN), gap, name, words, colon, reason]]
         rows += [_fitted(line, width, charset) for line in lines]
-        rows += [blank] if apart else []
+        rows += [blank] if apart and not is_stacked else []
     if len(shown) < len(actors):
         rows.append(_fitted([TextRun(f"+{len(actors) - len(shown)} more", _FAINT)], width, charset))
     return rows[:height]

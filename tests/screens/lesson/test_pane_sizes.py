@@ -63,6 +63,15 @@ async def test_the_code_has_more_room_while_it_is_read_unless_the_user_gave_othe
         assert width(app, "code") < usual[1]
 
 
+async def test_a_scene_keeps_the_columns_of_its_words_while_the_code_is_read() -> None:
+    app = RecordedConsole("stale-data", EVENTS, 12.9)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        await press(pilot, "2")
+        assert width(app, "robot") >= 34
+        assert width(app, "code") >= 70
+
+
 async def test_rows_go_between_lanes_and_pane_on_a_small_screen() -> None:
     app = RecordedConsole("shared-group", EVENTS, 12.9)
     async with app.run_test(size=NARROW) as pilot:

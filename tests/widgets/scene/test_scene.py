@@ -60,6 +60,15 @@ def test_where_there_is_room_figures_are_twice_as_large(
     assert rows[row + 1 + height // 2][column:].startswith("group A held by timer_callback")
 
 
+def test_in_few_columns_name_state_and_reason_stand_one_below_the_other() -> None:
+    timeline = told(shared_group_run(), 12.9)
+    rows = plain(paint_scene(ACTORS, timeline, ns(12.9), 34, 9, Charset.BRAILLE)).splitlines()
+    assert [row[12:].rstrip() for row in (*rows[:2], *rows[3:5])] == (
+        ["timer_callback", "runs 8.9 s", "/odom", "waits 8.9 s"]
+    )
+    assert rows[5].startswith("group A held by timer_callback")
+
+
 def test_nothing_is_left_out_silently_where_not_every_figure_has_room() -> None:
     timeline = told(shared_group_run(), 12.9)
     first, _, second = scene(timeline, 12.9, height=3)
