@@ -109,7 +109,6 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         )
         self.panes = PaneLayout(self, self, self.PANES_HERE, self.FIRST_PANE, lambda: self.changes.words)
         self._narration = Narration(self, runs, self.navigation, self.panes)
-        self.navigation.stepped = self._narration.show_step
         self._sizes = SizeKeys(self, self.panes, self.tell)
         self.bars = BarSelection(lambda: [self.query_one(Lanes)], self.navigation, self.redraw)
         selected = (self.navigation, self.bars, self.panes, subject)

@@ -18,7 +18,7 @@ from sim.trace.model import Blocked, EntityInfo, Moment, Nanoseconds, Span, Wait
 from sim.trace.timeline import Timeline
 
 ROWS = 4
-"""The number of rows; constant, so that the screen does not jump from event to event."""
+"""The number of rows at first; they become more where there is room, but not fewer from event to event."""
 _FIRST = Ink(Role.STRONG)
 _NEXT = Ink(Role.TEXT)
 _ORDER = (
@@ -47,32 +47,56 @@ class Narrator(PaintedWidget):
     now: reactive[Nanoseconds] = painted(0)
     stepped: reactive[bool] = painted(False)
     """Whether a step led to the moment, so that it is told even if nothing was decided then."""
+    place: reactive[int] = painted(0)
+    """Which of the decisions of one moment is looked at, from 0."""
     charset: reactive[Charset] = painted(Charset.BRAILLE)
+    _wanted = ROWS
+
+    def on_hide(self) -> None:
+        """Begin with few rows again."""
+        self._wanted = ROWS
+
+    def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
+        """Return the most rows that a moment has taken so far."""
+        return self._wanted
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
-        """Paint the sentences, each on as many rows as it takes; on wider ones if they do not fit else."""
+        """Paint the sentences, each on as many rows as it takes; on wider ones if they do not fit else.
+
+        Where they still do not fit, those before the decision looked at go first.
+        """
         width = max(20, size.width)
         told = narration(self.timeline, self.now, self.stepped)
-        lines = self._lines(told, width - 6, MOST_COLUMNS)
+        lines = self._lines(told, 0, width - 6, MOST_COLUMNS)
         if len(lines) > size.height > 0:
-            lines = self._lines(told, width - 6, width)
+            lines = self._lines(told, 0, width - 6, width)
+        if len(lines) > max(size.height, self._wanted) and self.is_running:
+            self.call_later(self._grow, len(lines))
+        for first in range(1, self.place + 1):
+            if len(lines) > size.height > 0:
+                lines = self._lines(told, first, width - 6, width)
         if len(lines) > size.height > 0:
             last, ink = lines[size.height - 1]
             lines[size.height - 1 :] = [(f"{last} {GLYPHS[self.charset].ellipsis}", ink)]
         return [[TextRun(fit(line, width, self.charset), ink)] for line, ink in lines]
 
-    def _lines(self, told: Sequence[str], width: int, most: int) -> list[tuple[str, Ink]]:
+    def _grow(self, rows: int) -> None:
+        self._wanted = max(self._wanted, rows)
+        self.refresh(layout=True)
+
+    def _lines(self, told: Sequence[str], first: int, width: int, most: int) -> list[tuple[str, Ink]]:
         lines: list[tuple[str, Ink]] = []
-        for place, text in enumerate(told):
-            sign = "   " if place else f" {GLYPHS[self.charset].forth} "
+        for place, text in enumerate(told[first:], first):
+            here = place == self.place
+            sign = f" {GLYPHS[self.charset].forth} " if here else "   "
             for line in lines_of_text(text, width, self.charset, most):
-                lines.append((f"{sign}{line}", _NEXT if place else _FIRST))
+                lines.append((f"{sign}{line}", _FIRST if here else _NEXT))
                 sign = "     "
         return lines
 
 
 def narration(timeline: Timeline, at: Nanoseconds, stepped: bool = False) -> tuple[str, ...]:
-    """Return the executor's last action by a moment, and the callbacks that still waited, in its order.
+    """Return the executor's last decisions by a moment, and the callbacks that still waited, in its order.
 
     If time was ``stepped`` to a moment without an action, return what else happens at that moment.
     """
@@ -84,15 +108,22 @@ def narration(timeline: Timeline, at: Nanoseconds, stepped: bool = False) -> tup
     moment = timeline.moment(last)
     left = [wait for wait in moment.waiting.values() if wait.holder != wait.entity]
     left.sort(key=lambda wait: _place(timeline.entities[wait.entity]))
-    did = (
-        *_ended(timeline, last),
-        *_blocked(timeline, last),
-        *_begun(timeline, last, left),
-        *_lost(timeline, last),
-        *(f"{name_of(each.entity, timeline)} is ready" for each in left if each.since == last),
-    )
-    first = f"{timestamp(last)}: {'; '.join(did) or 'the executor looks again'}"
-    return (first, *_by_cause(left, timeline, last)) if left else (first, _at_rest(timeline, last))
+    first, *more = _decided(timeline, last, left) or ("the executor looks again",)
+    then = _by_cause(left, timeline, last) if left else (_at_rest(timeline, last),)
+    return (f"{timestamp(last)}: {first}", *more, *then)
+
+
+def decisions_at(timeline: Timeline, at: Nanoseconds) -> int:
+    """Return with how many sentences ``narration`` tells what was decided at a moment; at least 1."""
+    left = [wait for wait in timeline.moment(at).waiting.values() if wait.holder != wait.entity]
+    return max(1, len(_decided(timeline, at, left)))
+
+
+def _decided(timeline: Timeline, at: Nanoseconds, left: Sequence[Wait]) -> Sequence[str]:
+    """What was decided at a moment; who has become ready, if that is all, as it is told with the waits."""
+    ready = [f"{name_of(each.entity, timeline)} is ready" for each in left if each.since == at]
+    did = (*_ended(timeline, at), *_blocked(timeline, at), *_begun(timeline, at, left), *_lost(timeline, at))
+    return did or tuple(filter(None, ("; ".join(ready),)))
 
 
 def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) -> tuple[str, ...]:
@@ -177,10 +208,17 @@ def _blocked(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
         yield f"{caller} calls {each.service}, and keeps its thread and its group until the reply"
 
 
-def _lost(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+def _lost(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:
+    """What was lost at a moment, and before it since anything else happened."""
+    before = timeline.neighbour(at + 1, None, -1, losses=False)
+    since = at if before == at else 0 if before is None else before + 1
+    losses = []
     for entity in timeline.entities.values():
-        if timeline.losses_of(entity.id, Window(at, at + 1)):
-            yield f"the full queue of {entity.spoken_name} loses its oldest message"
+        lost = timeline.losses_of(entity.id, Window(since, at + 1))
+        many = f"{len(lost)} messages since {timestamp(lost[0])}" if len(lost) > 1 else "its oldest message"
+        if lost:
+            losses.append(f"the full queue of {entity.spoken_name} loses {many}")
+    return ["; ".join(losses)] if losses else []
 
 
 def _begun(timeline: Timeline, at: Nanoseconds, left: Sequence[Wait]) -> Iterator[str]:

@@ -293,14 +293,16 @@ class Timeline:
         """The publication of a message; None if it is unknown."""
         return self._run.publications.of(message)
 
-    def neighbour(self, at: Nanoseconds, entity: EntityId | None, step: int) -> Nanoseconds | None:
+    def neighbour(
+        self, at: Nanoseconds, entity: EntityId | None, step: int, losses: bool = True
+    ) -> Nanoseconds | None:
         """Time of the next (``step`` > 0) or previous event of an entity, or of any: never ``at`` itself.
 
         Events are starts, ends, suspensions and resumptions of callbacks, starts of waits, starts and ends of
-        blocking in ``Client.call``, and losses. None if there is none on that side.
+        blocking in ``Client.call``, and, if asked for, losses. None if there is none on that side.
         """
         asked = (*self.entities, NOBODY) if entity is None else (entity,)
-        times = (time for each in asked for time in self._events_beside(each, at, step))
+        times = (time for each in asked for time in self._events_beside(each, at, step, losses))
         return min(times, default=None) if step > 0 else max(times, default=None)
 
     def cancelled_since(self, timer: EntityId, since: Nanoseconds, at: Nanoseconds) -> bool:
@@ -390,10 +392,12 @@ class Timeline:
                 holders[known.group] += (entity,)
         return holders
 
-    def _events_beside(self, entity: EntityId, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
+    def _events_beside(
+        self, entity: EntityId, at: Nanoseconds, step: int, losses: bool
+    ) -> Iterator[Nanoseconds]:
         yield from self._run.execution.beside(entity, at, step)
         yield from self._run.waiting.beside(entity, at, step)
         yield from self._run.blocking.beside(entity, at, step)
-        loss = self._run.queues[entity].loss_beside(at, step)
+        loss = self._run.queues[entity].loss_beside(at, step) if losses else None
         if loss is not None:
             yield loss

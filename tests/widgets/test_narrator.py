@@ -6,8 +6,9 @@ from hypothesis import strategies as st
 from textual.geometry import Size
 
 from cbtui.looks.theme import GLYPHS, Charset
+from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import visible
-from cbtui.widgets.narrator import ROWS, Narrator, narration
+from cbtui.widgets.narrator import ROWS, Narrator, decisions_at, narration
 from sim.trace.events import CallbackAt, Doing, ProcessAppeared, ProcessEnded, Reason, ThreadAppeared
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
@@ -81,7 +82,40 @@ def test_who_waits_for_a_group_is_told_with_its_holder() -> None:
     assert any(
         "odom_callback has waited since 4.0" in line and "group A held by timer" in line for line in told_at
     )
-    assert "loses its oldest message" in "".join(narration(RUNS[0], ns(8.0)))
+
+
+def test_losses_in_a_row_are_told_together_and_passed_over_in_one_step() -> None:
+    run = Run()
+    group = run.exclusive(run.node("/n"))
+    tick, heard = run.timer(group, "tick", 1.0), run.subscription(group, "/a", "heard", depth=1)
+    run.callback(tick, run.thread("MainThread"), 1.0, 2.0)
+    run.wait(heard, 1.1, 3.0, Reason.GROUP_HELD, tick)
+    for at in (1.1, 1.5, 1.6, 1.7):
+        run.message(heard, at)
+    run.log("later", 3.4)
+    timeline = told(run, until=3.5)
+    assert narration(timeline, ns(1.5))[0] == "1.500 s: the full queue of heard loses its oldest message"
+    assert (
+        narration(timeline, ns(1.7))[0] == "1.700 s: the full queue of heard loses 3 messages since 1.500 s"
+    )
+    steps = [Playhead(at=ns(1.1))]
+    for step in (1, 1, -1, -1):
+        steps.append(steps[-1].beside([timeline], timeline.end, step))
+    assert [each.at for each in steps] == [ns(at) for at in (1.1, 1.7, 3.0, 1.7, 1.1)]
+
+
+def test_each_decision_of_a_moment_has_a_line_of_its_own_and_the_one_looked_at_is_marked() -> None:
+    run = Run()
+    group, thread = run.exclusive(run.node("/n")), run.thread("MainThread")
+    run.callback(run.timer(group, "first", 1.0), thread, 1.0, 1.0)
+    run.callback(run.timer(group, "second", 1.0), thread, 2.0, 1.0)
+    narrator = Narrator()
+    narrator.timeline, narrator.now, narrator.place = told(run, until=3.5), ns(2.0), 1
+    assert decisions_at(narrator.timeline, ns(2.0)) == 2
+    ended, begun, *_ = (row[0].text.rstrip() for row in narrator.rows(Size(100, ROWS)))
+    assert ended == "   2.000 s: first returns after 1.0 s, group A is free"
+    assert begun.startswith(" ▸ MainThread is free: second is due")
+    assert "second" in narrator.rows(Size(100, 1))[0][0].text
 
 
 def test_a_callback_whose_function_says_nothing_is_named_after_its_topic() -> None:
@@ -136,7 +170,7 @@ def test_on_a_wide_screen_sentences_use_its_width_before_any_is_cut() -> None:
     run = Run()
     group = run.exclusive(run.node("/n"))
     thread = run.thread("MainThread")
-    for number in range(6):
+    for number in range(3):
         run.callback(run.timer(group, f"tick_number_{number}", 1.0), thread, 1.0, 0.0)
     narrator = Narrator()
     narrator.timeline, narrator.now = told(run, until=1.5), ns(1.0)

@@ -63,11 +63,11 @@ class Playhead:
         return replace(self, at=at, start=self._start_that_shows(at, end))
 
     def beside(self, timelines: Sequence[Timeline], end: Nanoseconds, step: int) -> "Playhead":
-        """Go to the previous (``step`` < 0) or next event of any run.
+        """Go to the previous (``step`` < 0) or next event of any run; losses in a row count as one.
 
         Before the first one is the beginning; after the last, the cursor follows the end.
         """
-        neighbours = [timeline.neighbour(self.now(end), None, step) for timeline in timelines]
+        neighbours = [_event_beside(timeline, self.now(end), step) for timeline in timelines]
         found = [at for at in neighbours if at is not None]
         if found:
             return self.moved_to(min(found) if step > 0 else max(found), end)
@@ -111,3 +111,14 @@ class Playhead:
         latest = max(0, end - self.span)
         start = max(0, min(start, latest))
         return replace(self, start=None if self.at is None and start == latest else start)
+
+
+def _event_beside(timeline: Timeline, at: Nanoseconds, step: int) -> Nanoseconds | None:
+    """The event before or after a moment; of losses with nothing else between them, the last one."""
+    event, other = (timeline.neighbour(at, None, step, losses) for losses in (True, False))
+    if event == other:
+        return event
+    if step > 0:
+        return timeline.neighbour(timeline.end + 1 if other is None else other, None, -1)
+    here, before = (timeline.neighbour(at + 1, None, -1, losses) for losses in (True, False))
+    return other if here == at != before else event

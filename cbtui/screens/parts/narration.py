@@ -7,7 +7,7 @@ from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
-from cbtui.widgets.narrator import Narrator
+from cbtui.widgets.narrator import Narrator, decisions_at
 
 
 def was_stepped(run: ShownRun, navigation: TimeNavigation) -> bool:
@@ -28,10 +28,8 @@ class Narration(ScreenPart):
         self.widget = Narrator()
         self.widget.charset, self.widget.display = self.host.charset, False
         self._asked_for = False
-
-    def show_step(self) -> None:
-        """Show it, as a step leads to another moment."""
-        self._show(True)
+        self.navigation.stepped = lambda: self._show(True)
+        self.navigation.decisions = lambda: decisions_at(self.runs.timeline, self.navigation.now)
 
     def _show(self, shown: bool) -> None:
         if self.widget.display is not shown:
@@ -50,6 +48,7 @@ class Narration(ScreenPart):
             self._show(False)
         if self.widget.display:
             self.widget.stepped = was_stepped(self.runs.run, self.navigation)
+            self.widget.place = self.navigation.place
             self.widget.now, self.widget.timeline = self.navigation.now, self.runs.timeline
 
     def action_narrate(self) -> None:

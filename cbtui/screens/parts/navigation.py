@@ -16,7 +16,8 @@ class TimeNavigation(ScreenPart):
     """Holds and moves the playhead of one or more runs.
 
     ``end`` returns the last moment, ``moved`` is called after each move, and ``live`` returns the run whose
-    engine can run on, if there is one; ``stepped`` is called when the cursor goes to an event.
+    engine can run on, if there is one; ``stepped`` is called when the cursor goes to an event, and
+    ``decisions`` returns how many are told at the moment on screen: steps go from each to the next.
     """
 
     timelines: Callable[[], Sequence[Timeline]]
@@ -24,7 +25,10 @@ class TimeNavigation(ScreenPart):
     moved: Callable[[], None]
     live: Callable[[], LiveRun | None] = lambda: None
     stepped: Callable[[], None] = lambda: None
+    decisions: Callable[[], int] = lambda: 1
     playhead: Playhead = field(default_factory=Playhead)
+    place: int = 0
+    """Which decision of the moment on screen is looked at, from 0."""
 
     @property
     def now(self) -> Nanoseconds:
@@ -38,7 +42,7 @@ class TimeNavigation(ScreenPart):
 
     def move(self, playhead: Playhead) -> None:
         """Set the playhead."""
-        self.playhead = playhead
+        self.playhead, self.place = playhead, 0
         self.moved()
 
     def seek(self, moment: Nanoseconds) -> None:
@@ -88,7 +92,11 @@ class TimeNavigation(ScreenPart):
         self._go_to_event(-1)
 
     def _go_to_event(self, step: int) -> None:
-        self.move(self.playhead.beside(self.timelines(), self.end(), step))
+        place = self.place + step
+        if self.playhead.at is None or not 0 <= place < self.decisions():
+            self.move(self.playhead.beside(self.timelines(), self.end(), step))
+            place = 0 if step > 0 else self.decisions() - 1
+        self.place = place
         self.stepped()
 
     @property

@@ -56,6 +56,20 @@ def test_before_the_first_event_a_step_back_leads_to_the_beginning() -> None:
     assert not navigation.offers("step_back", ())
 
 
+def test_steps_go_through_the_decisions_of_a_moment_before_they_leave_it() -> None:
+    navigation, _ = over(told(shared_group_run()))
+    navigation.decisions = lambda: 2
+    navigation.seek(ns(5.0))
+    navigation.action_step_back()
+    moments = [(navigation.now, navigation.place)]
+    for step in (navigation.action_step_back, navigation.action_step, navigation.action_step):
+        step()
+        moments.append((navigation.now, navigation.place))
+    (event, _), *_, (following, _) = moments
+    assert moments == [(event, 1), (event, 0), (event, 1), (following, 0)]
+    assert following > event
+
+
 def test_of_two_runs_the_nearer_event_is_next() -> None:
     runs = told(shared_group_run()), told(dummy_server_run())
     navigation, _ = over(*runs)
