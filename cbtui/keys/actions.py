@@ -5,6 +5,7 @@ action is available now.
 """
 
 from cbtui.keys.action import CHECKS, CHOICE, PANES, KeyAction, Scope
+from cbtui.keys.refused import NOT_ALWAYS, OWN_TIME
 
 _ON_A_SCREEN = (Scope.MENU, Scope.LESSON, Scope.COMPARE)
 _ON_A_PANE = (Scope.LOG, Scope.CODE, Scope.CHECKS, Scope.CHOICE)
@@ -35,28 +36,6 @@ _OPTION = "Highlight another thread, and its line"
 _OPTION_NUMBER = "Let the thread with this number go on"
 _ANSWER_NUMBER = "Highlight the answer with this number"
 _NO_TIME = "Say why time cannot be changed here"
-OWN_TIME = {
-    "pause": "space",
-    "resume": "space",
-    "step": "full_stop",
-    "slower": "minus",
-    "faster": "plus",
-    "take_over": "W",
-}
-"""The actions that need a time that can be stopped, as real ROS 2's cannot; with their keys."""
-NOT_ALWAYS = {
-    "threads": "t",
-    "group": "g",
-    "set_up": "p",
-    "next_lesson": "n",
-    "explain": "a",
-    "cycle_camera": "c",
-    "reset_world": "r",
-    "call_service": "s",
-    "call_service_off": "S",
-    "record": "R",
-}
-"""Actions that make no sense for some of what a run's screen shows, such as a recording; with their keys."""
 _PANE = f"Go to a pane: {', '.join(PANES)}"
 
 _ROWS: dict[Scope, tuple[_Row, ...]] = {

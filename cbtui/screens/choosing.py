@@ -17,6 +17,7 @@ from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.parts.choices import Choices
 from cbtui.screens.parts.engine_keys import RecordingKey
+from cbtui.screens.parts.keys import Absences
 from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.run import RunScreen
@@ -52,11 +53,17 @@ class ChoosingScreen(RunScreen[LiveRun]):
         self._choices = Choices(self, runs, restarts, puzzle)
         if puzzle is not None:
             self.navigation.playhead = Playhead(span=_PUZZLE_SPAN)
-        self.add_parts(self._choices, RecordingKey(self, runs, self.finisher))
+        absences = Absences(self, runs, None, lambda action: self._parts.offer(action, ()), self._kind)
+        self.add_parts(self._choices, RecordingKey(self, runs, self.finisher), absences)
         runs.begin(speed=None)
 
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
         return LiveRun(self._choices.set_up(self.subject, speed), self._open_session, deliver, ended)
+
+    def _kind(self) -> str:
+        choice = "Here you only choose which thread goes on next"
+        solved = f"; {self.key('solution')} shows the solution" if self._choices.puzzle else ""
+        return f"{choice}: {self.key('undo')} takes a choice back{solved}."
 
     def compose_panes(self) -> Iterator[Widget]:
         """Yield the panes, the choice before the code."""

@@ -22,6 +22,7 @@ from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import of_exercise
 from cbtui.screens.compare_key import CompareKey
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TimeRefusals
+from cbtui.screens.parts.keys import Absences
 from cbtui.screens.parts.own_file import FileRead, read_when_saved
 from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
@@ -86,6 +87,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
         self.add_parts(
             PaceKeys(self, runs),
             TimeRefusals(self, runs, lambda action: self._parts.offer(action, ())),
+            Absences(self, runs, lesson, lambda action: self._parts.offer(action, ()), self._kind),
             RecordingKey(self, runs, self.finisher),
             self.restarts,
             CompareKey(self, self.restarts),
@@ -108,6 +110,12 @@ class ExerciseScreen(RunScreen[LiveRun]):
         self._judging.begin(setup)
         self.query(PassedBanner).set(display=False)
         return LiveRun(setup, self._open_session, deliver, ended)
+
+    def _kind(self) -> str:
+        return (
+            "This runs your file as it will be judged, with given inputs: what you change is the file. "
+            f"{self.key('lesson')} leads to the lesson, where the rest can be tried."
+        )
 
     def _first_keys(self) -> Sequence[str]:
         """Return the labels of what leads on; to run again takes no key, as saving the file does it."""

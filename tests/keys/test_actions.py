@@ -75,7 +75,10 @@ def test_no_key_is_one_that_terminals_keep_for_themselves(action: KeyAction) -> 
 def test_only_actions_that_rule_each_other_out_share_a_key() -> None:
     used = Counter((action.scope, key) for action in ACTIONS for key in action.key.split(","))
     shared = {key for (_, key), times in used.items() if times > 1}
-    assert shared == {*"rfedChHWsSq7tgpnacR0", "space", "enter", "full_stop", "minus", "plus"}
+    assert shared == {
+        *"rfedChHWPsSq7tgpnacR0",
+        *["space", "enter", "full_stop", "comma", "colon", "minus", "plus"],
+    }
 
 
 def test_ids_are_unique_within_a_scope() -> None:

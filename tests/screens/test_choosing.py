@@ -55,6 +55,17 @@ async def test_who_may_go_on_is_asked_and_shown_in_the_code() -> None:
         assert not {"undo", "step", "pause"} & offered(app)
 
 
+@pytest.mark.parametrize("key", ["t", "s", "full_stop", "h"])
+async def test_a_key_without_effect_on_a_puzzle_says_why(key: str) -> None:
+    app = console(Asking())
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        await pilot.press(key)
+        [note] = app._notifications
+        assert note.message.startswith("Here you only choose") or key == "full_stop"
+        assert "pauses" not in note.message
+
+
 async def test_choices_are_moves_until_the_goal_is_reached_which_is_kept() -> None:
     sessions = Asking()
     app = console(sessions)

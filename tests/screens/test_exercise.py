@@ -151,6 +151,16 @@ async def test_a_folder_that_takes_no_file_is_told_of_and_nothing_happens(here: 
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize(
+    ("key", "sentence"),
+    [("t", "This runs your file as it will be judged"), ("space", "The run is over: r runs it again.")],
+)
+async def test_a_key_without_effect_on_an_exercise_says_why(here: Path, key: str, sentence: str) -> None:
+    async with console(failing()) as (app, _, pilot):
+        await pilot.press(key)
+        assert any(note.message.startswith(sentence) for note in app._notifications)
+
+
 async def test_a_lesson_without_an_exercise_does_not_offer_one() -> None:
     Progress().see("single-thread")
     app = RecordedConsole("single-thread", [], 0.0)

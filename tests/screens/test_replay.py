@@ -150,6 +150,7 @@ async def test_it_plays_at_the_chosen_speed_from_its_beginning_and_stands_at_its
         ("R", "This is a recording: "),
         ("t", "This is a recording: "),
         ("n", "No lesson follows here: q leads to the menu"),
+        ("C", "There is only one run so far"),
         ("a", "Only lessons are explained; d lists what went wrong here."),
     ],
 )

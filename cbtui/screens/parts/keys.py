@@ -101,12 +101,16 @@ class OfferedKeys:
 
 @dataclass
 class Absences(ScreenPart):
-    """Explains why an action makes no sense here; ``is_available`` tells whether it does something."""
+    """Explains why an action makes no sense here; ``is_available`` tells whether it does something.
+
+    ``kind`` returns what kind of run the screen shows, as a sentence on what that rules out, if there is one.
+    """
 
     host: RunHost
     runs: RunController[ShownRun]
     lesson: Lesson | None
     is_available: Callable[[str], bool]
+    kind: Callable[[], str] = lambda: ""
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer the explanation where the action itself is not offered."""
@@ -117,19 +121,31 @@ class Absences(ScreenPart):
         self.host.tell(self._why(wanted))
 
     def _why(self, wanted: str) -> str:
-        run, key = self.runs.run, self.host.key
-        if wanted == "cycle_camera":
-            return "There is no robot here whose map or camera could be shown."
-        if wanted == "next_lesson":
-            lessons = f"{key('leave')} leads to the menu with all of them."
-            return f"No lesson follows {'this one' if self.lesson else 'here'}: {lessons}"
-        if wanted == "explain":
-            return f"Only lessons are explained; {key('diagnoses')} lists what went wrong here."
+        run, key, kind = self.runs.run, self.host.key, self.kind()
+        over = f"The run is over: {key('run_again')} runs it again."
+        lessons = f"{key('leave')} leads to the menu with all of them."
+        pauses = f"{key('pause')} pauses the run, then {key('step')} makes a step; "
+        pauses = pauses if self.is_available("pause") else ""
+        sentences = {
+            "step_back": "This is the beginning: no event is before it.",
+            "step": f"{pauses}{key('step_back')} looks back, event by event.",
+            "cycle_camera": "There is no robot here whose map or camera could be shown.",
+            "next_lesson": f"No lesson follows {'this one' if self.lesson else 'here'}: {lessons}",
+            "compare": "There is only one run so far: nothing to compare it with.",
+        }
+        if self.is_available("faster") or self.is_available("slower"):
+            sentences |= {"slower": "It goes no slower.", "faster": "It goes no faster."}
+        elif not run.alive:
+            sentences |= dict.fromkeys(("pause", "slower", "faster", "record"), over)
+        if not kind and self.lesson is not None:
+            sentences["predict"] = f"There is nothing left to predict: {key('explain')} explains the run."
+        elif not kind:
+            explained = f"Only lessons are explained; {key('diagnoses')} lists what went wrong here."
+            sentences |= dict.fromkeys(("predict", "explain"), explained)
         if isinstance(run, RecordedRun):
-            return "This is a recording: nothing in it can be called, changed, recorded or run again."
-        if not run.alive:
-            return f"The run is over: {key('run_again')} runs it again."
-        return "These processes are only watched: they can be neither changed nor run again from here."
+            kind = "This is a recording: nothing in it can be called, changed, recorded or run again."
+        watched = "These processes are only watched: they can be neither changed nor run again from here."
+        return sentences.get(wanted) or kind or (watched if run.alive else over)
 
 
 @dataclass

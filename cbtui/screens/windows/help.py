@@ -10,8 +10,9 @@ from textual.content import Content
 from textual.widgets import Input, Static
 
 from cbtui.keys.action import KeyAction, Scope, group_by
-from cbtui.keys.actions import ACTIONS, OWN_TIME, TASKS
+from cbtui.keys.actions import ACTIONS, TASKS
 from cbtui.keys.keymap import Keymap, keymap_of
+from cbtui.keys.refused import OWN_TIME
 from cbtui.keys.signs import signs_of
 from cbtui.learning.stage import Stage, meaning_of
 from cbtui.looks.theme import GLYPHS, Charset

@@ -14,7 +14,7 @@ from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.narrator import Narrator
 from sim.engine.commands import Pause, RunUntil, SetSpeed, Step
 from sim.trace.events import TimeHalted
-from tests.support.builder import ns
+from tests.support.builder import Run, ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.fake_session import FakeEngines
 from tests.support.pictures import lines_of, text_of
@@ -78,6 +78,31 @@ async def test_a_narrator_that_came_with_a_step_goes_when_the_run_goes_on_live(k
         assert narrator.display
         await press(pilot, "space")
         assert narrator.display == stays
+
+
+async def test_a_step_back_from_the_beginning_says_that_this_is_the_beginning() -> None:
+    async with console() as (app, pilot):
+        app.lesson_screen.navigation.seek(0)
+        await press(pilot, "comma")
+        assert any(note.message.startswith("This is the beginning") for note in app._notifications)
+
+
+async def test_a_wide_narrator_grows_where_a_moment_needs_more_rows() -> None:
+    run = Run()
+    group, thread = run.exclusive(run.node("/n")), run.thread("MainThread")
+    for number in range(5):
+        run.callback(run.timer(group, f"tick_{number}", 1.0), thread, 1.0, 0.0)
+    run.log("later", 3.0)
+    app = RecordedConsole("shared-group", run.events, 3.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        await press(pilot, "comma")
+        narrator = app.screen.query_one(Narrator)
+        await press(pilot, "comma")
+        assert narrator.outer_size.height == 6
+        assert narrator.place == 3
+        await press(pilot, *["comma"] * 4)
+        assert narrator.now == 0
 
 
 async def test_a_narrow_narrator_takes_its_rows_from_the_lanes_and_gives_them_back() -> None:

@@ -98,7 +98,7 @@ def actions_of(screen: Screen[None], scope: Scope = Scope.LESSON) -> set[str]:
 def test_each_screen_has_the_actions_that_make_sense_for_what_it_shows(tmp_path: Path) -> None:
     of_a_lesson, of_an_exercise = actions_of(lesson()), actions_of(exercise())
     assert every(Scope.LESSON) - of_a_lesson == {"lesson", "watch"} | CHOSEN
-    assert every(Scope.LESSON) - of_an_exercise == WITH_A_PERSON | TAUGHT | REFUSED | CHOSEN
+    assert every(Scope.LESSON) - of_an_exercise == WITH_A_PERSON | TAUGHT | (REFUSED - {"no_use"}) | CHOSEN
     missing = every(Scope.LESSON) - actions_of(replay(tmp_path))
     assert missing == WITH_AN_ENGINE | WITH_A_PERSON | TAUGHT | (REFUSED - {"no_use"}) | CHOSEN | {
         "no_time",
