@@ -28,6 +28,7 @@ from lessons.lesson import Lesson
 from sim.quantities.durations import duration
 from sim.trace.descriptions import name_of
 from sim.trace.events import GroupId, Reason
+from sim.trace.figures.comparison import compare
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.figures.summary import summarise
 from sim.trace.figures.waiting import WORTH_TELLING, waits_for_others, waits_since
@@ -111,6 +112,9 @@ def test_a_subscription_slower_than_its_messages_tells_everywhere_how_long_the_n
     (figures,) = summarise(timeline).callbacks
     assert figures.longest_wait is not None
     assert figures.longest_wait.length == ns(2.7)
+    (pair,) = compare(timeline, timeline, Window(0, timeline.end)).callbacks
+    assert pair.first is not None
+    assert pair.first.longest_wait == ns(2.7)
 
 
 def test_between_two_calls_a_queue_is_not_told_as_nothing_that_waits() -> None:

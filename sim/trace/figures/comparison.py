@@ -13,6 +13,7 @@ from sim.trace.events import EntityId
 from sim.trace.figures.concurrency import threads_incrementally
 from sim.trace.figures.statistics import CallbackStatistics, statistics_incrementally
 from sim.trace.figures.summary import RobotFigures, robot_incrementally, trail_in_parts
+from sim.trace.figures.waiting import waited_by
 from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end
 from sim.trace.model import EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
@@ -23,7 +24,10 @@ CallbackKey: TypeAlias = tuple[str, str, str, str, int]
 
 @dataclass(frozen=True, slots=True)
 class WaitFigures:
-    """The waits of a ready callback in a window; ``why`` is the reason of most of that time."""
+    """The waits of a ready callback in a window; ``why`` is the reason of most of that time.
+
+    ``longest`` is that of a callback, or of its next message, as in a run's summary.
+    """
 
     longest: Nanoseconds
     total: Nanoseconds
@@ -40,8 +44,7 @@ class CallbackInRun:
     @property
     def longest_wait(self) -> Nanoseconds:
         """The longest wait, whether or not a call followed it in the window."""
-        of_calls = self.figures.wait.most if self.figures.wait else 0
-        return max(of_calls, self.waits.longest if self.waits else 0)
+        return self.waits.longest if self.waits else 0
 
     @property
     def idle(self) -> bool:
@@ -281,25 +284,17 @@ def _wait_figures(
 ) -> Incremental[WaitFigures | None]:
     """The figures of waits, each clipped to the window; a series of waits has one ``since``."""
     shares: defaultdict[str, int] = defaultdict(int)
-    lengths = yield from collect(
-        (wait.since, why_waiting(wait, timeline), _length_in(wait, timeline, window)) for wait in waits
-    )
-    longest = length = latest = 0
-    for number, (since, why, part) in enumerate(lengths):
-        shares[why] += part
-        length = length + part if since == latest else part
-        latest = since
-        longest = max(longest, length)
+    series: dict[Nanoseconds, Nanoseconds] = {}
+    for number, wait in enumerate(waits):
+        end = min(wait.end_at(timeline.end), window.end)
+        shares[why_waiting(wait, timeline)] += max(0, end - max(wait.start, window.start))
+        series[wait.since] = min(waited_by(end, wait, timeline), end - window.start)
         if number % STEP_SIZE == 0:
             yield
-    if not longest:
-        return None
-    return WaitFigures(longest, sum(shares.values()), max(shares, key=shares.__getitem__))
-
-
-def _length_in(wait: Wait, timeline: Timeline, window: Window) -> Nanoseconds:
-    """The length of a wait within the window."""
-    return max(0, min(wait.end_at(timeline.end), window.end) - max(wait.start, window.start))
+    longest = max(series.values(), default=0)
+    return (
+        WaitFigures(longest, sum(shares.values()), max(shares, key=shares.__getitem__)) if longest else None
+    )
 
 
 def _run_figures(timeline: Timeline, window: Window) -> Incremental[RunFigures]:

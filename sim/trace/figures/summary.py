@@ -8,7 +8,7 @@ from itertools import groupby, pairwise
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, RobotMoved, VelocityCommanded
 from sim.trace.figures.concurrency import threads_at_once
-from sim.trace.figures.waiting import waits_since
+from sim.trace.figures.waiting import waited_by
 from sim.trace.incremental import Incremental, collect, run_to_end, split
 from sim.trace.model import Call, EntityInfo, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
@@ -147,8 +147,7 @@ def _longest(waits: Iterable[Wait], timeline: Timeline) -> LongestWait | None:
     for _, each in groupby(waits, key=lambda wait: wait.since):
         series = list(each)
         ends = [wait.end_at(timeline.end) for wait in series]
-        last, end = series[-1], max(ends)
-        length = end - waits_since(last, timeline.queue(last.entity, max(last.start, end - 1)))
+        length = waited_by(max(ends), series[-1], timeline)
         if length > (longest.length if longest else 0):
             shares: defaultdict[str, int] = defaultdict(int)
             for wait, end in zip(series, ends, strict=True):

@@ -20,6 +20,11 @@ def waits_since(wait: Wait, queue: Queue) -> Nanoseconds:
     return arrived if wait.holder == wait.entity else min(arrived, wait.since)
 
 
+def waited_by(end: Nanoseconds, wait: Wait, timeline: Timeline) -> Nanoseconds:
+    """Return for how long a callback, or its next message, has waited just before ``end``."""
+    return end - waits_since(wait, timeline.queue(wait.entity, max(wait.start, end - 1)))
+
+
 def waits_for_others(moment: Moment) -> list[Wait]:
     """Return the waits of a moment that are worth telling and not for a callback's own last call.
 
