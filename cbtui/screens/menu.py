@@ -187,7 +187,8 @@ class MenuScreen(SizedScreen[None]):
         asked = self._asked_first(chosen)
         reason = why_no_preview(chosen) if isinstance(chosen, Lesson) else None
         title = _ASKED if asked else _TITLE.format(key=key) if reason is None else _NO_PICTURE
-        self._miniature.border_title = Text(title)
+        blank = "" if self.layout_now is Layout.GRID else " "  # Textual adds it where there is a right edge
+        self._miniature.border_title = Text(title + blank)
         if isinstance(chosen, Lesson) and reason is not None:
             self._previews.subjects[chosen.id] = f"It has no preview: {reason}."
         self._show_drawn()

@@ -34,7 +34,7 @@ class EntryDescription:
 
 
 class DescriptionPane(PaintedWidget):
-    """Shows a description; keys without room are left out, the rest is cut at the bottom."""
+    """Shows a description; keys and a blank line without room are left out, the rest is cut at the bottom."""
 
     description: reactive[EntryDescription | None] = painted(None)
 
@@ -53,11 +53,11 @@ def of_lesson(
     ``text`` describes the lesson, ``progress`` the learner's progress in it.
     """
     facts = (
+        *((("so far", progress),) if progress else ()),
         ("executor", lesson.executor),
         ("groups", lesson.groups),
         ("service", lesson.service.name),
         *((("clock", "real: computing takes time"),) if lesson.setup.clock == "real" else ()),
-        *((("so far", progress),) if progress else ()),
         *(() if opened is None else (("opened", time_ago(opened, now)),)),
     )
     keys = tuple((key_in_force(attempt.key, keymap), attempt.text) for attempt in lesson.tries)
@@ -102,9 +102,10 @@ def described(about: EntryDescription, size: Size) -> list[list[TextRun]]:
     width = size.width
     rows = [[_line(about.title, width, _STRONG)]]
     rows += [[_line(text, width, _PLAIN)] for text in lines_of_text(about.text, width)]
-    rows.append([_line("", width, _PLAIN)])
-    for name, fact in about.facts:
-        rows += _entry(name, fact, width, _FACTS, _FAINT)
+    facts = [line for name, fact in about.facts for line in _entry(name, fact, width, _FACTS, _FAINT)]
+    if len(rows) + len(facts) < size.height:
+        rows.append([_line("", width, _PLAIN)])
+    rows += facts
     between = [[_line("", width, _PLAIN)]]
     for key, text in about.keys:
         lines = [*between, *_entry(key, text, width, _KEYS, _STRONG)]

@@ -7,6 +7,7 @@ import msgspec
 import pytest
 from textual.command import CommandList, CommandPalette
 from textual.events import Key
+from textual.geometry import Size
 
 from cbtui.app import CbtuiApp
 from cbtui.screens.choosing import ChoosingScreen
@@ -16,6 +17,7 @@ from cbtui.screens.windows.help import HelpScreen
 from cbtui.screens.windows.prediction import PredictionScreen
 from cbtui.screens.windows.tour import STOPS, TourScreen
 from cbtui.terminal import pending_keys
+from cbtui.widgets.description_pane import described, of_lesson
 from cbtui.widgets.guide import Guide
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
@@ -178,6 +180,24 @@ async def test_a_lesson_that_is_not_predicted_gives_nothing_away() -> None:
         assert "its first question" in told
         assert not any(attempt.text in told for attempt in lesson.tries)
         assert lesson.predictions[0].question[:20] in told
+
+
+def test_in_few_rows_a_description_leaves_out_no_progress() -> None:
+    progress = "predicted, not watched yet: run it for 30 s or to its end"
+    about = of_lesson(
+        lessons()[0], "The robot drives straight on, and turns for ten seconds.", 0, 9.0, progress
+    )
+    rows = [" ".join(run.text.strip() for run in row) for row in described(about, Size(36, 9))[:9]]
+    assert "end" in " ".join(rows)
+    assert "" not in rows
+    assert "" in [row[0].text.strip() for row in described(about, Size(36, 20))]
+
+
+async def test_the_heading_of_a_question_is_set_off_from_its_line() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.pause()
+        assert "─ its first question ─" in text_of(app)
 
 
 async def test_any_key_leaves_the_tour_for_the_predictions() -> None:
