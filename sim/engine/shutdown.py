@@ -21,7 +21,7 @@ from sim.engine.time_control import RealControl, VirtualControl
 from sim.engine.watchdogs.endless_waits import EndlessWaits
 from sim.probes import own_code
 from sim.ros.middleware.host import Host
-from sim.trace.events import Notice, RunEnding, Severity
+from sim.trace.events import Notice, NoticeKind, RunEnding, Severity
 
 _MOST_NAMED = 3
 """Threads that are named of those that keep a program from ending."""
@@ -115,7 +115,7 @@ class RunShutdown:
         if self._host.overrides is not None and not cause.failed:
             with self._host.lock:
                 for sentence in self._host.overrides.unmatched():
-                    self._tell(Severity.WARN, sentence)
+                    self._tell(Severity.WARN, sentence, NoticeKind.UNMATCHED)
         return True
 
     def finish(self, outcome: ProgramOutcome) -> NoReturn:
@@ -201,8 +201,8 @@ class RunShutdown:
         told = [f"{name}: {place}" for name, place in places if place]
         return f" ({'; '.join(told[:_MOST_NAMED])})" if told else ""
 
-    def _tell(self, severity: Severity, sentence: str) -> None:
-        self._outbox.record(Notice(self._clock.now(), severity, sentence))
+    def _tell(self, severity: Severity, sentence: str, kind: NoticeKind = NoticeKind.OTHER) -> None:
+        self._outbox.record(Notice(self._clock.now(), severity, sentence, kind=kind))
 
 
 def _signal_main() -> None:

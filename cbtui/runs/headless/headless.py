@@ -19,7 +19,7 @@ from sim.diagnosis import diagnose, findings_text
 from sim.engine.commands import Stop
 from sim.engine.setup import Keyboard, RunSetup
 from sim.quantities.durations import timestamp
-from sim.trace.events import AnyEvent
+from sim.trace.events import AnyEvent, NoticeKind
 from sim.trace.figures.summary import summarise
 from sim.trace.figures.summary_text import plain_text
 from sim.trace.timeline import Timeline
@@ -38,7 +38,9 @@ def run_headless(
     replace_recording: bool = False,
     chains: Sequence[Sequence[str]] = (),
 ) -> int:
-    """Run a set-up to its end; returns the exit code: 0 well, 1 failed, 2 a file cannot be written.
+    """Run a set-up to its end; returns the exit code.
+
+    0: well, 1: failed, 2: a file cannot be written, or a callback that was to be changed is not there.
 
     Ctrl-C, ``kill`` and a closed terminal end the run early; its summary is still printed and its recording
     finished, and the exit code is 128 plus the signal's number. A live keyboard reads this process's standard
@@ -182,7 +184,8 @@ class _Headless:
             if all(notice.text != ended.reason for notice in self._timeline.notices):
                 complain(" ".join(ended.reason.split()))
             return 1
-        return max(self._events_verdict(), self._recording_verdict())
+        unmatched = any(notice.kind is NoticeKind.UNMATCHED for notice in self._timeline.notices)
+        return max(2 * unmatched, self._events_verdict(), self._recording_verdict())
 
     def _events_verdict(self) -> int:
         if self._file is None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from difflib import get_close_matches
 from enum import StrEnum
 from typing import TypeAlias
 
@@ -57,7 +58,10 @@ def _unmatched(
     for node, callback in overrides:
         if (node, callback) in present or (not node and callback in names):
             continue
-        place = f" in {node}" if node and callback in names else ""
+        is_elsewhere = node and callback in names
+        place = f" in {node}" if is_elsewhere else ""
         are = "is" if len(names) == 1 else "are"
         known = f"there {are} {', '.join(names)}" if names else f"there was no {kind} at all"
-        yield f"no {kind} is named {callback}{place}; {known}"
+        near = [] if is_elsewhere else get_close_matches(callback, names, 1, 0.75)
+        meant = f"; did you mean {near[0]}?" if near else ""
+        yield f"no {kind} is named {callback}{place}; {known}{meant}"

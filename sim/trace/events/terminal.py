@@ -94,6 +94,8 @@ class NoticeKind(StrEnum):
     """A parameter is refused, and the program makes nothing of the answer that says so."""
     PUBLISHERS_KEPT = "publishers kept"
     """Callbacks have made several publishers at one line, and destroyed none."""
+    UNMATCHED = "unmatched"
+    """The run was asked to change a callback that the program does not have."""
     FORGED = "forged"
     """A program records events that only the run may record."""
 

@@ -76,10 +76,11 @@ def test_a_repeated_run_can_be_changed_once_more(folder: Path) -> None:
     assert [at for at in starts(other, "timer_callback") if 1.2 < at < 6.2]
 
 
-def test_a_callback_that_there_is_not_is_told_of(folder: Path) -> None:
-    done = cbtui("run", "exclusive-2-threads", "--for", "1", "--group", "tick=own")
-    assert done.returncode == 0
-    assert "no callback is named tick; there are SetBool_callback, timer_callback" in done.stderr
+def test_a_callback_that_there_is_not_is_a_slip() -> None:
+    done = cbtui("run", "exclusive-2-threads", "--for", "1", "--group", "timer_calback=own")
+    assert done.returncode == 2
+    told = "no callback is named timer_calback; there are SetBool_callback, timer_callback; did you mean"
+    assert f"{told} timer_callback?" in done.stderr
 
 
 @pytest.mark.parametrize("command", ["run", "open"])
