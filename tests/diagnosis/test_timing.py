@@ -13,7 +13,7 @@ from sim.ros.scheduling.callback_groups import (
 )
 from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, executor_of, once, spin
 from tests.support.builder import ns
-from tests.support.engine_runs import program_setup, run_to_end
+from tests.support.engine_runs import program_setup, run_lesson, run_to_end
 from tests.support.simulation import Simulation
 
 
@@ -252,3 +252,15 @@ def test_what_is_too_slow_for_its_messages_is_told_at_the_line_that_takes_the_ti
     place = found.rule.explain(found, timeline).place
     assert place is not None
     assert "too long" in path.read_text().splitlines()[place.first_line - 1]
+
+
+def test_a_timer_that_awaits_longer_than_its_period_overruns_it_as_one_that_waits_in_call() -> None:
+    timeline = run_lesson("three-cures", 8.0).timeline
+    found = [each for each in diagnose(timeline) if each.rule.id == "overrun-timer"]
+    cures = {
+        timeline.entities[each.subject].callback: each.rule.explain(each, timeline).cure for each in found
+    }
+    assert cures == {
+        name: f"return from {name}, and go on in a done-callback of the future{which}"
+        for name, which in (("ask_and_await", ""), ("ask_and_wait", ", which call_async() returns"))
+    }

@@ -4,7 +4,9 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 from sim.diagnosis.edits.profiles import keep_newest
+from sim.diagnosis.edits.replies import go_on_in_done_callback
 from sim.diagnosis.rule import (
+    CodeLocation,
     Explanation,
     Finding,
     Rule,
@@ -21,7 +23,7 @@ from sim.diagnosis.words import often, threads_for, who, with_threads
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind, GroupKind
-from sim.trace.model import EntityInfo, Span, Window
+from sim.trace.model import AWAIT, EntityInfo, Position, Span, Window
 from sim.trace.timeline import Timeline
 
 _HABIT = 3
@@ -87,7 +89,7 @@ def _lock_line(found: Finding, timeline: Timeline) -> int | None:
 
 
 class OverrunTimer(Rule):
-    """A timer's callback took longer than its period, so ticks were missed.
+    """A timer's callback took longer than its period, or awaited something that long, so ticks were missed.
 
     Source: rcl skips the periods that have passed when a timer is called late.
     """
@@ -97,10 +99,13 @@ class OverrunTimer(Rule):
     is_effect = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield each call longer than the period, unless the next one overlaps it."""
+        """Yield each call or await longer than the period, unless the next call overlaps it."""
         for entity in view.entities(EntityKind.TIMER):
             if entity.period == 0:
                 continue
+            for each in _awaits(entity, view):
+                if (length := each.end - each.start) > entity.period:
+                    yield Finding(self, each.start, each.end, entity.id, entity.id, size=length)
             spans = view.spans(entity.id)
             for place, span in enumerate(spans):
                 end = span.end_at(view.end)
@@ -115,16 +120,24 @@ class OverrunTimer(Rule):
         threads = f", with {with_threads(2)}" if alone else ""
         missed = (found.lasted - 1) // entity.period
         ticks = "1 tick" if missed == 1 else f"{missed} ticks"
-        subject = who(found.subject, timeline)
-        place = line_of(found.subject, Window(found.at, found.until), timeline)
+        subject, during = who(found.subject, timeline), Window(found.at, found.until)
+        place = line_of(found.subject, during, timeline)
+        why = "the timer is not called again before its callback is over; missed ticks are not made up for"
+        cure = f"let {subject} return sooner: do long work step by step, or in a callback of another group"
+        cure, remedies = cure + threads, edits_for_rounds(place, found.subject, timeline)
+        calls = {each.call for each in timeline.positions_of(found.subject, during) if _is_at(each, place)}
+        if calls & {"Client.call", AWAIT}:
+            why = f"{why}; a callback keeps its group while it waits for a reply, and while it awaits one"
+            cure = f"return from {subject}, and go on in a done-callback of the future"
+            cure += ", which call_async() returns" if "Client.call" in calls else ""
+            remedies = by_edit(place, "go on in a done-callback of the future", go_on_in_done_callback)
         return Explanation(
             f"{subject} took {duration(found.lasted)} with a period of {duration(entity.period)}; "
             f"{ticks} missed or late{often(found.count, 'overruns in all')}",
-            "the timer is not called again before its callback is over; missed ticks are not made up for",
-            f"let {subject} return sooner: do long work step by step, or in a callback of another group"
-            + threads,
+            why,
+            cure,
             place,
-            remedies=edits_for_rounds(place, found.subject, timeline),
+            remedies=remedies,
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
@@ -136,6 +149,21 @@ class OverrunTimer(Rule):
         if calls < 2:
             return None
         return Weight.PROBLEM if found.count >= _HABIT and 2 * found.count >= calls else Weight.REMARK
+
+
+def _is_at(position: Position, place: CodeLocation | None) -> bool:
+    return place is not None and any(
+        (each.file, each.line) == (place.file, place.first_line) for each in position.frames
+    )
+
+
+def _awaits(entity: EntityInfo, view: TimelineView) -> Iterator[Window]:
+    """Yield when calls of an entity were suspended; they keep others out in an exclusive group alone."""
+    is_alone = _kind_of_group(entity, view) is GroupKind.EXCLUSIVE
+    if is_alone and entity.id in view.timeline.ever_suspended:
+        for each in view.timeline.positions_of(entity.id, view.window):
+            if each.call == AWAIT:
+                yield Window(each.start, each.end_at(view.end))
 
 
 def _kind_of_group(entity: EntityInfo, view: TimelineView) -> GroupKind | None:
