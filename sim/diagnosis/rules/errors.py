@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 
+from sim.diagnosis.edits.fields import write_float
 from sim.diagnosis.edits.functions import fit_parameters, hand_over_function
 from sim.diagnosis.edits.names import rename_definition
 from sim.diagnosis.edits.program_file import asked_of_file
@@ -57,6 +58,8 @@ class ProgramRaised(Rule):
             *by_edit(place, "define it with the parameters it is called with", fit_parameters),
             *by_edit(place, "give it another name", rename_definition),
         )
+        if field := _NO_FLOAT.fullmatch(ended.error or ""):
+            remedies = by_edit(place, "write a float", write_float, field[1])
         if attribute := _used_too_soon(ended):
             why = "result() does not wait: of a future that is not done yet it is None"
             cure = "wait by rclpy.spin_until_future_complete(node, future) before result()"
@@ -95,6 +98,8 @@ def _called_too_soon(ended: RunEnded, timeline: Timeline) -> EntityInfo | None:
 _futures_used = asked_of_file(futures_used)
 _NO_ATTRIBUTE = re.compile(r"AttributeError: 'NoneType' object has no attribute '(\w+)'")
 
+_NO_FLOAT = re.compile(r"AssertionError: The '(\w+)' field must be of type 'float'")
+
 _NODE_PROPERTIES = (
     "clients|context|default_callback_group|guards|handle|publishers|services|subscriptions|timers|waitables"
 )
@@ -117,6 +122,11 @@ _KNOWN = tuple(
             r"AttributeError: 'NoneType' object has no attribute 'successful'",
             r"the callback of add_on_set_parameters_callback() returned nothing; rclpy needs its answer",
             r"end that callback with: return SetParametersResult(successful=True)",
+        ),
+        (
+            _NO_FLOAT.pattern,
+            r"a field of type float takes no int, and no bool: 1 is an int",
+            r"write a float: 1.0 in place of 1, or float(...)",
         ),
         (
             r"EOFError: EOF when reading a line",
