@@ -1,7 +1,7 @@
 """The rule on misspelt topics, and the likeness of names of topics and services."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
-from difflib import SequenceMatcher
+from collections.abc import Iterable, Iterator, Mapping
+from difflib import SequenceMatcher, get_close_matches
 from functools import lru_cache
 
 from sim.diagnosis.cures import Remedy
@@ -9,7 +9,7 @@ from sim.diagnosis.edits.names import rename, rename_publisher
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, entity_of, made_at, place_of
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import who
-from sim.trace.events import VELOCITY_TOPIC, EntityKind
+from sim.trace.events import ROBOT_SERVICES, VELOCITY_TOPIC, EntityKind
 from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -145,16 +145,14 @@ def offer(end: EntityInfo, timeline: Timeline) -> tuple[str, str, tuple[Remedy, 
             f"give both ends of {end.name} the same type: {_ends(end, same)}",
             (),
         )
-    near = offered.get(nearest(end.name, _others(offered, end.name)))
-    if near is None:
-        return "", "", ()
-    place = made_at(near)
-    where = "" if place is None else f" ({place})"
-    return "", f"call {near.name}, which is offered{where}", renaming(end, near.name, "call")
-
-
-def _others(names: Collection[str], name: str) -> list[str]:
-    return [each for each in names if each != name]
+    fitting = (name for name, each in offered.items() if end.interface_type in ("", each.interface_type))
+    near = nearest(end.name, [each for each in fitting if each != end.name])
+    place = made_at(offered[near]) if near else None
+    by = f"is offered{f' ({place})' if place else ''}"
+    if not near:
+        near = "".join(get_close_matches(end.name, ROBOT_SERVICES, 1, _ALIKE))
+        by = "the robot offers"
+    return ("", f"call {near}, which {by}", renaming(end, near, "call")) if near else ("", "", ())
 
 
 def _ends(client: EntityInfo, service: EntityInfo) -> str:

@@ -195,18 +195,22 @@ class ServiceNeverComes(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         if not found.subject:
             return self._explained_of_program(found, timeline)
-        subject = who(found.subject, timeline)
+        subject, node = who(found.subject, timeline), entity_of(found, timeline).node
         place = line_of(found.subject, Window(found.at, found.until + 1), timeline)
+        differs, meant, remedies = offer(
+            next(each for each in _unserved(timeline) if each.node == node), timeline
+        )
+        start = meant or f"start the node that offers {found.about}"
         return Explanation(
             f"{subject} waits in wait_for_service(){until_when(found.ends, timeline)} for {found.about}, "
-            "which nobody offers",
+            f"{differs or 'which nobody offers'}",
             "while it waits, it keeps its thread and its group, for ever without a timeout or in a loop",
-            f"start the node that offers {found.about}; wait for it in __init__, before spin(), or ask "
+            f"{start}; wait for it in __init__, before spin(), or ask "
             f"service_is_ready() in {subject} and return",
             place,
             for_ever=found.until >= timeline.end and not found.ends,
             until=found.ends,
-            remedies=edits_for_service(place, found.subject, timeline),
+            remedies=remedies or edits_for_service(place, found.subject, timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:

@@ -55,6 +55,9 @@ class Scanned(TraceEvent, frozen=True, tag="scan"):
 VELOCITY_TOPIC = "/cmd_vel"
 """The topic on which the robot is told where to go."""
 
+ROBOT_SERVICES = ("/reset_world", "/motor_power")
+"""The services that the robot offers."""
+
 
 class VelocityCommanded(TraceEvent, frozen=True, tag="cmd_vel"):
     """The robot's driver took a velocity command."""
