@@ -37,6 +37,20 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "await the future in an async def cook",
         ),
         ("spin_once", "nested-spin", "rclpy.spin_once(self)", "return from go, and go on in on_open"),
+        (
+            "event_of_its_group",
+            "group-starvation",
+            "self.opened.wait(0.8)",
+            "give on_bell a callback group of its own",
+        ),
+        ("call_longer_than_period", "overrun-timer", "self.client.call(", "go on in a done-callback"),
+        ("int_for_float", "program-raised", "command.linear.x = 1", "1.0 in place of 1"),
+        (
+            "misspelt_service",
+            "service-never-comes",
+            "wait_for_service(",
+            "call /motor_power, which is offered",
+        ),
         ("wait_for_event", "endless-wait", "self.opened.wait()", "give go a callback group of its own"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("call_in_script", "self-made-deadlock", "client.call(", "give ask a callback group of its own"),
@@ -176,6 +190,21 @@ def test_a_service_is_not_told_to_go_on_after_it_has_returned(program: str) -> N
     told = [each.rule.explain(each, timeline) for each in diagnose(timeline)]
     assert told
     assert "done_callback" not in "".join(each.cure for each in told)
+
+
+def test_the_services_of_the_robot_are_known_without_the_robot(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    lines = (PROGRAMS / "misspelt_service.py").read_text().splitlines()
+    path.write_text("\n".join(each for each in lines if "create_service" not in each))
+    timeline = run_to_end(program_setup(path, 2.0)).timeline
+    told = diagnose(timeline)[0].rule.explain(diagnose(timeline)[0], timeline)
+    assert told.cure.startswith("call /motor_power, which the robot offers; ")
+
+
+def test_it_is_told_who_sets_the_event_that_a_callback_waits_for() -> None:
+    timeline = run_to_end(program_setup(PROGRAMS / "event_of_its_group.py", 3.0)).timeline
+    told = diagnose(timeline)[0].rule.explain(diagnose(timeline)[0], timeline)
+    assert told.why.endswith(", and go waits for what on_bell sets")
 
 
 def test_it_is_told_who_sets_what_a_loop_waits_for() -> None:

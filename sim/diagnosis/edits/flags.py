@@ -24,6 +24,23 @@ def setters(source: SourceEditor, line: int) -> tuple[str, ...]:
 
 
 @asked_of_file
+def event_setters(source: SourceEditor, line: int) -> tuple[str, ...]:
+    """Return the functions that set the event, or notify the condition, for which a line waits."""
+    waits = (each.func for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0))
+    awaited = {
+        ast.unparse(each.value)
+        for each in waits
+        if isinstance(each, ast.Attribute) and each.attr in ("wait", "wait_for")
+    }
+    wakes = {f"{each}.{name}" for each in awaited for name in ("set", "notify", "notify_all")}
+    return tuple(
+        function.name
+        for function in source.nodes(ast.FunctionDef)
+        if any(ast.unparse(each.func) in wakes for each in source.nodes(ast.Call, function))
+    )
+
+
+@asked_of_file
 def sleeps(source: SourceEditor, line: int) -> bool:
     """Return whether a ``while`` that only asks lets time pass in each round."""
     with suppress(NotSimpleError):

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
+from sim.diagnosis.edits.flags import event_setters
 from sim.diagnosis.edits.spins import spin_beside, spins_in_turn
 from sim.diagnosis.rule import (
     CodeLocation,
@@ -106,6 +107,13 @@ class GroupStarvation(_KeptWaiting):
         waited = self._waiting(found, timeline)
         mover = found.subject if len(waited) == 1 else found.culprit
         room = remedy_for_waits(waited, mover, Window(found.at, found.until), timeline)
+        place = line_of(found.culprit, Window(found.at, found.until), timeline)
+        setters = event_setters(place.file, place.first_line) if place else ()
+        awaited = [each for each in (who(each, timeline) for each in waited) if each in setters]
+        why = f"{_admission(found.subject, timeline)}, however many threads are free"
+        cure = f"{room.words(timeline)}; or let {culprit} return sooner"
+        if awaited:
+            why, cure = f"{why}, and {culprit} waits for what {listed(awaited)} sets", room.words(timeline)
         busy = ""
         if _others_waiting(found, Reason.NO_FREE_WORKER, timeline):
             is_only = threads_for([found.culprit], found.until, timeline) == 1
@@ -114,8 +122,8 @@ class GroupStarvation(_KeptWaiting):
             found,
             timeline,
             f"{group_of(found.subject, timeline)} was held by {culprit}{busy}",
-            f"{_admission(found.subject, timeline)}, however many threads are free",
-            f"{room.words(timeline)}; or let {culprit} return sooner",
+            why,
+            cure,
             room,
         )
 
