@@ -131,8 +131,8 @@ class Rule(ABC):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield every occurrence that reaches into the view's window, uncut."""
 
-    def kind(self, found: Finding) -> str:
-        """Return the kind of problem, as lessons declare it."""
+    def kind(self, found: Finding, timeline: Timeline) -> str:
+        """Return the kind of problem, by which lessons say that they show it."""
         return self.id
 
     @abstractmethod

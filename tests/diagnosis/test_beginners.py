@@ -165,12 +165,13 @@ def test_a_beginners_mistake_is_one_problem_at_its_line(
         ("rate_sleep", "deadlock-over-a-rate"),
         ("lock_across_callbacks", "deadlock-over-a-lock"),
         ("lock_during_call", "deadlock-over-a-lock"),
-        ("held_group", "group-starvation"),
+        ("held_group", "group-held-beside-threads"),
     ],
 )
 def test_a_deadlock_is_of_the_kind_of_what_is_waited_for(program: str, kind: str) -> None:
-    found = diagnose(run_to_end(program_setup(PROGRAMS / f"{program}.py", 4.0)).timeline)[0]
-    assert found.rule.kind(found) == kind
+    timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 4.0)).timeline
+    found = diagnose(timeline)[0]
+    assert found.rule.kind(found, timeline) == kind
 
 
 def test_a_callback_that_sleeps_by_a_rate_alone_in_its_group_needs_only_a_thread(tmp_path: Path) -> None:

@@ -274,7 +274,7 @@ def test_a_sleep_on_simulated_time_that_keeps_the_clock_out_is_a_deadlock(
     program = SLEEPER.replace("CLOCK", clock).replace("rclpy.spin(node)", f"{world}rclpy.spin(node)")
     run = run_program(tmp_path, program, 2.0)
     found = [each for each in diagnose(run.timeline) if each.rule.id == "self-made-deadlock"]
-    assert [each.rule.kind(each) for each in found] == rules
+    assert [each.rule.kind(each, run.timeline) for each in found] == rules
     for each in found:
         told = each.rule.explain(each, run.timeline)
         assert "waits for the simulated time for ever; /clock waits for group A" in told.what

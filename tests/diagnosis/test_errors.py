@@ -296,4 +296,4 @@ def test_only_an_exception_on_a_worker_is_of_the_kind_that_may_get_lost(
 
     run = ended_by(add_to, threads)
     found = run.one("program-raised")
-    assert found.rule.kind(found) == kind
+    assert found.rule.kind(found, run.timeline) == kind

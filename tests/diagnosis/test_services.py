@@ -39,7 +39,7 @@ def test_a_callback_that_returns_no_response_leaves_its_caller_waiting() -> None
     assert told.what == "serve returned no response, so the caller of /s waits for ever"
     assert told.cure == "end serve with: return response"
     found = run.one("unreturned-response")
-    assert lesson_on(found.rule.kind(found)) is None
+    assert lesson_on(found.rule.kind(found, run.timeline)) is None
 
 
 @pytest.mark.parametrize(("returned", "kind"), [(True, "bool"), (SetBool.Request(), "SetBool_Request")])

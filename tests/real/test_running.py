@@ -373,5 +373,5 @@ def test_a_sleep_by_simulated_time_that_stops_its_clock_is_a_deadlock(tmp_path: 
         tmp_path, SIM_TIME, "SingleThreadedExecutor()", call, ground=ground, seconds=2.0
     ).timeline
     (found,) = (each for each in diagnose(timeline) if each.rule.id == "self-made-deadlock")
-    assert found.rule.kind(found) == "deadlock-over-the-clock"
+    assert found.rule.kind(found, timeline) == "deadlock-over-the-clock"
     assert "clock_callback" in {each.callback for each in timeline.entities.values()}

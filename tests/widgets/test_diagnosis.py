@@ -362,7 +362,7 @@ _FOUR_CALLS = (2.55, 10.55, 10.6, 10.65)
     [
         ("reentrant-2-threads", _FOUR_CALLS, "timer waited 4.6 s: 2 calls of SetBool kept a thread each"),
         ("no-groups-at-all", _FOUR_CALLS, "timer waited 4.5 s: group A was held by SetBool (node.py:97)"),
-        ("three-cures", (), "ask_and_wait took 1.5 s with a period of 1.0 s (node.py:77)"),
+        ("three-cures", (), "ask_and_await took 1.5 s with a period of 1.0 s (node.py:71)"),
     ],
 )
 def test_in_80_columns_no_lesson_s_problem_is_cut_within_a_clause(
@@ -473,7 +473,10 @@ def test_a_good_run_is_told_as_it_was() -> None:
 def test_a_problem_of_the_whole_run_is_told_without_a_time() -> None:
     rule = next(rule for rule in RULES if rule.id == "qos-mismatch")
     found = ExplainedFinding(
-        Finding(rule, 0, 1), RuleWeight.PROBLEM, Explanation("scan hears nothing", "why", "cure", None)
+        Finding(rule, 0, 1),
+        RuleWeight.PROBLEM,
+        Explanation("scan hears nothing", "why", "cure", None),
+        rule.id,
     )
     told = with_worst_problem(Diagnosis("nothing waits", DiagnosisLevel.FINE), [found])
     assert (told.text, told.at_length) == ("scan hears nothing", "qos mismatch: scan hears nothing")

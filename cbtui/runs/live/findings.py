@@ -27,6 +27,8 @@ class ExplainedFinding:
     finding: Finding
     weight: Weight
     explanation: Explanation
+    kind: str
+    """The kind of problem, by which lessons say that they show it."""
 
     @property
     def is_problem(self) -> bool:
@@ -116,7 +118,8 @@ class FindingsMonitor:
 
 def _explained(found: Finding, timeline: Timeline) -> ExplainedFinding:
     weight = found.rule.weigh(found, timeline) or found.rule.weight
-    return ExplainedFinding(found, weight, found.rule.explain(found, timeline))
+    explanation, kind = found.rule.explain(found, timeline), found.rule.kind(found, timeline)
+    return ExplainedFinding(found, weight, explanation, kind)
 
 
 def problem_count_text(findings: Sequence[ExplainedFinding]) -> str:

@@ -120,7 +120,7 @@ class LaneSelection(ScreenPart):
 
     def _lesson_on(self, found: ExplainedFinding) -> Lesson | None:
         """The lesson that shows a problem, unless it is on screen."""
-        lesson = lesson_on(found.finding.rule.kind(found.finding)) if found.is_problem else None
+        lesson = lesson_on(found.kind) if found.is_problem else None
         return None if lesson == self.subject.lesson else lesson
 
     async def _take(self, chosen: ChosenStep | None) -> None:

@@ -22,6 +22,7 @@ from sim.diagnosis.rule import (
     Rule,
     WaitedFor,
     by_edit,
+    entity_of,
     is_models,
     line_of,
 )
@@ -54,9 +55,11 @@ class SelfMadeDeadlock(Rule):
             if not _lacks_worker(deadlock)
         )
 
-    def kind(self, found: Finding) -> str:
-        """Distinguish deadlocks over locks, rates and clocks from those over calls."""
-        return next((kind for wanted, kind in _KINDS.items() if wanted in found.waited_for), self.id)
+    def kind(self, found: Finding, timeline: Timeline) -> str:
+        """Distinguish deadlocks over locks, rates and clocks from those over calls, and calls in services."""
+        in_service = entity_of(found, timeline).kind is EntityKind.SERVICE
+        over_call = "deadlock-in-a-service" if in_service else self.id
+        return next((kind for wanted, kind in _KINDS.items() if wanted in found.waited_for), over_call)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)

@@ -39,7 +39,7 @@ class ProgramRaised(Rule):
         worker = raised.thread if raised and is_worker(raised.thread, view.timeline) else 0
         yield Finding(self, at, at, raised.entity if raised else 0, thread=worker)
 
-    def kind(self, found: Finding) -> str:
+    def kind(self, found: Finding, timeline: Timeline) -> str:
         """Distinguish exceptions on a worker, which may be lost, from those that end the program at once."""
         return self.id if found.thread else "program-failed"
 

@@ -46,7 +46,7 @@ class UnreturnedResponse(Rule):
                     raised = "" if span.no_response else span.error
                     yield Finding(self, span.start, span.end, entity.id, entity.id, detail=raised)
 
-    def kind(self, found: Finding) -> str:
+    def kind(self, found: Finding, timeline: Timeline) -> str:
         """No lesson is on this: where it is found in one, it is an effect."""
         return "no-response"
 

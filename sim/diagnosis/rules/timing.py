@@ -6,7 +6,6 @@ from itertools import pairwise
 from sim.diagnosis.edits.profiles import keep_newest
 from sim.diagnosis.edits.replies import go_on_in_done_callback
 from sim.diagnosis.rule import (
-    CodeLocation,
     Explanation,
     Finding,
     Rule,
@@ -23,7 +22,7 @@ from sim.diagnosis.words import often, threads_for, who, with_threads
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind, GroupKind
-from sim.trace.model import AWAIT, EntityInfo, Position, Span, Window
+from sim.trace.model import AWAIT, EntityInfo, Span, Window
 from sim.trace.timeline import Timeline
 
 _HABIT = 3
@@ -125,11 +124,10 @@ class OverrunTimer(Rule):
         why = "the timer is not called again before its callback is over; missed ticks are not made up for"
         cure = f"let {subject} return sooner: do long work step by step, or in a callback of another group"
         cure, remedies = cure + threads, edits_for_rounds(place, found.subject, timeline)
-        calls = {each.call for each in timeline.positions_of(found.subject, during) if _is_at(each, place)}
-        if calls & {"Client.call", AWAIT}:
+        if waits := _waits_for_reply(found, timeline):
             why = f"{why}; a callback keeps its group while it waits for a reply, and while it awaits one"
             cure = f"return from {subject}, and go on in a done-callback of the future"
-            cure += ", which call_async() returns" if "Client.call" in calls else ""
+            cure += ", which call_async() returns" if "Client.call" in waits else ""
             remedies = by_edit(place, "go on in a done-callback of the future", go_on_in_done_callback)
         return Explanation(
             f"{subject} took {duration(found.lasted)} with a period of {duration(entity.period)}; "
@@ -139,6 +137,10 @@ class OverrunTimer(Rule):
             place,
             remedies=remedies,
         )
+
+    def kind(self, found: Finding, timeline: Timeline) -> str:
+        """Distinguish what is late by a wait for a reply."""
+        return "overrun-by-a-reply" if _waits_for_reply(found, timeline) else self.id
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """A problem if most calls overrun, else a remark.
@@ -151,10 +153,17 @@ class OverrunTimer(Rule):
         return Weight.PROBLEM if found.count >= _HABIT and 2 * found.count >= calls else Weight.REMARK
 
 
-def _is_at(position: Position, place: CodeLocation | None) -> bool:
-    return place is not None and any(
-        (each.file, each.line) == (place.file, place.first_line) for each in position.frames
-    )
+def _waits_for_reply(found: Finding, timeline: Timeline) -> set[str]:
+    """Return the calls in which a callback waits for a reply at the line where it is longest, or awaits."""
+    during = Window(found.at, found.until)
+    place = line_of(found.subject, during, timeline)
+    return {
+        each.call
+        for each in timeline.positions_of(found.subject, during)
+        if each.call in ("Client.call", AWAIT)
+        and place is not None
+        and (place.file, place.first_line) in ((frame.file, frame.line) for frame in each.frames)
+    }
 
 
 def _awaits(entity: EntityInfo, view: TimelineView) -> Iterator[Window]:

@@ -14,6 +14,7 @@ from sim.diagnosis.rule import (
     Rule,
     Weight,
     by_edit,
+    entity_of,
     line_of,
     loop_beside_spin,
     place_of,
@@ -102,6 +103,13 @@ class GroupStarvation(_KeptWaiting):
             *_others_waiting(found, Reason.NO_FREE_WORKER, timeline),
         ]
 
+    def kind(self, found: Finding, timeline: Timeline) -> str:
+        """Distinguish groups that a suspended callback keeps, and those beside which threads were free."""
+        if found.culprit in timeline.ever_suspended:
+            return "group-kept-by-await"
+        has_threads = threads_for([found.culprit], found.until, timeline) > 1
+        return "group-held-beside-threads" if has_threads else self.id
+
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         culprit = who(found.culprit, timeline)
         waited = self._waiting(found, timeline)
@@ -134,6 +142,17 @@ class NoFreeWorker(_KeptWaiting):
     id = "no-free-worker"
     summary = "a callback waits long because all threads are busy"
     reason = Reason.NO_FREE_WORKER
+
+    def kind(self, found: Finding, timeline: Timeline) -> str:
+        """Distinguish one thread, that of another node or of an action's goal, and threads in a lock."""
+        subject, culprit = entity_of(found, timeline), timeline.entities.get(found.culprit)
+        if threads_for([found.culprit, found.subject], found.until, timeline) > 1:
+            at = timeline.positions_of(found.culprit, Window(found.at, found.until))
+            return "threads-wait-for-lock" if any(each.waits_for_lock for each in at) else self.id
+        if culprit is not None and culprit.node != subject.node:
+            return "thread-kept-by-another-node"
+        is_action = subject.kind is EntityKind.WAITABLE
+        return "action-waits-for-thread" if is_action else "one-thread-for-all"
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         culprit = who(found.culprit, timeline)
