@@ -263,6 +263,34 @@ def test_a_program_that_loops_and_never_spins_is_told_with_its_loop(tmp_path: Pa
     assert str(told.place) == "node.py:6"
 
 
+@pytest.mark.parametrize(
+    ("loop", "told"),
+    [
+        (
+            "while rclpy.ok():",
+            ["on_news of /n cannot run: the program is in the loop of line 10, and comes to no spin()"],
+        ),
+        ("while time.time() < node.until:", []),
+    ],
+)
+def test_a_program_that_loops_is_told_of_even_if_no_callback_is_ready_yet(
+    tmp_path: Path, loop: str, told: list[str]
+) -> None:
+    run = run_lines(
+        tmp_path,
+        "from std_msgs.msg import Empty",
+        "rclpy.init()",
+        "node = rclpy.create_node('n')",
+        "node.until = time.time() + 60",
+        "def on_news(_):",
+        "    pass",
+        "node.create_subscription(Empty, '/news', on_news, 1)",
+        loop,
+        "    time.sleep(0.2)",
+    )
+    assert [each.rule.explain(each, run.timeline).what for each in diagnose(run.timeline)] == told
+
+
 RARELY = (
     "from std_msgs.msg import String",
     "rclpy.init()",

@@ -20,6 +20,7 @@ from sim.diagnosis.rule import (
     place_of,
 )
 from sim.diagnosis.rules.edits import not_reached
+from sim.diagnosis.time_limits import ends_by_itself
 from sim.diagnosis.timeline_view import LongWait, TimelineView, raised_last
 from sim.diagnosis.words import SPIN_BESIDE, SPIN_ONCE, group_of, listed, often, only_thread, threads_for, who
 from sim.quantities.durations import duration
@@ -203,7 +204,10 @@ class BehindOthers(_KeptWaiting):
 
 
 class NodeNeverSpins(Rule):
-    """A callback of a node is ready, and no executor spins the node, unless an exception ended that."""
+    """A callback of a node is ready, and no executor spins the node, unless an exception ended that.
+
+    None need be ready if the program is in a loop of its own before anything spins.
+    """
 
     id = "node-never-spins"
     summary = "callbacks are ready and nobody spins their node"
@@ -218,6 +222,22 @@ class NodeNeverSpins(Rule):
             is_long = view.end - since >= self.threshold
             if is_long and node not in taken and raised_last(node, view.timeline) is None:
                 yield Finding(self, since, view.end, wait.entity, about=name, size=view.end - since)
+        yield from () if view.unspun else self._in_loop(view)
+
+    def _in_loop(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield a callback that is not ready, if the program has been in one loop all the time lately."""
+        timeline, before = view.timeline, max(0, view.end - self.threshold)
+        positions = [timeline.program_at(each) for each in (before, view.end)]
+        loops = {
+            each.loop if each and each.call != "Client.wait_for_service" else ("", 0) for each in positions
+        }
+        loop = loops.pop() if len(loops) == 1 else ("", 0)
+        if timeline.executors or not loop[0] or ends_by_itself(*loop):
+            return
+        for each in view.few_entities:
+            if place_of(each.id, timeline) is not None:
+                yield Finding(self, 0, view.end, each.id, about=timeline.nodes.get(each.node, ""))
+                return
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
@@ -259,9 +279,11 @@ class NodeNeverSpins(Rule):
             what = f"the program waits in Rate.sleep() at line {loop.first_line}, and nothing spins"
             why = "a rate's timer is a callback too: callbacks run only inside spin()"
             remedies = by_edit(loop, "spin the node in a thread beside the loop", spin_beside)
+        ready = (
+            f"has been ready for {duration(found.lasted)} and does not run" if found.size else "cannot run"
+        )
         return Explanation(
-            f"{subject} of {found.about} has been ready for {duration(found.lasted)} "
-            f"and does not run: {what}",
+            f"{subject} of {found.about} {ready}: {what}",
             why,
             cure,
             place,
