@@ -23,7 +23,7 @@ _Occurrences: TypeAlias = dict[tuple[tuple[str, EntityId, str], EntityId], Findi
 
 
 class Diagnoses:
-    """The findings of a run, one for each rule, subject and topic or service, problems first.
+    """The findings of a run, one for each rule, subject and topic or service.
 
     ``update`` checks new and unfinished events, and the last one or two seconds again: findings there are
     dropped if they no longer hold. Not thread-safe, like the timeline.
@@ -31,7 +31,7 @@ class Diagnoses:
 
     def __init__(self, rules: Iterable[Rule] = RULES) -> None:
         self.findings: tuple[Finding, ...] = ()
-        """The findings of the last update."""
+        """The findings of the last update: problems, the worst first, then remarks, the earliest first."""
         self._rules = tuple(rules)
         self._timeline: Timeline | None = None
         self._from = _BEFORE_START
@@ -61,10 +61,7 @@ class Diagnoses:
         self._settled = {}
 
     def _ordered(self, found: Collection[Finding], timeline: Timeline) -> tuple[Finding, ...]:
-        """Return the relevant findings: problems before remarks, then by rule, the earliest first.
-
-        A finding that is part of another one follows it.
-        """
+        """Return the relevant findings: problems, the worst first, then remarks, the earliest first."""
         lasting = [each for each in found if each.until >= timeline.end and each.stuck]
         hiding = [each for each in found if each.rule.hides]
         left = [
@@ -72,15 +69,14 @@ class Diagnoses:
             for each in found
             if not _is_hidden(each, hiding) and not (each.rule.is_effect and _is_due_to(lasting, each))
         ]
-        left.sort(key=self._rank, reverse=True)
-        # Of several findings with one culprit the first by rank is the cause.
-        causes = {each.culprit: each for each in left if each.rule.by_culprit and each.culprit}
+        causes = {each.culprit for each in left if each.rule.by_culprit}
         parted = [each if each.due_to in causes else replace(each, due_to=0) for each in left]
         weights = {each.key: each.rule.weigh(each, timeline) for each in parted}
 
-        def rank(each: Finding) -> tuple[object, ...]:
-            cause = causes.get(each.due_to, each)
-            return weights[cause.key] is Weight.REMARK, self._rank(cause), bool(each.due_to), self._rank(each)
+        def rank(each: Finding) -> tuple[bool, Nanoseconds, object]:
+            is_remark = weights[each.key] is Weight.REMARK
+            when = (each.at or timeline.end) if is_remark else 0  # those on the whole run come last
+            return is_remark, when, self._rank(each)
 
         return tuple(sorted((each for each in parted if weights[each.key] is not None), key=rank))
 
