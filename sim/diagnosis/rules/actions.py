@@ -9,7 +9,7 @@ from sim.diagnosis.words import often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind, NoticeKind
-from sim.trace.model import EntityInfo, Nanoseconds, Window
+from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _LATE = 2 * SECOND
@@ -71,7 +71,8 @@ class GoalNeverExecuted(Rule):
             return
         for entity in view.few_entities:
             sent = asked.get(entity.name + _RESULT)
-            if sent is None or not is_execute_callback(entity):
+            is_execute = entity.kind is EntityKind.WAITABLE and entity.callback
+            if sent is None or not is_execute:
                 continue
             if not view.timeline.spans_of(entity.id, Window(0, view.end + 1)):
                 yield Finding(self, sent, view.end, entity.id, entity.id)
@@ -99,8 +100,3 @@ class GoalNeverExecuted(Rule):
 
 
 _RESULT = "/_action/get_result"
-
-
-def is_execute_callback(entity: EntityInfo) -> bool:
-    """Return whether an entity stands for an action's execute callback, which is in no callback group."""
-    return entity.kind is EntityKind.WAITABLE and bool(entity.callback)

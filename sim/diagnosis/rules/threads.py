@@ -4,11 +4,10 @@ from collections.abc import Iterator
 from itertools import islice
 
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
-from sim.diagnosis.rules.actions import is_execute_callback
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, thread_count, threads_needed
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import EntityKind, GroupKind, NodeId
+from sim.trace.events import EntityKind, GroupId, GroupKind, NodeId
 from sim.trace.model import EntityInfo, ExecutorInfo, GroupInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -75,10 +74,11 @@ class GroupsChangeNothing(Rule):
                 "give callbacks that should run at the same time groups of their own",
                 place_of(found.subject, timeline),
             )
+        goals = _groups_of_goals(timeline)
         groups = [
             each
             for each in timeline.groups.values()
-            if each.node == subject.node and _callbacks(timeline, each)
+            if each.node == subject.node and each.id not in goals
         ]
         plural = len(groups) > 1
         named = listed(_abbreviated([each.letter for each in groups]))
@@ -104,6 +104,12 @@ def _abbreviated(letters: list[str]) -> list[str]:
     return [*shown, f"{len(letters) - len(shown)} more"]
 
 
+def _groups_of_goals(timeline: Timeline) -> set[GroupId]:
+    """Return the groups of the trace that stand for an action's execute callbacks, which are in no group."""
+    every = timeline.entities.values()
+    return {each.group for each in every if each.kind is EntityKind.WAITABLE and each.callback}
+
+
 def _with_workers(timeline: Timeline) -> list[ExecutorInfo]:
     return [each for each in timeline.executors.values() if each.threads > 1]
 
@@ -126,7 +132,10 @@ def _only_group(timeline: Timeline) -> GroupInfo | None:
 def _node_with_groups(timeline: Timeline) -> EntityInfo | None:
     """A callback of a node that has several groups or a reentrant one."""
     first: dict[NodeId, EntityInfo] = {}
+    goals = _groups_of_goals(timeline)
     for group in timeline.groups.values():
+        if group.id in goals:
+            continue
         for callback in _callbacks(timeline, group)[:1]:
             if group.node in first or group.kind is GroupKind.REENTRANT:
                 return first.get(group.node, callback)
@@ -136,9 +145,5 @@ def _node_with_groups(timeline: Timeline) -> EntityInfo | None:
 
 def _callbacks(timeline: Timeline, group: GroupInfo) -> list[EntityInfo]:
     """The first two entities of a group that a program made: those with a callback, and clients."""
-    made = (
-        each
-        for each in timeline.group_members(group.id)
-        if (each.callback or each.kind is EntityKind.CLIENT) and not is_execute_callback(each)
-    )
-    return list(islice(made, 2))
+    members = timeline.group_members(group.id)
+    return list(islice((each for each in members if each.callback or each.kind is EntityKind.CLIENT), 2))
