@@ -174,8 +174,7 @@ class WaitForGraph:
                 return self._admission_obstacle(timer, WaitedFor.RATE, WaitedFor.RATE)
         if position.call.startswith("Clock.sleep"):
             waits = position.doing is Doing.WAITS  # on simulated time
-            clock = self._waiting_of_rclpy(EntityKind.SUBSCRIPTION, span, "/clock") if waits else None
-            return None if clock is None else self._admission_obstacle(clock, WaitedFor.CLOCK, "/clock")
+            return self._clock_obstacle(span) if waits else None
         if position.doing is Doing.WAITS or (position.loop[0] and not ends_by_itself(*position.loop)):
             pending = (call for call in self._outstanding() if call.caller == span.entity)
             for call in pending:
@@ -221,6 +220,18 @@ class WaitForGraph:
         if not self._is_answered(call):
             return self._service_obstacle(call)
         return self._future_obstacle(call)
+
+    def _clock_obstacle(self, span: Span) -> Obstacle | None:
+        """What simulated time waits for: a message of it, or the callback that published the last one."""
+        clock = self._waiting_of_rclpy(EntityKind.SUBSCRIPTION, span, "/clock")
+        if clock is not None:
+            return self._admission_obstacle(clock, WaitedFor.CLOCK, "/clock")
+        sent = self._timeline.sent_on("/clock")
+        sender = sent[-1].sender if sent else None
+        if sender is None:
+            return None
+        needs = f"{who(sender.entity, self._timeline)}, which publishes on /clock,"
+        return self._admission_obstacle(sender.entity, WaitedFor.CLOCK, needs)
 
     def _waiting_action(self, call: Call) -> EntityId | None:
         """The action server or client that a request or reply waits for; their queues are not traced."""

@@ -249,6 +249,31 @@ rclpy.spin(node)
 """
 
 
+WORLD = """from rosgraph_msgs.msg import Clock as Message
+class World(Node):
+    def __init__(self):
+        super().__init__('world')
+        self.pub = self.create_publisher(Message, '/clock', 10)
+        self.create_timer(0.05, self.tell)
+    def tell(self):
+        self.pub.publish(Message(clock=self.get_clock().now().to_msg()))
+import threading
+from rclpy.executors import SingleThreadedExecutor
+executor = SingleThreadedExecutor()
+executor.add_node(World())
+"""
+
+
+def test_a_sleep_on_simulated_time_that_keeps_its_publisher_out_is_a_deadlock(tmp_path: Path) -> None:
+    spin = f"{WORLD.replace('0.05', '0.03')}executor.add_node(node)\nexecutor.spin()"
+    program = SLEEPER.replace("CLOCK", "node.get_clock()").replace("rclpy.spin(node)", spin)
+    run = run_program(tmp_path, program, 3.0)
+    (found,) = (each for each in diagnose(run.timeline) if each.rule.id == "self-made-deadlock")
+    told = found.rule.explain(found, run.timeline)
+    assert "for ever; tell, which publishes on /clock, needs the only thread, which" in told.what
+    assert "a callback group of its own, and spin with MultiThreadedExecutor(num_threads=2)" in told.cure
+
+
 @pytest.mark.parametrize(
     ("clock", "rules"),
     [("node.get_clock()", ["deadlock-over-the-clock"]), ("Clock(clock_type=ClockType.STEADY_TIME)", [])],
@@ -256,21 +281,7 @@ rclpy.spin(node)
 def test_a_sleep_on_simulated_time_that_keeps_the_clock_out_is_a_deadlock(
     clock: str, rules: list[str], tmp_path: Path
 ) -> None:
-    world = (
-        "from rosgraph_msgs.msg import Clock as Message\n"
-        "class World(Node):\n"
-        "    def __init__(self):\n"
-        "        super().__init__('world')\n"
-        "        self.pub = self.create_publisher(Message, '/clock', 10)\n"
-        "        self.create_timer(0.05, self.tick)\n"
-        "    def tick(self):\n"
-        "        self.pub.publish(Message(clock=self.get_clock().now().to_msg()))\n"
-        "import threading\n"
-        "from rclpy.executors import SingleThreadedExecutor\n"
-        "executor = SingleThreadedExecutor()\n"
-        "executor.add_node(World())\n"
-        "threading.Thread(target=executor.spin, daemon=True).start()\n"
-    )
+    world = f"{WORLD}threading.Thread(target=executor.spin, daemon=True).start()\n"
     program = SLEEPER.replace("CLOCK", clock).replace("rclpy.spin(node)", f"{world}rclpy.spin(node)")
     run = run_program(tmp_path, program, 2.0)
     found = [each for each in diagnose(run.timeline) if each.rule.id == "self-made-deadlock"]

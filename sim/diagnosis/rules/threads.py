@@ -76,9 +76,7 @@ class GroupsChangeNothing(Rule):
             )
         goals = _groups_of_goals(timeline)
         groups = [
-            each
-            for each in timeline.groups.values()
-            if each.node == subject.node and each.id not in goals
+            each for each in timeline.groups.values() if each.node == subject.node and each.id not in goals
         ]
         plural = len(groups) > 1
         named = listed(_abbreviated([each.letter for each in groups]))
