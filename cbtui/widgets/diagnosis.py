@@ -18,7 +18,7 @@ from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of
 from sim.trace.events import EntityKind, KeyboardAsked, Notice, NoticeKind, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
-from sim.trace.figures.waiting import WORTH_TELLING, next_in_turn, waits_for_others, waits_since
+from sim.trace.figures.waiting import WORTH_TELLING, is_running, next_in_turn, waits_for_others, waits_since
 from sim.trace.model import AxisMarkKind, Call, EntityInfo, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -197,9 +197,11 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
     nothing = "no other callback waits" if pending else "nothing else waits"
     overdue = _overdue(timeline.entities[for_itself], moment, since)
     text = f"{overdue}; {in_a_call or nothing}"
+    is_late = moment.queues[for_itself].depth and moment.at - since >= _SERIOUS
+    level = DiagnosisLevel.WAITS if is_late else DiagnosisLevel.FINE
     if in_a_call:
-        return Diagnosis(text, DiagnosisLevel.FINE)
-    return Diagnosis(f"{text}; {briefly}", DiagnosisLevel.FINE, at_length=f"{text}; {threads}")
+        return Diagnosis(text, level)
+    return Diagnosis(f"{text}; {briefly}", level, at_length=f"{text}; {threads}")
 
 
 def _no_reply(pending: Sequence[Call], at: Nanoseconds, timeline: Timeline) -> str:
@@ -263,7 +265,7 @@ def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
 
 def _overdue(entity: EntityInfo, moment: Moment, since: Nanoseconds) -> str:
     """The text on a callback that only waits for its own previous call, or is about to be called again."""
-    does, waited = "still runs" if entity.id in moment.waiting else "is next", duration(moment.at - since)
+    does, waited = "still runs" if is_running(entity.id, moment) else "is next", duration(moment.at - since)
     match entity.kind:
         case EntityKind.TIMER:
             return f"{entity.spoken_name} {does}, due {waited} ago"

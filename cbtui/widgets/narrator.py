@@ -13,7 +13,7 @@ from sim.diagnosis.words import group_of, thread_count
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import Doing, EntityId, EntityKind, Reason
-from sim.trace.figures.waiting import WORTH_TELLING, next_in_turn
+from sim.trace.figures.waiting import WORTH_TELLING, is_running, next_in_turn
 from sim.trace.model import Blocked, EntityInfo, Moment, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -306,7 +306,7 @@ def _turn(entity: EntityInfo, since: Nanoseconds, moment: Moment) -> str:
     queued, waited = moment.queues[entity.id].depth, moment.at - since
     is_ready = f"has {queued} queued" if queued else "is ready again"
     lasted = f"{', the next' if queued else ''} for {duration(waited)}" if waited else ""
-    when = "its last call still runs" if entity.id in moment.waiting else "it is free to run"
+    when = "its last call still runs" if is_running(entity.id, moment) else "it is free to run"
     return f"{entity.spoken_name} {is_ready}{lasted}: {when}"
 
 

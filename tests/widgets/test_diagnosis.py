@@ -339,13 +339,24 @@ def test_of_a_past_moment_no_later_problem_is_told() -> None:
     assert "waited up to" in with_worst_problem(moment, findings, at=ns(15.0)).text
 
 
+def test_all_is_not_well_where_a_message_waits_for_long_behind_a_call() -> None:
+    run = Run()
+    hear = run.subscription(run.exclusive(run.node("/n")), "/a", "hear")
+    run.message(hear, 0.9)
+    run.callback(hear, run.thread("MainThread"), 1.0, 8.0)
+    run.message(hear, 1.2)
+    run.wait(hear, 1.2, 9.0, Reason.GROUP_HELD, hear)
+    assert said(run, 2.0).level is DiagnosisLevel.FINE
+    assert said(run, 2.3).level is DiagnosisLevel.WAITS
+
+
 def test_a_request_that_waits_for_the_call_before_it_is_told_as_that() -> None:
     run = Run()
     serve = run.service(run.exclusive(run.node("/n")), "/serve", "serve")
     run.callback(serve, run.thread("MainThread"), 1.0, 8.0)
     run.wait(serve, 2.0, 9.0, Reason.GROUP_HELD, serve)
-    told = said(run, 6.7).text
-    assert told.startswith("serve still runs, and the next request has waited 4.7 s for it")
+    told = said(run, 6.7)
+    assert told.text.startswith("serve still runs, and the next request has waited 4.7 s for it")
 
 
 def test_in_80_columns_a_problem_keeps_its_reason() -> None:

@@ -118,6 +118,19 @@ def test_each_decision_of_a_moment_has_a_line_of_its_own_and_the_one_looked_at_i
     assert "second" in narrator.rows(Size(100, 1))[0][0].text
 
 
+def test_what_waits_behind_a_call_that_has_returned_is_free_to_run() -> None:
+    run = Run()
+    heard = run.subscription(run.exclusive(run.node("/n")), "/a", "heard")
+    run.message(heard, 0.9)
+    run.callback(heard, run.thread("MainThread"), 1.0, 1.0)
+    run.message(heard, 1.2)
+    run.wait(heard, 1.2, 2.5, Reason.GROUP_HELD, heard)
+    returned = narration(told(run, until=2.2), ns(2.0))
+    assert returned[-1] == "heard has 1 queued, the next for 800 ms: it is free to run"
+    while_it_runs = narration(told(run, until=2.2), ns(1.5))
+    assert while_it_runs[-1].endswith("its last call still runs")
+
+
 def test_a_callback_whose_function_says_nothing_is_named_after_its_topic() -> None:
     run = Run()
     heard = run.subscription(run.exclusive(run.node("/n")), "/picture", "callback")

@@ -49,3 +49,8 @@ def next_in_turn(moment: Moment, timeline: Timeline) -> dict[EntityId, Nanosecon
     }
     own = (wait for wait in moment.waiting.values() if wait.holder == wait.entity)
     return found | {wait.entity: waits_since(wait, moment.queues[wait.entity]) for wait in own}
+
+
+def is_running(entity: EntityId, moment: Moment) -> bool:
+    """Return whether a call of a callback runs; one that has just returned does not."""
+    return any(span.entity == entity for span in moment.running.values())
