@@ -88,8 +88,9 @@ class Narrator(PaintedWidget):
         lines: list[tuple[str, Ink]] = []
         for place, text in enumerate(told[first:], first):
             here = place == self.place
+            when = f"{timestamp(self.now)}, decision {place + 1}: " if place == first > 0 else ""
             sign = f" {GLYPHS[self.charset].forth} " if here else "   "
-            for line in lines_of_text(text, width, self.charset, most):
+            for line in lines_of_text(when + text, width, self.charset, most):
                 lines.append((f"{sign}{line}", _FIRST if here else _NEXT))
                 sign = "     "
         return lines

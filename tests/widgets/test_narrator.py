@@ -115,7 +115,7 @@ def test_each_decision_of_a_moment_has_a_line_of_its_own_and_the_one_looked_at_i
     ended, begun, *_ = (row[0].text.rstrip() for row in narrator.rows(Size(100, ROWS)))
     assert ended == "   2.000 s: first returns after 1.0 s, group A is free"
     assert begun.startswith(" ▸ MainThread is free: second is due")
-    assert "second" in narrator.rows(Size(100, 1))[0][0].text
+    assert "2.000 s, decision 2: MainThread is free: second" in narrator.rows(Size(100, 1))[0][0].text
 
 
 def test_what_waits_behind_a_call_that_has_returned_is_free_to_run() -> None:
