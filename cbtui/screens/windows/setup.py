@@ -98,10 +98,13 @@ class SetupScreen(WindowScreen[Changes]):
     def _option(self, row: SettingRow) -> Option:
         changed_to = row.changed_to(self._changes)
         line = self._line(row.what, row.aspect, row.now, changed_to)
-        kept = len(line) - _COLUMNS[-1]
+        kept = len(line) - (_COLUMNS[-1] if changed_to else 0)
         text = Content.assemble(line[:kept], (line[kept:], "bold $text-accent"))
         return Option(text, disabled=row.is_fixed)
 
     def _line(self, *texts: str) -> str:
-        parts = (fit(text, width, self._charset) for text, width in zip(texts, _COLUMNS, strict=True))
+        """Lay out a row; a value that is not changed may take the room of the changed one."""
+        *left, now, changed = _COLUMNS
+        widths = _COLUMNS if texts[-1] else (*left, now + 1 + changed, 0)
+        parts = (fit(text, width, self._charset) for text, width in zip(texts, widths, strict=True) if width)
         return " ".join(parts)

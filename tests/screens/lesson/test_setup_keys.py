@@ -24,7 +24,7 @@ from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
 from tests.support.daily import first_daily, first_row_daily
 from tests.support.fake_session import FakeEngines, FakeSession
 from tests.support.pictures import lines_of, text_of
-from tests.support.runs import dummy_server_run, ns, shared_group_run
+from tests.support.runs import Run, dummy_server_run, ns, shared_group_run
 
 ODOM_OWN = GroupChange("/sub_node", "odom_callback", "own")
 TO_ODOM = ("enter", "down", "down")
@@ -126,6 +126,18 @@ async def test_g_without_a_selected_callback_lets_one_be_chosen_first() -> None:
         assert app.lesson_screen.runs.run.setup.groups == (
             GroupChange("/sub_node", "scan_callback", "reentrant"),
         )
+
+
+async def test_a_value_that_is_not_changed_has_the_room_of_the_changed_one() -> None:
+    run = Run()
+    group = run.exclusive(run.node("/n"))
+    for name in ("take_picture", "take_scan", "weigh_all"):
+        run.timer(group, name, 1.0)
+    app = RecordedConsole("shared-group", run.events, 1.0)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        await press(pilot, "p")
+        assert "A exclusive, with take_scan, weigh_all" in text_of(app)
 
 
 # numbers
