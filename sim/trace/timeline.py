@@ -302,7 +302,9 @@ class Timeline:
         blocking in ``Client.call``, and, if asked for, losses. None if there is none on that side.
         """
         asked = (*self.entities, NOBODY) if entity is None else (entity,)
-        times = (time for each in asked for time in self._events_beside(each, at, step, losses))
+        times = [time for each in asked for time in self._events_beside(each, at, step)]
+        lost = [self._run.queues[each].loss_beside(at, step) for each in asked if losses]
+        times += [time for time in lost if time is not None]
         return min(times, default=None) if step > 0 else max(times, default=None)
 
     def cancelled_since(self, timer: EntityId, since: Nanoseconds, at: Nanoseconds) -> bool:
@@ -392,12 +394,7 @@ class Timeline:
                 holders[known.group] += (entity,)
         return holders
 
-    def _events_beside(
-        self, entity: EntityId, at: Nanoseconds, step: int, losses: bool
-    ) -> Iterator[Nanoseconds]:
+    def _events_beside(self, entity: EntityId, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
         yield from self._run.execution.beside(entity, at, step)
         yield from self._run.waiting.beside(entity, at, step)
         yield from self._run.blocking.beside(entity, at, step)
-        loss = self._run.queues[entity].loss_beside(at, step) if losses else None
-        if loss is not None:
-            yield loss
