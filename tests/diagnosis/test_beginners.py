@@ -37,6 +37,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "await the future in an async def cook",
         ),
         ("spin_once", "nested-spin", "rclpy.spin_once(self)", "return from go, and go on in on_open"),
+        ("asyncio_starved", "asyncio-starved", "while rclpy.ok():", "await asyncio.sleep(0)"),
         (
             "event_of_its_group",
             "group-starvation",

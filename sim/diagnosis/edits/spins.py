@@ -153,3 +153,29 @@ def _spins(statement: ast.stmt, spinning: set[str]) -> bool:
             is_rclpys = ast.unparse(function) in _SPIN_OF_NODE
             return ast.unparse(function) in spinning and len(arguments) == is_rclpys
     return False
+
+
+@asked_of_file
+def starving_loop(source: SourceEditor) -> tuple[int, str, tuple[str, ...]]:
+    """Return the line and function of the loop of a coroutine that spins and never awaits, and the others.
+
+    Only if nothing else in the file spins, and there are other coroutines; else (0, "", ()).
+    """
+    functions = source.nodes(ast.AsyncFunctionDef)
+    calls = [each for each in source.nodes(ast.Call) if isinstance(each.func, ast.Attribute)]
+    spins = [each for each in calls if ast.unparse(each.func).rpartition(".")[2].startswith("spin")]
+    for function in functions if len(spins) == 1 and len(functions) > 1 else ():
+        for loop in source.nodes(ast.While, function):
+            if spins[0] in source.nodes(ast.Call, loop) and not source.nodes(ast.Await, loop):
+                others = tuple(each.name for each in functions if each is not function)
+                return loop.lineno, function.name, others
+    return 0, "", ()
+
+
+def await_in_loop(source: SourceEditor, line: int) -> None:
+    """Let asyncio run its other tasks in each round of the loop at a line."""
+    loop = source.statement_at(line)
+    names = {name.asname or name.name for each in source.nodes(ast.Import) for name in each.names}
+    if not isinstance(loop, ast.While) or "asyncio" not in names:
+        raise NotSimpleError
+    source.insert_behind(loop.body[-1], f"\n{indentation(loop.body[-1])}await asyncio.sleep(0)")

@@ -13,7 +13,13 @@ from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.overlooked import AnswerOverlooked
 from sim.diagnosis.rules.parameters import ParameterOverruled
 from sim.diagnosis.rules.services import NobodyOffers, ServiceNeverComes, UnreturnedResponse
-from sim.diagnosis.rules.spinning import NestedSpin, SpinInConstructor, SpinNotReached, SpinPastExecutor
+from sim.diagnosis.rules.spinning import (
+    AsyncioStarved,
+    NestedSpin,
+    SpinInConstructor,
+    SpinNotReached,
+    SpinPastExecutor,
+)
 from sim.diagnosis.rules.synchronisers import NeverSynchronised
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
 from sim.diagnosis.rules.timing import FallsBehind, OverlappingCallback, OverrunTimer
@@ -27,6 +33,7 @@ RULES: tuple[Rule, ...] = (
     SpinInConstructor(),
     SpinNotReached(),
     SpinPastExecutor(),
+    AsyncioStarved(),
     AlwaysDue(),
     ClockNeverStarts(),
     StillComputing(),

@@ -6,7 +6,13 @@ from collections.abc import Iterable, Iterator
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.flags import setters
 from sim.diagnosis.edits.polling import leave_out
-from sim.diagnosis.edits.spins import never_made, spin_executor, spin_past
+from sim.diagnosis.edits.spins import (
+    await_in_loop,
+    never_made,
+    spin_executor,
+    spin_past,
+    starving_loop,
+)
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, is_models, line_location
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning, not_reached
 from sim.diagnosis.timeline_view import TimelineView
@@ -201,6 +207,39 @@ class SpinPastExecutor(Rule):
             cure,
             place,
             remedies=by_edit(place, cure, spin_executor, found.about),
+        )
+
+
+class AsyncioStarved(Rule):
+    """A coroutine spins in a loop without an ``await``, so that asyncio runs no other task meanwhile.
+
+    Source: asyncio, which switches between tasks only where one awaits.
+    """
+
+    id = "asyncio-starved"
+    summary = "a coroutine that spins in a loop never awaits"
+    threshold: Nanoseconds = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each such loop, as the files of the program show it, if anything has run."""
+        if view.end < self.threshold or not view.threads_needed:
+            return
+        for file in _made_in(view.few_entities):
+            line, function, _ = starving_loop(file)
+            if line:
+                yield Finding(self, self.threshold, view.end, about=function, detail=file, size=line)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        place = line_location(found.detail, found.size)
+        _, _, others = starving_loop(found.detail)
+        cure = "await asyncio.sleep(0) in each round of the loop"
+        return Explanation(
+            f"the loop of line {found.size} spins and never awaits: asyncio runs no other task while "
+            f"{found.about} is in it, such as {' or '.join(others)}",
+            "asyncio runs one task at a time, and another one only when that awaits; spin_once() does not",
+            f"{cure}, or spin in a thread of its own",
+            place,
+            remedies=by_edit(place, cure, await_in_loop),
         )
 
 

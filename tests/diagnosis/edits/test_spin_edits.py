@@ -4,7 +4,15 @@ from pathlib import Path
 
 import pytest
 
-from sim.diagnosis.edits.spins import never_made, spin_beside, spin_past, spin_together, spins_in_turn
+from sim.diagnosis.edits.spins import (
+    await_in_loop,
+    never_made,
+    spin_beside,
+    spin_past,
+    spin_together,
+    spins_in_turn,
+    starving_loop,
+)
 from tests.diagnosis.edits.edited_source import changed
 
 
@@ -146,3 +154,29 @@ def test_the_node_of_a_rate_is_spun_in_a_thread_that_begins_before_the_outermost
 def test_a_rate_of_an_unknown_node_or_without_a_loop_stays() -> None:
     assert changed(LOOP.format("", "rate"), spin_beside) is None
     assert changed("import rclpy\nself.rate.sleep()  # here\n", spin_beside) is None
+
+
+SPINS = "import asyncio\nasync def spin():\n    while ok():  # here\n        rclpy.spin_once(node){0}\n{1}"
+ASK = "async def ask():\n    await asyncio.sleep(1)\n"
+
+
+def test_a_loop_that_spins_in_a_coroutine_awaits_in_each_round() -> None:
+    assert changed(SPINS.format("", ASK), await_in_loop) == ["+        await asyncio.sleep(0)"]
+
+
+@pytest.mark.parametrize(
+    ("behind", "more", "found"),
+    [
+        ("", ASK, (3, "spin", ("ask",))),
+        ("\n        await asyncio.sleep(0)", ASK, (0, "", ())),
+        ("", "", (0, "", ())),
+        ("", f"{ASK}executor.spin()", (0, "", ())),
+    ],
+    ids=["never awaits", "awaits", "no other coroutine", "spins elsewhere, too"],
+)
+def test_a_loop_that_starves_other_coroutines_is_found(
+    behind: str, more: str, found: tuple[object, ...], tmp_path: Path
+) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(SPINS.format(behind, more))
+    assert starving_loop(str(path)) == found
