@@ -15,7 +15,7 @@ from sim.diagnosis import CodeLocation
 from sim.diagnosis.words import only_thread, thread_count, threads_needed
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.descriptions import name_of
+from sim.trace.descriptions import name_of, waiting_name
 from sim.trace.events import EntityKind, KeyboardAsked, Notice, NoticeKind, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.figures.waiting import WORTH_TELLING, is_running, next_in_turn, waits_for_others, waits_since
@@ -282,7 +282,8 @@ def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosi
     others = (
         f"; {len(waits) - 1} more wait" if len(waits) > 2 else "; 1 more waits" if len(waits) == 2 else ""
     )
-    text = f"{name_of(longest.entity, timeline)} waits {duration(waited)}: {_why(longest, moment, timeline)}"
+    what = waiting_name(longest.entity, Window(longest.since, moment.at + 1), timeline)
+    text = f"{what} waits {duration(waited)}: {_why(longest, moment, timeline)}"
     level = DiagnosisLevel.TROUBLE if waited >= _SERIOUS else DiagnosisLevel.WAITS
     return Diagnosis(text, level, at_length=text + others)
 

@@ -238,7 +238,11 @@ class WaitForGraph:
         action, _, of_action = call.service.partition("/_action/")
         for entity in self._moment.waiting if of_action else ():
             known = self._timeline.entities[entity]
-            if known.kind is EntityKind.WAITABLE and known.name == action and not known.callback:
+            if (
+                known.kind is EntityKind.WAITABLE
+                and known.name.partition(" ")[0] == action
+                and not known.callback
+            ):
                 return entity
         return None
 

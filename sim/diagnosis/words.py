@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.descriptions import name_of
+from sim.trace.descriptions import name_of, waiting_name
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import Nanoseconds, ThreadInfo, Window
 from sim.trace.timeline import Timeline
@@ -24,6 +24,13 @@ def who(entity: EntityId, timeline: Timeline) -> str:
     if known is not None and known.kind is EntityKind.CLIENT:
         return f"the reply of {known.name}"
     return name_of(entity, timeline)
+
+
+def who_waits(entity: EntityId, during: Window, timeline: Timeline) -> str:
+    """Return the name of what waits: as ``who``, but of an action's server what it is asked meanwhile."""
+    known = timeline.entities.get(entity)
+    is_action = known is not None and known.kind is EntityKind.WAITABLE
+    return waiting_name(entity, during, timeline) if is_action else who(entity, timeline)
 
 
 def must_answer(entity: EntityId, timeline: Timeline) -> bool:

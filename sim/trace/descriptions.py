@@ -1,7 +1,7 @@
 """Entities and waits described in words."""
 
 from sim.trace.events import Doing, EntityId, Reason
-from sim.trace.model import AWAIT, Position, Wait
+from sim.trace.model import AWAIT, Position, Wait, Window
 from sim.trace.participants import Participants
 from sim.trace.timeline import Timeline
 
@@ -36,6 +36,19 @@ def name_of(entity: EntityId, timeline: Timeline | Participants) -> str:
     """The name of an entity in a sentence."""
     known = timeline.entities.get(entity)
     return "another callback" if known is None else known.spoken_name
+
+
+def waiting_name(entity: EntityId, during: Window, timeline: Timeline) -> str:
+    """The name of what waits, in a sentence; of an action's server with what it is asked meanwhile."""
+    known, name = timeline.entities.get(entity), name_of(entity, timeline)
+    action, _, end = ("" if known is None else known.name).partition(" ")
+    asked = {each.service for each in timeline.calls_within(during)} if end == "server" else set[str]()
+    requests = (words for part, words in _ASKED.items() if f"{action}/_action/{part}" in asked)
+    return next((f"{name} ({each})" for each in requests), name)
+
+
+_ASKED = {"cancel_goal": "asked to cancel", "send_goal": "asked for a goal"}
+"""What an action's server is asked, by the last part of the service's name; what matters most first."""
 
 
 def executor_label(timeline: Timeline) -> str:

@@ -84,13 +84,15 @@ def test_an_empty_timeline_has_a_summary() -> None:
     assert plain_text(summarise(Timeline())) == "run, 0 s\n\nthreads  0 ran callbacks, at most 0 at once\n"
 
 
-def test_the_server_and_the_client_of_an_action_are_told_apart_by_their_nodes() -> None:
+def test_the_servers_of_an_action_in_two_nodes_are_told_apart_by_these() -> None:
     run = Run("small")
     thread = run.thread("MainThread")
     for node in ("/robot", "/dispatcher"):
-        run.callback(run.subscription(run.exclusive(run.node(node)), "/fetch_it", ""), thread, 1.0, 0.0)
+        run.callback(
+            run.subscription(run.exclusive(run.node(node)), "/fetch_it server", ""), thread, 1.0, 0.0
+        )
     names = [callback.name for callback in summary_of(run).callbacks]
-    assert names == ["/fetch_it (/robot)", "/fetch_it (/dispatcher)"]
+    assert names == ["/fetch_it server (/robot)", "/fetch_it server (/dispatcher)"]
 
 
 def test_where_nobody_waited_the_summary_says_so() -> None:

@@ -22,7 +22,17 @@ from sim.diagnosis.rule import (
 from sim.diagnosis.rules.edits import not_reached
 from sim.diagnosis.time_limits import ends_by_itself
 from sim.diagnosis.timeline_view import LongWait, TimelineView, raised_last
-from sim.diagnosis.words import SPIN_BESIDE, SPIN_ONCE, group_of, listed, often, only_thread, threads_for, who
+from sim.diagnosis.words import (
+    SPIN_BESIDE,
+    SPIN_ONCE,
+    group_of,
+    listed,
+    often,
+    only_thread,
+    threads_for,
+    who,
+    who_waits,
+)
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
@@ -74,7 +84,7 @@ class _KeptWaiting(Rule):
         self, found: Finding, timeline: Timeline, cause: str, why: str, cure: str, *remedies: Remedy
     ) -> Explanation:
         waited = self._waiting(found, timeline)
-        names = listed(who(each, timeline) for each in waited)
+        names = listed(who_waits(each, Window(found.at, found.until), timeline) for each in waited)
         up_to, times = ("up to ", "") if len(waited) > 1 else ("", often(found.count))
         place = line_of(found.culprit, Window(found.at, found.until), timeline)
         return Explanation(

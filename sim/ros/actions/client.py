@@ -90,6 +90,8 @@ class ActionClient(ActionWaitable):
         ValueError: the action's name breaks the rules.
     """
 
+    end = "client"
+
     def __init__(
         self,
         node: Node,

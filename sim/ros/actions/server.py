@@ -77,6 +77,8 @@ class ActionServer(ActionWaitable):
         ValueError: the action's name breaks the rules.
     """
 
+    end = "server"
+
     def __init__(
         self,
         node: Node,
@@ -122,7 +124,7 @@ class ActionServer(ActionWaitable):
             )
             self._feedback = self._add_publisher(impl.FeedbackMessage, "feedback", feedback_pub_qos_profile)
             self._status = self._add_publisher(impl.GoalStatusMessage, "status", status_pub_qos_profile)
-            self._execution = GoalExecution(node, self.name, self._execute_callback)
+            self._execution = GoalExecution(node, self.action, self._execute_callback)
 
     # Callbacks
 
@@ -218,7 +220,7 @@ class ActionServer(ActionWaitable):
         """The executor that serves the node, or served it last."""
         executor = self._node.executor
         if executor is None:
-            raise RCLError(f"no executor serves {self._node.get_name()}, so no goal of {self.name} can run")
+            raise RCLError(f"no executor serves {self._node.get_name()}, so no goal of {self.action} can run")
         return executor
 
     async def _execute_goal(

@@ -8,7 +8,7 @@ EventsExecutor, each arrival takes from one part only (``HandleWaitableReady``).
 
 import inspect
 from collections.abc import Callable, Container
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from sim.interfaces import ActionType
 from sim.ros.actions.parts import ClientPart, Part, ServicePart, SubscriptionPart
@@ -43,13 +43,16 @@ class ActionWaitable(Entity):
 
     kind = EntityKind.WAITABLE
     rank = -1
+    end: ClassVar[str]
+    """Which end of the action it is: ``server`` or ``client``."""
 
     def __init__(
         self, node: Node, action_type: Any, action_name: str, callback_group: CallbackGroup | None
     ) -> None:
         _check_is_valid_action_type(action_type)
         group = node.default_callback_group if callback_group is None else callback_group
-        super().__init__(node, _full_name(node, action_name), group)
+        self.action = _full_name(node, action_name)
+        super().__init__(node, f"{self.action} {self.end}", group)
         self._node = node
         self._action_type: Any = action_type
         self._action_name = action_name
@@ -70,14 +73,14 @@ class ActionWaitable(Entity):
     def _add_service(
         self, srv_type: Any, part: str, qos_profile: QoSProfile, handler: Handler
     ) -> ServicePart:
-        name = self._node.resolve_service_name(f"{self.name}/_action/{part}")
+        name = self._node.resolve_service_name(f"{self.action}/_action/{part}")
         service = ServicePart(self, srv_type, name, qos_profile)
         self._add_part(service, handler)
         self._node.context.network.join_service(service)
         return service
 
     def _add_client(self, srv_type: Any, part: str, qos_profile: QoSProfile, handler: Handler) -> ClientPart:
-        name = self._node.resolve_service_name(f"{self.name}/_action/{part}")
+        name = self._node.resolve_service_name(f"{self.action}/_action/{part}")
         self._node.context.network.announce_use(name)
         client = ClientPart(self, srv_type, name, qos_profile)
         self._add_part(client, handler)
@@ -86,14 +89,14 @@ class ActionWaitable(Entity):
     def _add_subscription(
         self, msg_type: Any, part: str, qos_profile: QoSProfile, handler: Handler
     ) -> SubscriptionPart:
-        name = self._node.resolve_topic_name(f"{self.name}/_action/{part}")
+        name = self._node.resolve_topic_name(f"{self.action}/_action/{part}")
         subscription = SubscriptionPart(self, msg_type, name, handler, qos_profile)
         self._add_part(subscription, handler)
         self._node.context.network.join_subscription(subscription)
         return subscription
 
     def _add_publisher(self, msg_type: Any, part: str, qos_profile: QoSProfile) -> Publisher:
-        topic = f"{self.name}/_action/{part}"
+        topic = f"{self.action}/_action/{part}"
         silent = PublisherEventCallbacks(use_default_callbacks=False)
         return self._node._node_entities.create_publisher(
             msg_type, topic, qos_profile, event_callbacks=silent, callback_group=self.parts_group

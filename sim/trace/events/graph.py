@@ -105,7 +105,7 @@ class EntityAppeared(TraceEvent, frozen=True, tag="entity"):
     group: WireOnly[GroupId]
     kind: WireOnly[EntityKind]
     name: WireOnly[str]
-    """Topic or service; empty where there is neither."""
+    """Topic or service; of an action, ``/fetch server`` or ``/fetch client``; empty where there is none."""
     callback: WireOnly[str]
     """Name of the callback's function."""
     file: str

@@ -180,9 +180,9 @@ def test_requests_of_one_server_wait_for_each_other_and_for_its_group() -> None:
         executor.spin()
 
     trace = simulate(program, until=2.9)
-    assert trace.times("/count") == [0.0, 1.0]
+    assert trace.times("/count server") == [0.0, 1.0]
     assert trace.times("<lambda>") == [2.0]
-    server = trace.entity("/count")
+    server = trace.entity("/count server")
     held = [wait for wait in trace.of(WaitStarted) if wait.reason is Reason.GROUP_HELD]
     assert [(wait.t, wait.entity, wait.holder) for wait in held] == [
         (0, server, server),
@@ -204,7 +204,7 @@ def test_a_waitable_goes_before_all_else_that_is_ready() -> None:
         """Be late."""
 
     trace = simulate(program, until=1.9)
-    assert trace.order() == ["/count", "tick", "execute"]
+    assert trace.order() == ["/count server", "tick", "execute"]
 
 
 def test_one_call_takes_the_oldest_of_each_kind_goals_before_cancels_before_results() -> None:
@@ -241,7 +241,9 @@ def test_one_call_takes_the_oldest_of_each_kind_goals_before_cancels_before_resu
         assert order == ["goal", "accepted", "cancel"]
 
     trace = simulate(program)
-    arrived = [event.depth for event in trace.of(EntityReady) if event.entity == trace.entity("/count")]
+    arrived = [
+        event.depth for event in trace.of(EntityReady) if event.entity == trace.entity("/count server")
+    ]
     assert arrived == [1, 2, 1, 2, 3]
 
 

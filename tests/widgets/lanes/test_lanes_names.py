@@ -87,17 +87,17 @@ def test_lanes_of_one_group_have_names_of_their_own() -> None:
     assert names == ["bake", "bake ◂", "count", "on_count", "words", "lorry", "/lorry"]
 
 
-def test_the_server_and_the_client_of_an_action_are_named_after_their_nodes() -> None:
+def test_the_servers_of_an_action_in_two_nodes_are_named_after_these() -> None:
     run = Run()
     for number, name in enumerate(("/robot", "/yard/dispatcher"), start=1):
         node = run.node(name)
         part = EntityAppeared(
-            0, number, node, run.exclusive(node), EntityKind.WAITABLE, "/fetch_it", "", "", 0, 0, 0, 0
+            0, number, node, run.exclusive(node), EntityKind.WAITABLE, "/fetch_it server", "", "", 0, 0, 0, 0
         )
         run.add(part)
     timeline = run_timeline(run)
     names = [told_apart(each, timeline, "◂") for each in timeline.entities.values()]
-    assert names == ["robot fetch_it", "dispatcher fetch_it"]
+    assert names == ["robot fetch_it server", "dispatcher fetch_it server"]
 
 
 def test_where_lanes_are_few_threads_leave_room_for_callbacks_that_run() -> None:

@@ -324,8 +324,10 @@ class Entities:
                     name = node.resolve_service_name(sys._getframe(1).f_locals["action_name"])
                 entity = WatchedEntity("waitable")
                 waitable.execute = Calls(self._recorder, entity).traced(waitable.execute)
-                self._know(node, waitable, entity, None, name)
-                if hasattr(waitable, "_execute_callback"):
+                is_server = hasattr(waitable, "_execute_callback")
+                end = f" {'server' if is_server else 'client'}" if is_action else ""
+                self._know(node, waitable, entity, None, f"{name}{end}")
+                if is_server:
                     self._know_execution(node, waitable, name)
             add(node, waitable)
 
