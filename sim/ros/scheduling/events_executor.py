@@ -245,7 +245,7 @@ class EventsExecutor(Executor):
             self._queue.put(partial(self._step, task))
 
     def _resume_at_wake_up(self, task: Task[Any]) -> None:
-        """Resume a task that awaits something unknown after the next callback."""
+        """Resume a task that awaits something unknown after the next callback, also one that raises."""
         with self._lock:
             self._parked.append(task)
 
@@ -260,16 +260,20 @@ class EventsExecutor(Executor):
         if entity not in self._registered:
             return
         self._stop_if_one_is_enough()
-        for arrived in arrivals:
-            self._call(entity, arrived)
-        self._go_on_with_parked()
+        try:
+            for arrived in arrivals:
+                self._call(entity, arrived)
+        finally:
+            self._go_on_with_parked()
 
     def _call_timer(self, timer: Entity) -> None:
         self._postponed = False
-        self._call(timer)
-        if not self._postponed:
-            self._stop_if_one_is_enough()
-        self._go_on_with_parked()
+        try:
+            self._call(timer)
+            if not self._postponed:
+                self._stop_if_one_is_enough()
+        finally:
+            self._go_on_with_parked()
 
     def _call(self, entity: Entity, arrived: Entity | None = None) -> None:
         with self._lock:

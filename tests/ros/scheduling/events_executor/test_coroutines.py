@@ -1,6 +1,7 @@
 """Coroutines on an EventsExecutor, in each release, and calls that wait inside callbacks."""
 
 import gc
+from contextlib import nullcontext
 from typing import Any
 
 import pytest
@@ -114,8 +115,9 @@ def test_the_response_of_a_services_coroutine_is_an_event_behind_others() -> Non
     assert on_bench(program, distro="kilted")[0] == ["first", "second", "third", "got"]
 
 
+@pytest.mark.parametrize("raises", [False, True])
 @pytest.mark.parametrize("distro", ["jazzy@7.1.5", "kilted"])
-def test_what_awaits_is_asked_behind_what_the_next_callback_sends(distro: str) -> None:
+def test_what_awaits_is_asked_behind_what_the_next_callback_sends(distro: str, raises: bool) -> None:
     # Measured on both.
     def program(bench: Bench) -> None:
         future: Future[None] = Future()
@@ -126,6 +128,8 @@ def test_what_awaits_is_asked_behind_what_the_next_callback_sends(distro: str) -
 
         def first(_: Any) -> None:
             second.publish(Int32())
+            if raises:
+                raise ValueError("on purpose")
 
         def give(_: Any) -> None:
             future.set_result(None)
@@ -138,6 +142,8 @@ def test_what_awaits_is_asked_behind_what_the_next_callback_sends(distro: str) -
         bench.register()
         bench.executor.create_task(wait)
         bench.node.create_publisher(Int32, "first", 10).publish(Int32())
+        with pytest.raises(ValueError, match="on purpose") if raises else nullcontext():
+            bench.spin_for(0.5)
         bench.spin_for(0.5)
 
     assert on_bench(program, distro=distro)[0] == ["goes on", "third3"]
