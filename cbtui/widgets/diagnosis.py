@@ -283,9 +283,10 @@ def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosi
         f"; {len(waits) - 1} more wait" if len(waits) > 2 else "; 1 more waits" if len(waits) == 2 else ""
     )
     what = waiting_name(longest.entity, Window(longest.since, moment.at + 1), timeline)
-    text = f"{what} waits {duration(waited)}: {_why(longest, moment, timeline)}"
+    waits_so = f"waits {duration(waited)}: {_why(longest, moment, timeline)}"
     level = DiagnosisLevel.TROUBLE if waited >= _SERIOUS else DiagnosisLevel.WAITS
-    return Diagnosis(text, level, at_length=text + others)
+    brief = f"{name_of(longest.entity, timeline)} {waits_so}"
+    return Diagnosis(brief, level, at_length=f"{what} {waits_so}{others}")
 
 
 def _why(wait: Wait, moment: Moment, timeline: Timeline) -> str:
