@@ -11,6 +11,8 @@ from sim.trace.events import NoticeKind
 _AT_ONCE = 10_000_000
 """Nanoseconds after a request in which no reply can be expected; on virtual time none pass in between."""
 
+_SETTERS = ("set_parameters", "set_parameters_atomically")
+
 PUBLISHERS = 5
 """How many publishers of one topic and line are worth a warning, as is each time that these have doubled."""
 
@@ -43,7 +45,7 @@ class UsageWarnings:
             if self._here.entity and self._caller() == by and self._now() - sent < _AT_ONCE:
                 problem = "result() is asked for as soon as the request is sent, and is None"
                 advice = "use it in a done-callback of the future"
-                self._tell("result", NoticeKind.EARLY_RESULT, problem, advice)
+                self._tell(("result",), NoticeKind.EARLY_RESULT, problem, advice)
 
         return asked
 
@@ -53,7 +55,7 @@ class UsageWarnings:
             were = "was" if len(names) == 1 else "were"
             problem = f"{', '.join(names)} {were} refused{reason and ': '}{reason}"
             advice = "look at the results that set_parameters() returns"
-            self._tell("delegated", NoticeKind.REFUSAL_OVERLOOKED, problem, advice)
+            self._tell(_SETTERS, NoticeKind.REFUSAL_OVERLOOKED, problem, advice)
 
     def publishers_kept(self, number: int, place: tuple[str, int]) -> None:
         """Warn of so many publishers of a topic that were made at a line; the more, the more seldom."""
@@ -73,9 +75,9 @@ class UsageWarnings:
     def _caller(self) -> tuple[int, int, int]:
         return threading.get_ident(), self._here.entity, self._here.begun
 
-    def _tell(self, function: str, kind: NoticeKind, problem: str, advice: str) -> None:
+    def _tell(self, functions: Sequence[str], kind: NoticeKind, problem: str, advice: str) -> None:
         called, file, line = call_into_ros()
-        if called == function and line:
+        if called in functions and line:
             self._tell_of((file, line), kind, problem, advice)
 
     def _tell_of(

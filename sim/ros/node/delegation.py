@@ -18,15 +18,19 @@ class Delegated(Generic[PartT]):
     def __call__(
         self, method: Callable[Concatenate[PartT, ParametersT], ResultT]
     ) -> Callable[Concatenate[Any, ParametersT], ResultT]:
-        """Delegate a method. Errors of a wrong call name ``Node``, the only class that programs know."""
+        """Delegate a method. Errors of a wrong call name ``Node``, the only class that programs know.
+
+        On the stack it has the method's name, too, by which it is known what a program has called.
+        """
         attribute = self._attribute
 
-        @wraps(method)
         def delegated(node: Any, /, *args: ParametersT.args, **kwargs: ParametersT.kwargs) -> ResultT:
             return method(getattr(node, attribute), *args, **kwargs)
 
-        method.__qualname__ = delegated.__qualname__ = f"Node.{method.__name__}"
-        return delegated
+        delegated.__code__ = delegated.__code__.replace(co_name=method.__name__)
+        wrapped = wraps(method)(delegated)
+        method.__qualname__ = wrapped.__qualname__ = f"Node.{method.__name__}"
+        return wrapped
 
     def view(self, of: Any) -> property:
         """Delegate a read-only property."""
