@@ -70,8 +70,8 @@ class DroppedMessages(Rule):
         at = timeline.end if taken else found.until  # a node is lost when the spin that took it has returned
         waits = timeline.waits_of(entity.id, Window(at, at + 1))
         because, place = "", place_of(found.subject, timeline)
+        own = bool(waits) and waits[-1].holder == entity.id
         if waits:
-            own = waits[-1].holder == entity.id
             if own:
                 place = line_of(entity.id, Window(found.at, found.until + 1), timeline)
             because = (
@@ -86,10 +86,14 @@ class DroppedMessages(Rule):
             cure, place = (how, loop) if loop else ("keep spinning its node", place)
         messages = "1 message" if found.count == 1 else f"{found.count} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
+        calls = timeline.spans_of(entity.id, Window(found.until - SECOND, found.until + 1))
+        age = max((each.age for each in calls), default=0)
+        old = f"; what {subject} took then was up to {duration(age)} old" if own and age >= SECOND else ""
         worst = f"; most in the second from {found.until // SECOND} s on, {found.size}"
+        why = f"what comes into a full queue pushes the oldest out{worst if found.size < found.count else ''}"
         return Explanation(
             f"{subject} lost {messages}{because}{holds}",
-            f"what comes into a full queue pushes the oldest out{worst if found.size < found.count else ''}",
+            f"{why}{old}",
             f"{cure}; a longer queue only delays it",
             place,
             remedies=(room,),
