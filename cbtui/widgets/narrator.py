@@ -101,7 +101,7 @@ def narration(timeline: Timeline, at: Nanoseconds, stepped: bool = False) -> tup
 
     If time was ``stepped`` to a moment without an action, return what else happens at that moment.
     """
-    last = timeline.neighbour(at + 1, None, -1)
+    last = timeline.neighbour(at + 1, -1)
     if last is None:
         return ("nothing has happened yet",)
     if stepped and last < at:
@@ -211,7 +211,7 @@ def _blocked(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
 
 def _lost(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:
     """What was lost at a moment, and before it since anything else happened."""
-    before = timeline.neighbour(at + 1, None, -1, losses=False)
+    before = timeline.neighbour(at + 1, -1, losses=False)
     since = at if before == at else 0 if before is None else before + 1
     losses = []
     for entity in timeline.entities.values():

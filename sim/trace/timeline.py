@@ -293,17 +293,15 @@ class Timeline:
         """The publication of a message; None if it is unknown."""
         return self._run.publications.of(message)
 
-    def neighbour(
-        self, at: Nanoseconds, entity: EntityId | None, step: int, losses: bool = True
-    ) -> Nanoseconds | None:
-        """Time of the next (``step`` > 0) or previous event of an entity, or of any: never ``at`` itself.
+    def neighbour(self, at: Nanoseconds, step: int, losses: bool = True) -> Nanoseconds | None:
+        """Time of the next (``step`` > 0) or previous event: never ``at`` itself.
 
         Events are starts, ends, suspensions and resumptions of callbacks, starts of waits, starts and ends of
         blocking in ``Client.call``, and, if asked for, losses. None if there is none on that side.
         """
-        asked = (*self.entities, NOBODY) if entity is None else (entity,)
-        times = [time for each in asked for time in self._events_beside(each, at, step)]
-        lost = [self._run.queues[each].loss_beside(at, step) for each in asked if losses]
+        every = (*self.entities, NOBODY)
+        times = [time for each in every for time in self._events_beside(each, at, step)]
+        lost = [self._run.queues[each].loss_beside(at, step) for each in every if losses]
         times += [time for time in lost if time is not None]
         return min(times, default=None) if step > 0 else max(times, default=None)
 

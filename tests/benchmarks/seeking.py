@@ -70,7 +70,7 @@ def _look(timeline: Timeline, at: Nanoseconds) -> None:
     _all(timeline.logs[max(0, written - _LOG_LINES) : written])
     timeline.robot(at), timeline.command(at), timeline.scan(at), timeline.scan_seen(at)
     timeline.dropped(at)
-    timeline.neighbour(at, None, 1), timeline.neighbour(at, None, -1)
+    timeline.neighbour(at, 1), timeline.neighbour(at, -1)
 
 
 def _all(answer: Sequence[object]) -> None:

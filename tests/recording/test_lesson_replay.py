@@ -77,7 +77,7 @@ def state(timeline: Timeline, at: int) -> tuple[object, ...]:
         timeline.command(at),
         timeline.logs_until(at),
         timeline.dropped(at),
-        [timeline.neighbour(at, None, step) for step in (1, -1)],
+        [timeline.neighbour(at, step) for step in (1, -1)],
     )
 
 

@@ -163,6 +163,6 @@ def test_events_are_gone_through_one_by_one_both_ways() -> None:
 def test_events_of_two_runs_are_gone_through_together() -> None:
     first, second = told(dummy_server_run()), told(shared_group_run())
     end = max(first.end, second.end)
-    both = [timeline.neighbour(ns(5.0), None, -1) for timeline in (first, second)]
+    both = [timeline.neighbour(ns(5.0), -1) for timeline in (first, second)]
     assert Playhead(at=ns(5.0)).beside([first, second], end, -1).at == max(at or 0 for at in both)
     assert len(set(both)) == 2

@@ -233,11 +233,11 @@ async def test_steps_stop_at_the_events_of_either_run() -> None:
         await press(app, pilot, "left_square_bracket", "left_square_bracket", "left_square_bracket")
         at = lanes(app)[0].now
         timelines = [side.timeline for side in app.comparison._sides]
-        beside = [timeline.neighbour(at, None, -1) for timeline in timelines]
+        beside = [timeline.neighbour(at, -1) for timeline in timelines]
         await press(app, pilot, "comma")
         assert lanes(app)[0].now == max(each for each in beside if each is not None)
         at = lanes(app)[0].now
-        beside = [timeline.neighbour(at, None, 1) for timeline in timelines]
+        beside = [timeline.neighbour(at, 1) for timeline in timelines]
         await press(app, pilot, "full_stop")
         assert lanes(app)[0].now == min(each for each in beside if each is not None)
 

@@ -97,7 +97,7 @@ async def test_at_its_end_it_tells_how_the_run_ended(tmp_path: Path) -> None:
 async def test_it_can_be_scrubbed_both_ways(tmp_path: Path) -> None:
     async with replayed(recording(tmp_path)) as (screen, pilot):
         timeline = screen.runs.run.timeline
-        before = timeline.neighbour(timeline.end, None, -1)
+        before = timeline.neighbour(timeline.end, -1)
         assert before is not None
         await press(pilot, "comma")
         assert f"t {before / 1e9:.3f} s" in status(pilot)

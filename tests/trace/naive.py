@@ -212,17 +212,12 @@ class Naive:
                 out.remove(event.call)
         return tuple(out)
 
-    def neighbour(self, at: int, entity: EntityId | None, step: int) -> int | None:
-        spans = [span for span in self.spans if entity in (None, span.entity)]
-        times = {span.start for span in spans} | {span.end for span in spans if span.end is not None}
-        times |= {wait.start for wait in self.waits if entity in (None, wait.entity)}
-        blocks = [each for each in self.blocks if entity in (None, each.entity)]
-        times |= {each.start for each in blocks} | {each.end for each in blocks if each.end is not None}
-        times |= {
-            event.t
-            for event in self.events
-            if isinstance(event, MessageDropped) and entity in (None, event.entity)
-        }
+    def neighbour(self, at: int, step: int) -> int | None:
+        times = {span.start for span in self.spans} | {wait.start for wait in self.waits}
+        times |= {span.end for span in self.spans if span.end is not None}
+        times |= {block.start for block in self.blocks}
+        times |= {block.end for block in self.blocks if block.end is not None}
+        times |= {event.t for event in self.events if isinstance(event, MessageDropped)}
         if step > 0:
             return min((time for time in times if time > at), default=None)
         return max((time for time in times if time < at), default=None)

@@ -44,13 +44,13 @@ def test_a_window_tells_the_stretches_that_share_time_with_it() -> None:
 
 
 def test_start_and_end_of_standing_still_are_neighbours_of_the_callback_that_calls() -> None:
-    run, _, timer = calling_run()
+    run, _, _ = calling_run()
     timeline = timeline_of(run)
     steps = [ns(1.0)]
-    while (later := timeline.neighbour(steps[-1], timer, 1)) is not None:
+    while (later := timeline.neighbour(steps[-1], 1)) is not None:
         steps.append(later)
     assert steps == [ns(1.0), ns(2.0), ns(5.0), ns(6.0)]
-    assert timeline.neighbour(ns(6.0), timer, -1) == ns(5.0)
+    assert timeline.neighbour(ns(6.0), -1) == ns(5.0)
 
 
 def test_a_call_outside_of_callbacks_is_a_neighbour_among_all_events() -> None:
@@ -59,8 +59,8 @@ def test_a_call_outside_of_callbacks_is_a_neighbour_among_all_events() -> None:
     run.blocked(run.call("/turn", 2.0), "/turn", thread, 0, 2.0, until=5.0)
     timeline = timeline_of(run)
     assert [each.entity for each in timeline.moment(ns(3.0)).blocked.values()] == [0]
-    assert timeline.neighbour(ns(3.0), None, 1) == ns(5.0)
-    assert timeline.neighbour(ns(3.0), None, -1) == ns(2.0)
+    assert timeline.neighbour(ns(3.0), 1) == ns(5.0)
+    assert timeline.neighbour(ns(3.0), -1) == ns(2.0)
 
 
 def test_a_call_that_never_returns_lasts() -> None:

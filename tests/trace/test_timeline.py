@@ -34,7 +34,7 @@ def test_an_empty_timeline_knows_nothing_and_says_so() -> None:
     assert empty.busy(1, Window(0, 10)) == 0.0
     assert (empty.dropped(5), empty.drops_of(1, ALWAYS), empty.calls_of(1, ALWAYS)) == (0, 0, 0)
     assert (empty.robot(5), empty.command(5), empty.scan(5), empty.scan_seen(5)) == (None,) * 4
-    assert (empty.publication(1), empty.neighbour(5, None, 1), empty.neighbour(5, 1, -1)) == (None,) * 3
+    assert (empty.publication(1), empty.neighbour(5, 1), empty.neighbour(5, -1)) == (None,) * 3
     assert not empty.group_members(1)
     assert not any((empty.threads, empty.executors, empty.nodes, empty.groups, empty.entities))
     assert not any(

@@ -75,13 +75,13 @@ def test_a_window_holds_the_intervals_that_share_time_with_it(
         assert_same_window(timeline, naive, window)
 
 
-@given(legal_runs(), several, st.sampled_from([None, *GROUP_OF]), st.sampled_from([1, -1]))
+@given(legal_runs(), several, st.sampled_from([1, -1]))
 def test_a_neighbour_is_the_nearest_event_on_its_side(
-    events: list[AnyEvent], at: list[tuple[int, int]], entity: int | None, step: int
+    events: list[AnyEvent], at: list[tuple[int, int]], step: int
 ) -> None:
     timeline, naive = timeline_of(events), Naive(events)
     for time in times(events, at):
-        assert timeline.neighbour(time, entity, step) == naive.neighbour(time, entity, step)
+        assert timeline.neighbour(time, step) == naive.neighbour(time, step)
 
 
 @given(legal_runs())
@@ -141,5 +141,5 @@ def everything(at: int, window: Window) -> tuple[Callable[[Timeline], object], .
         lambda timeline: (timeline.logs, timeline.logs_until(at)),
         lambda timeline: (timeline.robot(at), timeline.trail(window)),
         lambda timeline: (timeline.scan(at), timeline.scan_seen(at)),
-        lambda timeline: [timeline.neighbour(at, None, step) for step in (1, -1)],
+        lambda timeline: [timeline.neighbour(at, step) for step in (1, -1)],
     )

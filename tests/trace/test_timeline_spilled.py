@@ -34,7 +34,7 @@ from sim.trace.storage.spill_file import SpillFile
 from sim.trace.timeline import Timeline
 from tests.support.daily import first_daily
 from tests.trace.naive import Naive, overlaps
-from tests.trace.systems import GROUP_OF, jumbled_runs, legal_runs
+from tests.trace.systems import jumbled_runs, legal_runs
 from tests.trace.test_timeline_properties import (
     assert_same_answers,
     assert_same_moment,
@@ -97,13 +97,11 @@ def test_moments_and_windows_of_a_spilled_run(events: list[AnyEvent], at: list[t
         assert_same_window(timeline, naive, window)
 
 
-@given(legal_runs(), several, st.sampled_from([None, *GROUP_OF]), st.sampled_from([1, -1]))
-def test_neighbours_in_a_spilled_run(
-    events: list[AnyEvent], at: list[tuple[int, int]], entity: int | None, step: int
-) -> None:
+@given(legal_runs(), several, st.sampled_from([1, -1]))
+def test_neighbours_in_a_spilled_run(events: list[AnyEvent], at: list[tuple[int, int]], step: int) -> None:
     timeline, naive = forgetful(events), Naive(events)
     for time in times(events, at):
-        assert timeline.neighbour(time, entity, step) == naive.neighbour(time, entity, step)
+        assert timeline.neighbour(time, step) == naive.neighbour(time, step)
 
 
 @given(jumbled_runs(), several)

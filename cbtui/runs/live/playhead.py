@@ -115,10 +115,10 @@ class Playhead:
 
 def _event_beside(timeline: Timeline, at: Nanoseconds, step: int) -> Nanoseconds | None:
     """The event before or after a moment; of losses with nothing else between them, the last one."""
-    event, other = (timeline.neighbour(at, None, step, losses) for losses in (True, False))
+    event, other = (timeline.neighbour(at, step, losses) for losses in (True, False))
     if event == other:
         return event
     if step > 0:
-        return timeline.neighbour(timeline.end + 1 if other is None else other, None, -1)
-    here, before = (timeline.neighbour(at + 1, None, -1, losses) for losses in (True, False))
+        return timeline.neighbour(timeline.end + 1 if other is None else other, -1)
+    here, before = (timeline.neighbour(at + 1, -1, losses) for losses in (True, False))
     return other if here == at != before else event

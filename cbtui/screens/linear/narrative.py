@@ -145,7 +145,7 @@ def told_finding(each: ExplainedFinding) -> str:
 
 def told_moment(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
     """Yield the executor's last action by a moment, what still waited then and why, and what runs."""
-    if timeline.neighbour(at + 1, None, -1) != at:
+    if timeline.neighbour(at + 1, -1) != at:
         yield f"{timestamp(at)}; the last event before that:"
     yield from narration(timeline, at)
     yield from what_runs(timeline, at)

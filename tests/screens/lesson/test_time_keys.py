@@ -54,7 +54,7 @@ async def test_a_step_is_offered_in_a_pause_and_reaches_the_engine() -> None:
 async def test_a_comma_looks_back_by_one_event_and_a_full_stop_forward_until_live_again() -> None:
     async with console() as (app, pilot):
         timeline = app.lesson_screen.runs.run.timeline
-        before = timeline.neighbour(timeline.end, None, -1)
+        before = timeline.neighbour(timeline.end, -1)
         assert before is not None
         await press(pilot, "comma")
         assert f"t {before / 1e9:.3f} s" in status(app)

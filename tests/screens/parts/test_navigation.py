@@ -48,7 +48,7 @@ def test_every_move_is_told() -> None:
 
 def test_before_the_first_event_a_step_back_leads_to_the_beginning() -> None:
     navigation, _ = over(told(shared_group_run()))
-    first = navigation.timelines()[0].neighbour(0, None, 1)
+    first = navigation.timelines()[0].neighbour(0, 1)
     assert first
     navigation.seek(first)
     navigation.action_step_back()
@@ -75,7 +75,7 @@ def test_of_two_runs_the_nearer_event_is_next() -> None:
     navigation, _ = over(*runs)
     navigation.seek(ns(5.0))
     navigation.action_step()
-    after = [timeline.neighbour(ns(5.0), None, 1) for timeline in runs]
+    after = [timeline.neighbour(ns(5.0), 1) for timeline in runs]
     assert navigation.now == min(at for at in after if at is not None)
 
 
