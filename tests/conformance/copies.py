@@ -1,12 +1,11 @@
 """Runs programs in copies of a process that has imported rclpy; a script, in any Python that has one.
 
-Standard input has a line of JSON for each program: its file, one for its output, and what its threads
-choose otherwise than first come, first served, as numbers of choices and options in turn, or null. The
-output is printed when the program has ended. With the arguments ``model DISTRO`` rclpy is the model on
-virtual time; with ``late`` behind them, how late waits end is a choice, too. A program finds among its
-globals ``moments``, at which anything fell due on the model (nanoseconds), and ``choices``, as
-``Steered.options``; or ``late``: when, and by how much, the machine was late to wake a thread of it
-(seconds).
+Standard input has a line of JSON for each program: its file, one for its output, and what its threads choose
+otherwise than first come, first served, as numbers of choices and options in turn, or null. The output is
+printed when the program has ended. With the arguments ``model DISTRO`` rclpy is the model on virtual time. A
+program finds among its globals ``moments``, at which anything fell due on the model (nanoseconds), and
+``choices``, as ``Steered.options``; or ``late``: when, and by how much, the machine was late to wake a thread
+of it (seconds).
 """
 
 import json
@@ -23,7 +22,7 @@ LONGEST = 60
 """Real seconds after which a program is ended."""
 
 
-def on_model(source: str, distro: str, moves: list[int] | None, late: bool) -> None:
+def on_model(source: str, distro: str, moves: list[int] | None) -> None:
     """Run a program on the model, on virtual time, as a distribution of ROS 2 behaves."""
     from sim.clock import VirtualClock
     from sim.clock.stdlib import live_on
@@ -34,7 +33,7 @@ def on_model(source: str, distro: str, moves: list[int] | None, late: bool) -> N
 
     program: dict[str, Any] = {"__name__": "__main__", "moments": (moments := {0})}
     chosen = dict(zip(moves[::2], moves[1::2], strict=True)) if moves else {}
-    steered = Steered(chosen, lambda: len(program.get("said", ())), late=late)
+    steered = Steered(chosen, lambda: len(program.get("said", ())))
     program["choices"] = steered.options
     clock = VirtualClock(schedule=None if moves is None else steered)
     probe = SilentProbe(clock)
@@ -80,7 +79,7 @@ def run(source: str, output: str, moves: list[int] | None, model_of: str | None)
         if model_of is None:
             on_ros(source)
         else:
-            on_model(source, model_of, moves, late=sys.argv[3:] == ["late"])
+            on_model(source, model_of, moves)
     finally:
         os._exit(1)
 

@@ -34,14 +34,11 @@ def run_all(
     at_once: int,
     model_of: str = "",
     moves: Iterable[Moves | None] = repeat(None),
-    *,
-    late: bool = False,
 ) -> Iterator[Said | None]:
     """Run programs on the ROS 2 of an interpreter, or on the model (None); None for one that said nothing.
 
     ``model_of`` is the distro whose named behaviours the model has; ``moves`` has, for each program, what the
-    model's threads choose otherwise than first come, first served; of None no choices are told. With
-    ``late``, how late waits end is a choice, too.
+    model's threads choose otherwise than first come, first served; of None no choices are told.
     """
     sources = list(programs)
     domain, claim = claimed_domain()
@@ -51,7 +48,6 @@ def run_all(
         "FASTDDS_BUILTIN_TRANSPORTS": "UDPv4",
     }
     executable = python or sys.executable
-    model = ["model", model_of] if python is None else []
     environment = {**unbootstrapped(executable), **alone}
     if python is None:
         environment["PYTHONPATH"] = str(Path(__file__).parents[2])
@@ -59,7 +55,7 @@ def run_all(
         environment.pop("PYTHONPATH")
     with claim, tempfile.TemporaryDirectory() as folder:
         process = subprocess.Popen(
-            [executable, copies.__file__, *model, *["late"] * late],
+            [executable, copies.__file__, *(["model", model_of] if python is None else [])],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,  # for what is raised on purpose

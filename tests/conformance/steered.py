@@ -4,21 +4,17 @@ from collections.abc import Callable, Hashable, Mapping, Sequence
 
 from sim.clock.schedule import NO_ACCESSES, Accesses, Schedule
 
-LATENESS = (0, 10_000_000, 30_000_000, 90_000_000)
-"""By how many nanoseconds a wait may end late."""
-
 
 class Steered(Schedule):
     """First come, first served, but for some choices, by their numbers from 0."""
 
     explores = True
 
-    def __init__(self, moves: Mapping[int, int], said: Callable[[], int], *, late: bool) -> None:
+    def __init__(self, moves: Mapping[int, int], said: Callable[[], int]) -> None:
         self.options: list[tuple[int, int, bool]] = []
         """For each choice that there was: behind how many lines, among how many, whether to go on is one."""
         self._moves = moves
         self._said = said
-        self._lateness = LATENESS if late else LATENESS[:1]
         self._following: Hashable = None
 
     def next(self, ready: Sequence[Hashable]) -> int:
@@ -36,10 +32,6 @@ class Steered(Schedule):
     def choose(self, number: int) -> int:
         """The option that the moves want, if there is it; else the first."""
         return self._choose(number, preempts=False)
-
-    def lateness(self) -> int:
-        """A choice, too, if machines may be late."""
-        return self._lateness[self.choose(len(self._lateness))]
 
     def hands_over(self) -> bool:
         """A choice, too."""
