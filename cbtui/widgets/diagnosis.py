@@ -197,11 +197,9 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
     nothing = "no other callback waits" if pending else "nothing else waits"
     overdue = _overdue(timeline.entities[for_itself], moment, since)
     text = f"{overdue}; {in_a_call or nothing}"
-    is_late = moment.queues[for_itself].depth and moment.at - since >= _SERIOUS
-    level = DiagnosisLevel.WAITS if is_late else DiagnosisLevel.FINE
     if in_a_call:
-        return Diagnosis(text, level)
-    return Diagnosis(f"{text}; {briefly}", level, at_length=f"{text}; {threads}")
+        return Diagnosis(text, DiagnosisLevel.FINE)
+    return Diagnosis(f"{text}; {briefly}", DiagnosisLevel.FINE, at_length=f"{text}; {threads}")
 
 
 def _no_reply(pending: Sequence[Call], at: Nanoseconds, timeline: Timeline) -> str:

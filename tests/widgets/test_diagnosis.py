@@ -339,17 +339,6 @@ def test_of_a_past_moment_no_later_problem_is_told() -> None:
     assert "waited up to" in with_worst_problem(moment, findings, at=ns(15.0)).text
 
 
-def test_all_is_not_well_where_a_message_waits_for_long_behind_a_call() -> None:
-    run = Run()
-    hear = run.subscription(run.exclusive(run.node("/n")), "/a", "hear")
-    run.message(hear, 0.9)
-    run.callback(hear, run.thread("MainThread"), 1.0, 8.0)
-    run.message(hear, 1.2)
-    run.wait(hear, 1.2, 9.0, Reason.GROUP_HELD, hear)
-    assert said(run, 2.0).level is DiagnosisLevel.FINE
-    assert said(run, 2.3).level is DiagnosisLevel.WAITS
-
-
 def test_a_request_that_waits_for_the_call_before_it_is_told_as_that() -> None:
     run = Run()
     serve = run.service(run.exclusive(run.node("/n")), "/serve", "serve")

@@ -26,8 +26,8 @@ from lessons.lesson import Lesson
 _ON_LANES = ("zoom", "pan", "select", "code", "lane", "event", "leave", "copy")
 """Labels of the actions that the lanes' frame shows."""
 
-_ON_SHELL = ("ros2", "type")
-"""Labels that come first while the shell's output has the focus."""
+_FIRST_ON: Mapping[type[Widget], Sequence[str]] = {ShellOutput: ("ros2", "type"), LogLines: ("filter",)}
+"""Labels that come first while a widget has the focus."""
 
 _WITH_KEYS = (LogLines, CodeView, ChecksView, ChoiceOptions)
 """Panes with a ``check_action`` of their own."""
@@ -87,7 +87,8 @@ class OfferedKeys:
         # In the grid the lanes have a frame, which shows their keys.
         framed = self.screen.layout_now is Layout.GRID
         on_lanes = (*_ON_LANES, "enlarge") if lanes.has_focus and not framed else ()
-        bar.first = _ON_SHELL if isinstance(self.screen.focused, ShellOutput) else on_lanes or self.first()
+        on_pane = (labels for kind, labels in _FIRST_ON.items() if isinstance(self.screen.focused, kind))
+        bar.first = next(on_pane, on_lanes or self.first())
         bar.offered = tuple(bar.working())
         of_screen = (action for action in bar.offered if action.scope is Scope.LESSON)
         lanes.hint = hint([action for action in of_screen if action.label in _ON_LANES], self.charset)
