@@ -64,7 +64,10 @@ class KeyTurns:
 
 
 def _apart(key: Key) -> Iterable[Key]:
-    """Return escape and a letter for alt and a letter, as terminals send both alike and no key has alt."""
+    """Return escape and a letter that came at once as two keys.
+
+    Terminals send the same for the letter with the Alt key, which no key here has.
+    """
     if not key.key.startswith("alt+") or key.character is None:
         return [key]
     return [Key("escape", None), Key(key.character, key.character)]
