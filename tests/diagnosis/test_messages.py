@@ -324,7 +324,10 @@ def test_what_is_published_before_anybody_listens_is_told_at_the_subscription() 
     run = early(number=3)
     assert run.problems() == {("sent-too-early", "hear")}
     told = run.explained("sent-too-early")
-    assert told.what == "hear hears nothing: all 3 messages of /t were published before it subscribed"
+    assert told.what == (
+        "hear hears nothing: all 3 messages of /t were published before the publisher knew of the "
+        "subscription"
+    )
     assert told.place is not None
     line = Path(told.place.file).read_text().splitlines()[told.place.first_line - 1]
     assert "create_subscription" in line

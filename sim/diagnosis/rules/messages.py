@@ -174,14 +174,14 @@ def _may_use_what_is_set(sensor: EntityInfo, timer: EntityInfo) -> bool:
 
 
 class SentTooEarly(Rule):
-    """All messages of a topic were published before a subscription was made, which hears none of them.
+    """All messages of a topic were published before a subscription was matched, which hears none of them.
 
     Only what was published outside callbacks counts: a callback may publish again. rclpy's own topics, on
     which each node publishes when it is made, are left out.
     """
 
     id = "sent-too-early"
-    summary = "what is published once comes before its subscription is made"
+    summary = "what is published once comes before the publisher knows of the subscription"
     threshold: Nanoseconds = SECOND
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
@@ -203,8 +203,8 @@ class SentTooEarly(Rule):
         by = f" (line {publisher})" if publisher else ""
         return Explanation(
             f"{who(found.subject, timeline)} hears nothing: {'the only' if one else f'all {found.size}'} "
-            f"message{'' if one else 's'} of {found.about} {'was' if one else 'were'} published before it "
-            "subscribed",
+            f"message{'' if one else 's'} of {found.about} {'was' if one else 'were'} published before the "
+            "publisher knew of the subscription",
             "a publisher keeps its last messages for later subscriptions only if both are transient-local",
             f"make the publisher{by} and the subscription TRANSIENT_LOCAL, or publish later",
             place,
