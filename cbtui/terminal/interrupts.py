@@ -25,8 +25,8 @@ _RETRY = 0.005
 """Seconds until a postponed interrupt is raised again."""
 _IMPORT_TIMEOUT = 2.0
 """Seconds for which an import postpones an interrupt; a lesson's checks may import anything."""
-_FRAGILE = ("<frozen importlib._bootstrap>", typing.__file__)
-"""Files whose code must not be interrupted: the import system, and what C libraries call for types."""
+_FRAGILE = ("<frozen importlib._bootstrap>", typing.__file__, "/msgspec/_utils.py")
+"""Ends of paths of code that must not be interrupted: the imports, and what C libraries call for types."""
 
 _Handler: TypeAlias = Callable[[int, FrameType | None], Any]
 
@@ -153,7 +153,7 @@ class _InterruptHandler:
 
 def _is_fragile(frame: FrameType | None) -> bool:
     while frame is not None:
-        if frame.f_code.co_filename in _FRAGILE:
+        if frame.f_code.co_filename.endswith(_FRAGILE):
             return True
         frame = frame.f_back
     return False

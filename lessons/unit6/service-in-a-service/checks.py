@@ -9,7 +9,6 @@ from lessons.checks import (
     never_raises,
     never_stuck,
     replies_within,
-    requests_of,
 )
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
@@ -38,8 +37,8 @@ def weigh_while_pack_waits(run: Timeline) -> int:
 
 def belt_after_the_call(run: Timeline) -> int:
     """Whether the belt moved on, stood for a while, or stood for ever."""
-    asked = requests_of(run, OUTER)[0].sent
-    beats = calls_of(run, "belt", Window(asked, run.end))
+    pack = calls_of(run, OUTER)[0]
+    beats = calls_of(run, "belt", Window(pack.start, run.end))
     if not beats:
         return 2
     return 0 if beats[0].age < SECOND // 4 else 1
