@@ -164,7 +164,9 @@ def _try_again_soon() -> None:
 
 
 def ignore() -> None:
-    """Ignore Ctrl-C from now on: the process is about to exit."""
+    """Ignore Ctrl-C from now on, as the process is about to exit; raises one that was postponed until now."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, signal.SIG_IGN)  # at exit Python restores the deadly default
+        if signal.setitimer(signal.ITIMER_REAL, 0)[0]:
+            raise KeyboardInterrupt

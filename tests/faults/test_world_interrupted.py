@@ -108,9 +108,7 @@ def recording_is_whole() -> bool:
     return recording.damage is None and sum(map(len, recording.batches())) > 0
 
 
-@pytest.mark.parametrize(
-    ("name", "moment"), first_row_daily(*MOMENTS_OF_COMMANDS, ("export", IN_MSGSPEC), ("check", IN_MSGSPEC))
-)
+@pytest.mark.parametrize(("name", "moment"), first_row_daily(*MOMENTS_OF_COMMANDS, ("export", IN_MSGSPEC)))
 def test_ctrl_c_ends_a_command_at_any_moment_without_a_word(name: str, moment: int | str) -> None:
     with nothing_left():
         command = Command(SCRIPT, str(moment), *COMMANDS[name])

@@ -1,11 +1,12 @@
-"""Ctrl-C as a program that has an event loop ends."""
+"""Ctrl-C as a program ends: it is not lost."""
 
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
-_PROGRAM = """
+_ENDS_ITS_LOOP = """
 import asyncio, os, signal, threading, time
 from cbtui.terminal.interrupts import ending_signals_on_loop
 
@@ -33,8 +34,29 @@ except KeyboardInterrupt:
     print("interrupted")
 """
 
+_ENDS_AFTER_AN_IMPORT = """
+from cbtui.terminal import interrupts
+
+interrupts.install()
+import interrupted_import
+print("imported")
+try:
+    interrupts.ignore()
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
 
 @pytest.mark.skipif(sys.platform == "win32", reason="its loop handles no signals")
 def test_ctrl_c_that_another_thread_takes_as_the_handlers_go_is_not_lost() -> None:
-    done = subprocess.run([sys.executable, "-c", _PROGRAM], capture_output=True, text=True, check=False)
+    done = subprocess.run([sys.executable, "-c", _ENDS_ITS_LOOP], capture_output=True, text=True, check=False)
     assert (done.stdout, done.stderr) == ("interrupted\n", "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="it has no timers that signal")
+def test_ctrl_c_in_the_last_import_is_not_lost_where_nothing_is_left_to_do(folder: Path) -> None:
+    Path("interrupted_import.py").write_text("import signal\n\nsignal.raise_signal(signal.SIGINT)\n")
+    done = subprocess.run(
+        [sys.executable, "-c", _ENDS_AFTER_AN_IMPORT], capture_output=True, text=True, check=False
+    )
+    assert (done.stdout, done.stderr) == ("imported\ninterrupted\n", "")

@@ -75,7 +75,7 @@ class Watchdog:
     def _sentence(self) -> str:
         thread = self._clock.current
         return (
-            f"{thread.name} does not come to a wait ({place_of(thread)}): it computes for long, perhaps "
-            "without end, or waits for something outside the virtual clock; mend it, "
+            f"{thread.name} does not come to a wait ({place_of(thread)}): it computes, or runs one callback "
+            "after another, perhaps without end, or waits for something outside the virtual clock; mend it, "
             "or run the file by itself with --clock real"
         )
