@@ -54,9 +54,13 @@ def test_ctrl_c_that_another_thread_takes_as_the_handlers_go_is_not_lost() -> No
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="it has no timers that signal")
-def test_ctrl_c_in_the_last_import_is_not_lost_where_nothing_is_left_to_do(folder: Path) -> None:
-    Path("interrupted_import.py").write_text("import signal\n\nsignal.raise_signal(signal.SIGINT)\n")
+def test_ctrl_c_in_the_last_import_is_not_lost_where_nothing_is_left_to_do(tmp_path: Path) -> None:
+    (tmp_path / "interrupted_import.py").write_text("import signal\n\nsignal.raise_signal(signal.SIGINT)\n")
     done = subprocess.run(
-        [sys.executable, "-c", _ENDS_AFTER_AN_IMPORT], capture_output=True, text=True, check=False
+        [sys.executable, "-c", _ENDS_AFTER_AN_IMPORT],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert (done.stdout, done.stderr) == ("imported\ninterrupted\n", "")
