@@ -4,6 +4,7 @@ Python raises KeyboardInterrupt between any two bytecodes of the main thread; in
 recording's chunk it would leave half a chunk. On other threads nothing is raised.
 """
 
+import enum
 import signal
 import sys
 import threading
@@ -25,8 +26,8 @@ _RETRY = 0.005
 """Seconds until a postponed interrupt is raised again."""
 _IMPORT_TIMEOUT = 2.0
 """Seconds for which an import postpones an interrupt; a lesson's checks may import anything."""
-_FRAGILE = ("<frozen importlib._bootstrap>", typing.__file__, "/msgspec/_utils.py")
-"""Ends of paths of code that must not be interrupted: the imports, and what C libraries call for types."""
+_FRAGILE = ("<frozen importlib._bootstrap>", typing.__file__, enum.__file__)
+"""Files whose code must not be interrupted: the import system, and what C libraries call for types."""
 
 _Handler: TypeAlias = Callable[[int, FrameType | None], Any]
 
@@ -153,7 +154,7 @@ class _InterruptHandler:
 
 def _is_fragile(frame: FrameType | None) -> bool:
     while frame is not None:
-        if frame.f_code.co_filename.endswith(_FRAGILE):
+        if frame.f_code.co_filename in _FRAGILE:
             return True
         frame = frame.f_back
     return False
@@ -165,8 +166,9 @@ def _try_again_soon() -> None:
 
 def ignore() -> None:
     """Ignore Ctrl-C from now on, as the process is about to exit; raises one that was postponed until now."""
+    is_postponed = hasattr(signal, "setitimer") and signal.setitimer(signal.ITIMER_REAL, 0)[0] > 0
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    if hasattr(signal, "setitimer"):
+    if hasattr(signal, "SIGALRM"):
         signal.signal(signal.SIGALRM, signal.SIG_IGN)  # at exit Python restores the deadly default
-        if signal.setitimer(signal.ITIMER_REAL, 0)[0]:
-            raise KeyboardInterrupt
+    if is_postponed:
+        raise KeyboardInterrupt

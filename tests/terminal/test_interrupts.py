@@ -38,9 +38,32 @@ _ENDS_AFTER_AN_IMPORT = """
 from cbtui.terminal import interrupts
 
 interrupts.install()
-import interrupted_import
-print("imported")
 try:
+    import interrupted_import
+    interrupts.ignore()
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+
+_MAKES_A_DECODER = """
+import enum, signal, sys
+import msgspec
+from cbtui.terminal import interrupts
+
+class Colour(enum.Enum):
+    RED = "red"
+
+def press(frame, event, argument):
+    if event == "call" and frame.f_code.co_filename == enum.__file__:
+        sys.setprofile(None)
+        signal.raise_signal(signal.SIGINT)
+
+interrupts.install()
+sys.setprofile(press)
+try:
+    msgspec.msgpack.Decoder(Colour)
+    if sys.getprofile():  # of this Python's enum msgspec calls nothing
+        signal.raise_signal(signal.SIGINT)
     interrupts.ignore()
 except KeyboardInterrupt:
     print("interrupted")
@@ -63,4 +86,12 @@ def test_ctrl_c_in_the_last_import_is_not_lost_where_nothing_is_left_to_do(tmp_p
         text=True,
         check=False,
     )
-    assert (done.stdout, done.stderr) == ("imported\ninterrupted\n", "")
+    assert (done.stdout, done.stderr) == ("interrupted\n", "")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="it has no timers that signal")
+def test_ctrl_c_in_what_msgspec_calls_of_an_enum_is_not_swallowed() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", _MAKES_A_DECODER], capture_output=True, text=True, check=False
+    )
+    assert (done.stdout, done.stderr) == ("interrupted\n", "")
