@@ -83,6 +83,13 @@ def test_with_one_shared_group_the_robot_drives_on_with_one_thread_alone(
     assert "With four threads the robot even **never drives on**." in find("shared-group").explanation
 
 
+def test_a_belt_that_moves_before_the_service_begins_has_not_moved_on_after_the_call() -> None:
+    lesson = find("service-in-a-service")
+    run = run_lesson(lesson.id, 6.0, 2.0).timeline  # the belt is due then, and timers come first
+    stands = lesson.predictions[1]
+    assert Judge(lesson).true_answer(stands, run) == stands.right
+
+
 def test_a_lamp_that_stands_still_for_three_seconds_does_not_blink_all_the_time(tmp_path: Path) -> None:
     lesson = find("spin-inside-a-callback")
     assert lesson.solution_path is not None
