@@ -38,7 +38,8 @@ def weigh_while_pack_waits(run: Timeline) -> int:
 def belt_after_the_call(run: Timeline) -> int:
     """Whether the belt moved on, stood for a while, or stood for ever."""
     pack = calls_of(run, OUTER)[0]
-    beats = calls_of(run, "belt", Window(pack.start + 1, run.end))  # one of the same moment came before
+    # A beat of the very moment at which pack begins came before it.
+    beats = calls_of(run, "belt", Window(pack.start + 1, run.end))
     if not beats:
         return 2
     return 0 if beats[0].age < SECOND // 4 else 1
