@@ -42,7 +42,7 @@ def test_a_system_ends_at_no_moment_of_its_own(seed: str) -> None:
     assert min(abs(moment - case.system.end) for moment in case.model.moments) >= GAP / 2
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_an_order_that_threads_can_come_to_is_found_and_another_one_is_not() -> None:
     case = next(each for each in cases(12, seed=5, distro=JAZZY) if each.system.executors == (4,))
     for number in range(60):

@@ -25,7 +25,7 @@ from tests.recording.files import (
     write,
     write_in_chunks,
 )
-from tests.support.daily import first_daily
+from tests.support.daily import first_daily, first_slow
 
 BATCHES = run_in_batches(100)[:15]
 CAST = [
@@ -82,8 +82,7 @@ def test_a_recording_that_was_cut_holds_what_came_before(whole: bytes, tmp_path:
     assert max(held) == len(KEPT)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", first_daily(*range(4)))
+@pytest.mark.parametrize("seed", first_slow(*range(4)))
 def test_flipped_bytes_cost_no_more_than_the_chunks_they_are_in(
     whole: bytes, tmp_path: Path, seed: int
 ) -> None:

@@ -14,7 +14,6 @@ from cbtui.runs.recorded.events_file import EventsFile
 from sim.recording import RecordingError, RecordingMetadata, RecordingWriter, read, recorder
 from sim.trace.events import AnyEvent, Notice, Severity
 from tests.recording.files import run_in_batches, without_contents
-from tests.support.daily import first_daily
 
 BATCHES = run_in_batches(9)[:3]
 EVENTS = [event for events in BATCHES for event in without_contents(events)]
@@ -80,7 +79,7 @@ def events_on(disk: Disk) -> list[AnyEvent]:
         return []
 
 
-@pytest.mark.parametrize("step", first_daily(19, 1))
+@pytest.mark.parametrize("step", [19, pytest.param(1, marks=pytest.mark.bulk)])
 def test_a_recording_gives_back_its_events_at_whichever_byte_its_disk_was_full(step: int) -> None:
     whole, failure = recorded(MANY, BATCHES)
     size = len(whole.getvalue())
@@ -116,7 +115,7 @@ def test_a_long_program_takes_no_room_from_the_first_events_however_late_they_co
     assert events_on(disk) == without_contents(BATCHES[0])
 
 
-@pytest.mark.parametrize("step", first_daily(19, 1))
+@pytest.mark.parametrize("step", [19, pytest.param(1, marks=pytest.mark.bulk)])
 def test_a_recording_that_breaks_off_at_any_byte_gives_back_what_came_before(step: int) -> None:
     whole = recorded(MANY, BATCHES)[0].getvalue()
     seen = []

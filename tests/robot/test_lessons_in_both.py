@@ -10,6 +10,7 @@ from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.setup import PhysicsChoice
 from sim.trace.events import RobotMoved
+from tests.support.daily import first_slow
 from tests.support.engine_runs import SECOND, Run, run_to_end
 
 COURSE = (
@@ -32,8 +33,7 @@ def places(run: Run) -> list[tuple[float, float]]:
     return [(event.x, event.y) for event in run.events if isinstance(event, RobotMoved)]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("lesson", COURSE)
+@pytest.mark.parametrize("lesson", first_slow(*COURSE))
 def test_a_minute_of_a_lesson_has_the_same_log_and_places_in_both(lesson: str) -> None:
     pytest.importorskip("pybullet")
     setup = msgspec.structs.replace(setup_for(find(lesson), speed=None), until=60 * SECOND)

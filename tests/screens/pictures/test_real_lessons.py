@@ -15,6 +15,7 @@ from sim.trace.events import AnyEvent
 from tests.support.ansi import ansi_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_slow
 from tests.support.engine_runs import run_to_end
 from tests.support.goldens import SCREENS, hold
 
@@ -108,8 +109,7 @@ async def test_a_lesson_looks_as_it_did(lesson: str, pytestconfig: pytest.Config
     hold(files(lesson, await drawn(console_on(lesson)(), {"dark": "dark"})), SCREENS, pytestconfig)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("lesson", IN_EVERY_LOOK)
+@pytest.mark.parametrize("lesson", first_slow(*IN_EVERY_LOOK))
 async def test_a_lesson_looks_as_it_did_in_light_in_ascii_and_without_colours(
     lesson: str, monkeypatch: pytest.MonkeyPatch, pytestconfig: pytest.Config
 ) -> None:
@@ -121,7 +121,7 @@ async def test_a_lesson_looks_as_it_did_in_light_in_ascii_and_without_colours(
     hold(files(lesson, pictures), SCREENS, pytestconfig)
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 async def test_a_console_that_grew_and_changed_its_theme_looks_as_one_that_begins_so() -> None:
     recorded = partial(RecordedConsole, "no-groups-at-all", events_of("no-groups-at-all"), 12.2)
     grown = await drawn(recorded(), {"dark": "dark", "light": "light"})
