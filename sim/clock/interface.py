@@ -21,6 +21,9 @@ class RunClock(Protocol):
     def epoch(self) -> int:
         """Nanoseconds since 1970 at which the run began: ``epoch + now()`` is what log lines show."""
 
+    activity: Callable[[], object]
+    """Called on a thread that takes a lock, which keeps what it returns: what the thread does then."""
+
     def now(self) -> int:
         """Nanoseconds since the run began; never goes back."""
 

@@ -90,6 +90,7 @@ class PacedClock:
         self.epoch = time.time_ns()
         self.origin = _monotonic_ns()
         """The machine's monotonic time at which the run began."""
+        self.activity: Callable[[], object] = lambda: None
         self._sleepers: set[PacedAutoResetEvent] = set()
         self._changing = _allocate_lock()
         self._paused = False

@@ -46,7 +46,7 @@ class PacedLock:
     """``threading.Lock`` whose timeout is seconds of a paced clock."""
 
     _clock: PacedClock
-    __slots__ = ("__weakref__", "_lock", "holder_ident", "locked", "release")
+    __slots__ = ("__weakref__", "_lock", "holder_ident", "locked", "release", "taken_during")
 
     def __init__(self) -> None:
         lock = _allocate_lock()
@@ -55,6 +55,7 @@ class PacedLock:
         self.release = lock.release
         self.holder_ident = 0
         """The identifier of the thread that took the lock to guard something; 0 if it may be a signal."""
+        self.taken_during: object = None
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock; False if it is not available at once (or within ``timeout`` seconds)."""
@@ -66,11 +67,13 @@ class PacedLock:
             taker = sys._getframe(1)
             guards = taker.f_code.co_filename not in _LIBRARY and takes_to_guard(taker)
             self.holder_ident = get_ident() if guards else 0  # else another thread may release it
+            self.taken_during = self._clock.activity()
         return taken
 
     def __enter__(self) -> bool:
         self._lock.acquire()
         self.holder_ident = get_ident()
+        self.taken_during = self._clock.activity()
         return True
 
     def __exit__(

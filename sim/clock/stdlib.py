@@ -57,6 +57,7 @@ class VirtualLock:
         self.holder: VirtualThread | None = None
         self.guards = False
         self.taken_at: tuple[CodeType, int] | None = None
+        self.taken_during: object = None
         self._clock.record_use(self)
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
@@ -152,6 +153,7 @@ class VirtualLock:
         """Record which thread took the lock, and where: the first frame outside the library."""
         self._clock.record_use(self)
         self.holder = self._clock.current
+        self.taken_during = self._clock.activity()
         code = frame.f_code
         self.guards = code is _ENTERS or code is _RLOCK_TAKES or code is _RLOCK_TAKES_AGAIN
         if code.co_filename not in _LIBRARY:

@@ -57,6 +57,7 @@ class VirtualClock:
 
         It is called on the waiting thread and must not wait.
         """
+        self.activity: Callable[[], object] = lambda: None
         self.handle_signals: Callable[[], None] = lambda: None
         """Called on the main thread when it continues after a wait."""
         self.current = VirtualThread("MainThread")

@@ -160,14 +160,8 @@ class WaitForGraph:
 
     def _obstacle_at(self, position: Position, span: Span) -> Obstacle | None:
         """What a callback at a line waits for; None: nothing known, or nothing permanent."""
-        if position.holder:
-            holder = OnThread(position.holder)
-            me = self._name(OnThread(position.thread))
-            if not position.waits_for_lock:
-                text = f"{me} waits for {thread_name(holder, self._timeline)} to end"
-                return Obstacle(WaitedFor.THREAD, text, (holder,))
-            whose = "it keeps itself" if position.holder == position.thread else f"{self._name(holder)} keeps"
-            return Obstacle(WaitedFor.LOCK, f"{me} wants the lock that {whose}", (holder,))
+        if position.keeper or position.holder:
+            return self._held_obstacle(position)
         if position.call == "Rate.sleep":
             timer = self._waiting_of_rclpy(EntityKind.TIMER, span)
             if timer is not None:
@@ -182,6 +176,25 @@ class WaitForGraph:
                     computes = position.doing is not Doing.WAITS
                     return self._obstacle(call) or (self._busy_obstacle(call, span) if computes else None)
         return None
+
+    def _held_obstacle(self, position: Position) -> Obstacle:
+        """A thread that is to end, or a lock: what a call that is over left locked is waited for in a row."""
+        me, keeper = self._name(OnThread(position.thread)), position.keeper
+        holder: Waiter = OnThread(position.holder)
+        if not position.waits_for_lock:
+            text = f"{me} waits for {thread_name(holder, self._timeline)} to end"
+            return Obstacle(WaitedFor.THREAD, text, (holder,))
+        if keeper in self._suspended():
+            whose, holder = f"{who(keeper, self._timeline)} keeps while it awaits", Suspended(keeper)
+        elif keeper:
+            stands = (self._timeline.position_on(thread, self._at) for thread in self._moment.running)
+            waits = [each for each in stands if each is not None and each.keeper == keeper]
+            holder = OnThread(min(waits, key=attrgetter("start")).thread)
+            by = "an earlier call" if keeper == position.entity else who(keeper, self._timeline)
+            whose = f"{by} took and did not release"
+        else:
+            whose = "it keeps itself" if position.holder == position.thread else f"{self._name(holder)} keeps"
+        return Obstacle(WaitedFor.LOCK, f"{me} wants the lock that {whose}", (holder,))
 
     def _busy_obstacle(self, call: Call, span: Span) -> Obstacle | None:
         """A loop that computes keeps a reply from its client, even one that is not there yet."""

@@ -29,7 +29,7 @@ _TIMEOUTS = ("timeout_sec", "timeout", "time_to_wait")
 _LONGEST = 1_000_000_000
 """Seconds of the longest timeout that is recorded."""
 
-PositionFields: TypeAlias = tuple[Doing, str, tuple[tuple[str, str, int], ...], SourcePlace, int]
+PositionFields: TypeAlias = tuple[Doing, str, tuple[tuple[str, str, int], ...], SourcePlace, int, EntityId]
 
 
 class CallbackPositions:
@@ -79,11 +79,10 @@ def position_of(
         return None
     inside = stack[: own[0]]
     doing, call = _activity(inside)
-    holder = running.get(_lock_holder(inside)) if call == LOCK else None
+    thread, keeper = _lock_holder(inside, running) if call == LOCK else (0, 0)
     lines = [(stack[place].f_code, stack[place].f_lineno) for place in reversed(own)]
     loops = (loop_around(code.co_filename, line) for code, line in reversed(lines))
     frames = tuple((code.co_filename, code.co_name, line) for code, line in lines)
-    thread = 0 if holder is None else holder.thread
     timeout = _timeout(inside[-1]) if inside and doing is not Doing.SLEEPS else 0
     joined = _joined(inside[-1]) if call == _JOIN else None
     if joined is not None and joined.ident is not None:
@@ -92,7 +91,7 @@ def position_of(
             takewhile(lambda frame: not is_own(frame), outwards(sys._current_frames().get(joined.ident)))
         )
         timeout = timeout or (_timeout(there[-1]) if there else 0)
-    return (doing, call, frames, next(filter(None, loops), ("", 0)), thread), timeout
+    return (doing, call, frames, next(filter(None, loops), ("", 0)), thread, keeper), timeout
 
 
 def _is_written(frame: FrameType) -> bool:
@@ -136,13 +135,21 @@ def _joined(function: FrameType) -> threading.Thread | None:
     return next((each for each in values if isinstance(each, threading.Thread)), None)
 
 
-def _lock_holder(inside: list[FrameType]) -> int:
-    """Return the identifier of the thread that holds the lock for which these frames wait; 0 if unknown."""
+def _lock_holder(
+    inside: list[FrameType], running: Mapping[int, RunningCallback]
+) -> tuple[ThreadId, EntityId]:
+    """Return the thread that holds the lock for which these frames wait; 0 if unknown.
+
+    With it comes the callback that took the lock, if its call does not run there any more.
+    """
     for frame in inside:
-        ident = getattr(frame.f_locals.get("self"), "holder_ident", None)
-        if ident is not None:
-            return int(ident)
-    return 0
+        lock = frame.f_locals.get("self")
+        ident = getattr(lock, "holder_ident", 0)
+        if ident:
+            now, then = running.get(ident), getattr(lock, "taken_during", None)
+            keeper = then.entity if isinstance(then, RunningCallback) and then != now else 0
+            return 0 if now is None else now.thread, keeper
+    return 0, 0
 
 
 def loop_around(file: str, line: int) -> SourcePlace | None:

@@ -103,6 +103,7 @@ class Engine:
         )
         self._control = control
         self._probe = Probe(clock, control.record, self._contents)
+        clock.activity = self._probe.running_here
         self._positions = CallbackPositions(self._probe, clock, record)
         self._program_position = ProgramPosition(self._probe, clock, record)
         self._periods = 0

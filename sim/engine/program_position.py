@@ -47,7 +47,7 @@ class ProgramPosition:
         found = position_of(sys._current_frames().get(ident), {}, {})
         if found is None:
             return None
-        (doing, call, frames, loop, _), timeout = found
+        (doing, call, frames, loop, *_), timeout = found
         in_constructor = any(function == "__init__" for _, function, _ in frames)
         if process_of(self._main).spinning and not in_constructor:
             frames = ()

@@ -5,8 +5,8 @@ UNREADABLE = ("SyntaxError", "IndentationError", "TabError")
 
 
 def error_line(error: BaseException) -> str:
-    """Return an exception as the trace has it: ``ValueError: no scan``."""
-    return f"{type(error).__name__}: {error_text(error)}"
+    """Return an exception as the trace has it: ``ValueError: no scan``, or ``ValueError`` without a text."""
+    return ": ".join(filter(None, (type(error).__name__, error_text(error))))
 
 
 def error_text(error: BaseException) -> str:

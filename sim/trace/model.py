@@ -208,6 +208,8 @@ class Position(Lasting):
     loop: tuple[str, int] = ("", 0)
     holder: ThreadId = 0
     """The thread whose callback has the lock that it waits for, or for whose end it waits; 0 for none."""
+    keeper: EntityId = 0
+    """The callback that took that lock in a call that is suspended or over; 0 for none."""
     until: Nanoseconds = 0
     """When the timeout of its wait is over; 0 if it has none, or does not wait."""
 

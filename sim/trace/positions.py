@@ -10,7 +10,7 @@ from sim.trace.model import AWAIT, Frame, Nanoseconds, Position, Span, Window
 from sim.trace.storage.intervals import IntervalLane, Intervals, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 
-_PositionCells: TypeAlias = tuple[Doing, str, tuple[Frame, ...], tuple[str, int], ThreadId]
+_PositionCells: TypeAlias = tuple[Doing, str, tuple[Frame, ...], tuple[str, int], ThreadId, EntityId]
 
 
 class Positions(Intervals):
@@ -35,7 +35,7 @@ class Positions(Intervals):
             return
         self.finish(event.thread, event.t)
         frames = tuple(Frame(*each) for each in event.frames)
-        place = (event.doing, event.call, frames, event.loop, event.holder)
+        place = (event.doing, event.call, frames, event.loop, event.holder, event.keeper)
         row = self.open(event.t, event.thread, event.entity, event.until, self._number(place))
         self._by_thread[event.thread].add(row)
         self.threads.add(event.thread)
@@ -55,7 +55,7 @@ class Positions(Intervals):
         if event.frames:
             frames = tuple(Frame(*each) for each in event.frames)
             row = self.open(
-                event.t, 0, event.entity, 0, self._number((Doing.WAITS, AWAIT, frames, ("", 0), 0))
+                event.t, 0, event.entity, 0, self._number((Doing.WAITS, AWAIT, frames, ("", 0), 0, 0))
             )
             self._by_entity[event.entity].add(row)
             self._awaiting[event.entity].append(row)

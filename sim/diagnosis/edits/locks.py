@@ -133,18 +133,18 @@ def let_go_during_wait(source: SourceEditor, line: int) -> None:
     block, *more = _around(source, line)
     lock, function = _lock(source, block), source.function_at(line)
     waits = [each for each in block.body if is_at(each, line)]
-    makers = {ast.unparse(each).rpartition(".")[2] for each in _made(source, lock)}
-    if more or not waits or not makers <= {"Lock()", "RLock()"} or not makers:
+    if more or not waits or not _is_lock(source, lock):
         raise NotSimpleError
     wait, blank = waits[0], indentation(block)
     first, begin = (block, _header_end(block)) if wait is block.body[0] else (wait, wait.lineno - 1)
     outside, inside = source.lines_moved(begin, wait, block.col_offset), ""
-    call = plain_call(wait)
-    if call is None:
+    call, awaited = plain_call(wait), _awaited_call(wait)
+    known = call or awaited
+    if known is None:
         future_of(wait)
-    elif _is_of_self(source, call, function):
+    elif _is_of_self(source, known, function):
         raise NotSimpleError
-    elif not _only_names(wait, call):
+    elif call is not None and not _only_names(wait, call):
         if "reply" in {each.id for each in source.nodes(ast.Name, function)}:
             raise NotSimpleError
         asked = source.code_of(call)
@@ -153,6 +153,31 @@ def let_go_during_wait(source: SourceEditor, line: int) -> None:
     if inside or wait is not block.body[-1]:
         outside += f"{blank}with {lock}:\n"
     source.replace_lines(first, wait, outside + inside)
+
+
+def _awaited_call(statement: ast.stmt) -> ast.Call | None:
+    """Return the ``client.call_async(request)`` that a statement only awaits; else None."""
+    match statement:
+        case (
+            ast.Expr(value=ast.Await(value=call))
+            | ast.Assign(targets=[ast.Name()], value=ast.Await(value=call))
+        ):
+            if isinstance(call, ast.Call) and ast.unparse(call.func).endswith(".call_async") and call.args:
+                return call
+    return None
+
+
+def keeps_lock(source: SourceEditor, line: int) -> bool:
+    """Return whether a line is inside a ``with`` of a lock that the source makes."""
+    try:
+        return any(_is_lock(source, _lock(source, block)) for block in _around(source, line))
+    except NotSimpleError:
+        return False
+
+
+def _is_lock(source: SourceEditor, lock: str) -> bool:
+    makers = {ast.unparse(each).rpartition(".")[2] for each in _made(source, lock)}
+    return bool(makers) and makers <= {"Lock()", "RLock()"}
 
 
 def release_during_wait(source: SourceEditor, line: int) -> None:

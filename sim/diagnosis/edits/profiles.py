@@ -34,17 +34,17 @@ def match_quality(source: SourceEditor, line: int, policy: str, other: int = 0) 
         _set_policy(source, line, each, profile, end)
 
 
-def keep_newest(source: SourceEditor, line: int) -> None:
-    """Give the subscription at a line a queue of one, which keeps the newest message."""
+def set_depth(source: SourceEditor, line: int, depth: int) -> None:
+    """Give the subscription at a line a queue of so many messages; one keeps the newest."""
     profile = _profile_of(*_endpoint(source, line))
     made = _made(source, profile)
     if made is None and isinstance(profile, ast.Constant):
-        source.replace(profile, "1")
+        source.replace(profile, str(depth))
         return
     depths = [] if made is None else [each.value for each in made.keywords if each.arg == "depth"]
     if len(depths) != 1:
         raise NotSimpleError
-    source.replace(depths[0], "1")
+    source.replace(depths[0], str(depth))
 
 
 @asked_of_file

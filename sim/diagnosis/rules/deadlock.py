@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.locks import (
+    keeps_lock,
     let_go_during_wait,
     make_one,
     make_reentrant,
@@ -15,6 +16,7 @@ from sim.diagnosis.edits.locks import (
     take_early,
     take_together,
 )
+from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
@@ -25,6 +27,7 @@ from sim.diagnosis.rule import (
     entity_of,
     is_models,
     line_of,
+    place_of,
 )
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_rounds, edits_for_steps
 from sim.diagnosis.timeline_view import TimelineView
@@ -64,7 +67,10 @@ class SelfMadeDeadlock(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
         apart = f"give {subject} a callback group of its own"
+        stands = timeline.positions_of(found.subject, Window(found.at, found.until + 1))
         about = _OWN_LOCK if found.about == WaitedFor.LOCK and found.size == 1 else found.about
+        if about == _OWN_LOCK and stands[-1].keeper:
+            about = _LEFT_LOCK
         if found.waited_for >= {WaitedFor.LOCK, WaitedFor.REPLY}:
             about = _LOCK_AND_CALL
         why, cure = _WHY.get(about, _WHY_REPLY), _CURES.get(about, "")
@@ -75,12 +81,13 @@ class SelfMadeDeadlock(Rule):
             cure = f"return, and let a timer of the node's clock do what comes later; or {apart}"
         elif about == WaitedFor.THREAD:
             cure = f"return from {subject} without join(), and let the thread do what comes later; or {apart}"
-        stands = timeline.positions_of(found.subject, Window(found.at, found.until + 1))
         awaits = bool(stands) and stands[-1].call == AWAIT
         answers = must_answer(found.subject, timeline)
         if awaits:
             later = f"return from {subject} and go on in future.add_done_callback(), or "
             cure = apart if answers else later + apart
+            if _keeps_lock(stands[-1].file, stands[-1].line):
+                cure = f"let go of the lock before the await, and {apart}"
         if not cure and answers:
             cure = f"after call_async() {awaiting(subject)}; to wait inside it, {apart}"
         if not cure:
@@ -156,9 +163,11 @@ _KINDS = {
 }
 _WHY_REPLY = "the reply is brought by the executor, and needs a group that lets it in and a thread"
 _OWN_LOCK = "its own lock"
+_LEFT_LOCK = "a lock that was left"
 _LOCK_AND_CALL = "a lock and a reply"
 _WHY = {
     _OWN_LOCK: "it holds the lock already, and a Lock cannot be taken twice",
+    _LEFT_LOCK: "a lock stays taken when the call is over that took it, until somebody releases it",
     WaitedFor.RATE: "the rate's sleep() ends when the executor calls its timer, which needs a thread",
     WaitedFor.CLOCK: (
         "simulated time goes on when the executor takes the messages of /clock, which needs a group that "
@@ -170,9 +179,13 @@ _WHY = {
 }
 _CURES = {
     _OWN_LOCK: "take it once, let go of it before, or use threading.RLock",
+    _LEFT_LOCK: "take the lock by with, which releases it on every way out",
     WaitedFor.LOCK: "take locks in the same order everywhere, and let go of one before you take the next",
     _LOCK_AND_CALL: "let go of the lock before the call, and take it again when the reply is there",
 }
+
+
+_keeps_lock = asked_of_file(keeps_lock)
 
 
 def _letting_go(place: CodeLocation | None) -> tuple[Remedy, ...]:
@@ -184,6 +197,12 @@ def _lock_remedies(place: CodeLocation | None, found: Finding, timeline: Timelin
     """Return edits of a callback that waits for its own lock, or for that of one that waits for its."""
     if found.size == 1:
         words = "take the lock by with, which releases it whatever happens"
+        stands = timeline.positions_of(found.subject, Window(found.at, found.until + 1))
+        taker = place_of(stands[-1].keeper, timeline)
+        if taker is not None:
+            lines = range(taker.first_line, taker.last_line + 1)
+            places = (CodeLocation(taker.file, line, line) for line in lines)
+            return tuple(each for there in places for each in by_edit(there, words, take_by_with))
         reentrant = by_edit(place, "make the lock a threading.RLock", make_reentrant)
         return *reentrant, *by_edit(place, words, take_by_with)
     other = _line_of(found.culprit, found, timeline)

@@ -278,3 +278,9 @@ class ExceptionCaught(Rule):
             f"correct the line, or catch the exception in {subject} and log it there",
             line_location(*span.raised_at) or place_of(found.subject, timeline),
         )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant if it ended the program, which is told, though another thread began a callback since."""
+        ended = timeline.ended
+        is_told = ended is not None and ended.failed and (ended.error, found.count) == (found.detail, 1)
+        return None if is_told else super().weigh(found, timeline)

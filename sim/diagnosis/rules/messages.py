@@ -1,12 +1,19 @@
 """Rules on messages that are lost, stale when used, or never delivered."""
 
 from bisect import bisect_left
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import groupby
 from operator import attrgetter
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
-from sim.diagnosis.edits.profiles import keep_for_late, match_quality, published_at, unmatched_beside
+from sim.diagnosis.edits.profiles import (
+    keep_for_late,
+    match_quality,
+    published_at,
+    set_depth,
+    unmatched_beside,
+)
 from sim.diagnosis.edits.shared_data import uses_what_is_set
 from sim.diagnosis.edits.transforms import looks_up
 from sim.diagnosis.rule import (
@@ -19,6 +26,7 @@ from sim.diagnosis.rule import (
     line_location,
     line_of,
     loop_beside_spin,
+    made_at,
     place_of,
 )
 from sim.diagnosis.rules.transforms import LISTENER
@@ -80,10 +88,17 @@ class DroppedMessages(Rule):
                 else f" while it waited ({why_waiting(waits[-1], timeline)})"
             )
         room = remedy_for_waits([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
-        cure = room.words(timeline) or f"let {subject} return sooner"
+        cure = f"{room.words(timeline) or f'let {subject} return sooner'}; a longer queue only delays it"
+        if not waits and (made := made_at(entity)):
+            losses = Counter(timeline.losses_of(entity.id, Window(found.at, found.until + 1)))
+            at_once = entity.depth + max(losses.values())
+            cure, place = f"give {subject} a queue of {at_once}", made
+            (room,) = by_edit(made, cure, set_depth, at_once)
+            cure += ": its messages come so many at once"
         if waits and waits[-1].reason is Reason.NOBODY_SPINS:
             (loop, how), room = loop_beside_spin(found.until, timeline), Remedy()
             cure, place = (how, loop) if loop else ("keep spinning its node", place)
+            cure += "; a longer queue only delays it"
         messages = "1 message" if found.count == 1 else f"{found.count} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
         calls = timeline.spans_of(entity.id, Window(found.until - SECOND, found.until + 1))
@@ -94,7 +109,7 @@ class DroppedMessages(Rule):
         return Explanation(
             f"{subject} lost {messages}{because}{holds}",
             f"{why}{old}",
-            f"{cure}; a longer queue only delays it",
+            cure,
             place,
             remedies=(room,),
         )

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from itertools import pairwise
 
-from sim.diagnosis.edits.profiles import keep_newest
+from sim.diagnosis.edits.profiles import set_depth
 from sim.diagnosis.edits.replies import go_on_in_done_callback
 from sim.diagnosis.rule import (
     Explanation,
@@ -208,7 +208,7 @@ class FallsBehind(Rule):
             "its messages come faster than that, so its queue grows, and what it does is about the past",
             f"let {subject} return sooner, or keep only the newest message by a queue of 1",
             line_of(found.subject, Window(found.at, found.until), timeline) or place,
-            remedies=by_edit(made, f"give {subject} a queue of 1", keep_newest),
+            remedies=by_edit(made, f"give {subject} a queue of 1", set_depth, 1),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:

@@ -204,12 +204,15 @@ class BehindOthers(_KeptWaiting):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         culprit = who(found.culprit, timeline)
+        group = timeline.entities[found.culprit].group
+        is_shared = timeline.entities[found.subject].group == group
+        apart = f", and give {culprit} a callback group of its own" if is_shared else ""
         return self._explained(
             found,
             timeline,
             f"the EventsExecutor was running {culprit}",
             "an EventsExecutor asks no group: it runs one callback at a time, in order of arrival",
-            f"keep {culprit} short, or let a MultiThreadedExecutor with more than one thread run both",
+            f"keep {culprit} short, or let a MultiThreadedExecutor with more than one thread run both{apart}",
         )
 
 

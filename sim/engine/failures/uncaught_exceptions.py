@@ -7,7 +7,7 @@ from collections.abc import Callable
 from typing import Any
 
 from sim.engine.failures.failure import place_of
-from sim.interpreter.exception_text import error_text
+from sim.interpreter.exception_text import error_line
 
 Tell = Callable[[str], None]
 
@@ -24,8 +24,7 @@ def report_uncaught(tell: Tell, path: str, folder: str) -> None:
         place = place_of(error, path, folder)
         if place and place not in told:
             told.add(place)
-            text = f"{type(error).__name__}: {error_text(error)}".removesuffix(": ")
-            tell(f"{place}: {text}; {what_follows}")
+            tell(f"{place}: {error_line(error)}; {what_follows}")
 
     def of_thread(failed: threading.ExceptHookArgs) -> None:
         error = failed.exc_value

@@ -41,7 +41,7 @@ def deadlock_of_cycle(cycle: Sequence[VirtualThread]) -> WaitProblem:
     elif len(cycle) > 1:
         advice = "take locks in the same order everywhere"
     else:
-        advice = "take it once, let go of it before, or use threading.RLock"
+        advice = "take it once, let go of it before (by with, and before an await), or use threading.RLock"
     return WaitProblem(chain, advice, is_deadlock=True)
 
 

@@ -128,6 +128,10 @@ LockHolderId: TypeAlias = Annotated[
     int, JsonForm("held_by", lambda names, number: names.thread(number)), Shown.IF_ANY
 ]
 
+LockKeeperId: TypeAlias = Annotated[
+    int, JsonForm("kept_by", lambda names, number: names.callback(number)), Shown.IF_ANY
+]
+
 GroupId: TypeAlias = Annotated[int, JsonForm("group group_type", lambda names, number: names.group(number))]
 """Letter of the callback group (A, B, … Z, A2, …), and its type: ``exclusive``, ``reentrant``, or ``custom``
 for a class of the program's own."""

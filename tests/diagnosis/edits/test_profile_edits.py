@@ -2,7 +2,7 @@
 
 import pytest
 
-from sim.diagnosis.edits.profiles import keep_for_late, keep_newest, match_quality
+from sim.diagnosis.edits.profiles import keep_for_late, match_quality, set_depth
 from tests.diagnosis.edits.edited_source import changed, node
 
 QOS = "from rclpy.node import Node\nfrom rclpy.timer import Timer"
@@ -114,5 +114,5 @@ def test_both_ends_of_a_topic_keep_its_last_messages() -> None:
 )
 def test_a_queue_of_one_keeps_the_newest_message(made: str, brought: str | None) -> None:
     begin = "    self.create_subscripti"
-    lines = changed(node(f"def __init__(self):\n{begin}{made}", QOS), keep_newest)
+    lines = changed(node(f"def __init__(self):\n{begin}{made}", QOS), set_depth, 1)
     assert (lines and lines[1:]) == (brought and [f"+    {begin}{brought}"])
