@@ -1,5 +1,6 @@
 """Entities and waits described in words."""
 
+from sim.quantities.durations import duration
 from sim.trace.events import Doing, EntityId, Reason
 from sim.trace.model import AWAIT, Position, Wait, Window
 from sim.trace.participants import Participants
@@ -39,15 +40,26 @@ def name_of(entity: EntityId, timeline: Timeline | Participants) -> str:
 
 
 def waiting_name(entity: EntityId, during: Window, timeline: Timeline) -> str:
-    """The name of what waits, in a sentence; of an action's server with what it is asked meanwhile."""
+    """The name of what waits, in a sentence; of an action's server with what it is asked by the end.
+
+    A request that came later than the wait began is told with its own time.
+    """
     known, name = timeline.entities.get(entity), name_of(entity, timeline)
     action, _, end = ("" if known is None else known.name).partition(" ")
-    asked = {each.service for each in timeline.calls_within(during)} if end == "server" else set[str]()
-    requests = (words for part, words in _ASKED.items() if f"{action}/_action/{part}" in asked)
-    return next((f"{name} ({each})" for each in requests), name)
+    pending = timeline.calls_within(Window(during.end - 1, during.end)) if end == "server" else ()
+    for part, words in _ASKED.items():
+        for call in pending:
+            if call.service == f"{action}/_action/{part}":
+                own = duration(during.end - call.sent)
+                return f"{name} ({words}{'' if own == duration(during.length) else f' for {own}'})"
+    return name
 
 
-_ASKED = {"cancel_goal": "asked to cancel", "send_goal": "asked for a goal"}
+_ASKED = {
+    "cancel_goal": "asked to cancel",
+    "send_goal": "asked for a goal",
+    "get_result": "asked for the result",
+}
 """What an action's server is asked, by the last part of the service's name; what matters most first."""
 
 
