@@ -1,5 +1,7 @@
 """Two runs side by side: callbacks are matched by what they are, and figures are of the window only."""
 
+import pytest
+
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -98,14 +100,21 @@ def test_a_callback_of_one_run_only_stands_alone() -> None:
     assert odom.second is None
 
 
-def test_waits_and_drops_count_as_far_as_they_lie_in_the_window() -> None:
+def test_of_what_reaches_into_the_window_a_wait_counts_from_its_beginning_and_drops_do_not() -> None:
     compared = compare(starved(), healthy(), Window(ns(1.5), ns(2.2)))
     (odom,) = (pair for pair in compared.callbacks if pair.name == ODOM)
     assert odom.first is not None
     assert odom.first.waits is not None
-    assert (odom.first.waits.longest, odom.first.waits.total) == (ns(0.7), ns(0.7))
+    assert odom.first.waits.longest == ns(1.2)
     assert odom.first.waits.why == "group A held by timer_callback"
     assert odom.first.figures.drops == 1
+
+
+@pytest.mark.parametrize("start", [1.5, 3.0])
+def test_the_usual_wait_in_a_window_does_not_exceed_the_longest(start: float) -> None:
+    shown = sections(compare(starved(), healthy(), Window(ns(start), ns(4.0))))
+    (waits,) = (row for row in shown[0].rows if row.label == "wait med/max")
+    assert waits.figures[0] == "2.0 s / 2.0 s"
 
 
 def test_what_the_robot_travelled_counts_from_the_windows_beginning() -> None:

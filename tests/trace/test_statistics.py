@@ -27,7 +27,7 @@ from sim.trace.figures.statistics import (
     statistics_incrementally,
 )
 from sim.trace.incremental import run_to_end
-from sim.trace.model import Span, Window
+from sim.trace.model import Span, Wait, Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, ns
 from tests.trace.naive import Naive
@@ -221,7 +221,7 @@ def resumed(naive: Naive, span: Span) -> bool:
 def naive_waits(naive: Naive, calls: list[Span], entity: EntityId, window: Window) -> list[int]:
     waits = naive.waits_of(entity, Window(window.start - 1, window.end))
     over = [
-        (wait.end, wait.since)
+        (wait.end, naive_length(naive, wait, wait.end))
         for place, wait in enumerate(waits)
         if wait.end is not None
         and not any(later.since == wait.since for later in waits[place + 1 : place + 2])
@@ -229,9 +229,17 @@ def naive_waits(naive: Naive, calls: list[Span], entity: EntityId, window: Windo
     found: list[int] = []
     for place, call in enumerate(calls):
         before = calls[place - 1].start if place else -(10**9)
-        mine = [end - since for end, since in over if before < end <= call.start]
+        mine = [length for end, length in over if before < end <= call.start]
         found.append(mine[-1] if mine else 0)
     return found
+
+
+def naive_length(naive: Naive, wait: Wait, end: int) -> int:
+    """How long a callback, or the message that it is to take next, has waited by the end."""
+    arrived = naive.queue(wait.entity, max(wait.start, end - 1)).next_arrived
+    if arrived is None:
+        return end - wait.since
+    return end - (arrived if wait.holder == wait.entity else min(arrived, wait.since))
 
 
 def naive_jitter(calls: list[Span], kind: EntityKind) -> Distribution | None:

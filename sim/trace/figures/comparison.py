@@ -11,11 +11,11 @@ from typing import NamedTuple, TypeAlias
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId
 from sim.trace.figures.concurrency import threads_incrementally
-from sim.trace.figures.statistics import CallbackStatistics, statistics_incrementally
+from sim.trace.figures.statistics import CallbackStatistics, statistics_incrementally, with_calls_at_start
 from sim.trace.figures.summary import RobotFigures, robot_incrementally, trail_in_parts
 from sim.trace.figures.waiting import waited_by
 from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end
-from sim.trace.model import EntityInfo, Nanoseconds, Span, Wait, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
 
 CallbackKey: TypeAlias = tuple[str, str, str, str, int]
@@ -24,13 +24,12 @@ CallbackKey: TypeAlias = tuple[str, str, str, str, int]
 
 @dataclass(frozen=True, slots=True)
 class WaitFigures:
-    """The waits of a ready callback in a window; ``why`` is the reason of most of that time.
+    """The waits of a ready callback that reach into a window; ``why`` is the reason of most of its time.
 
-    ``longest`` is that of a callback, or of its next message, as in a run's summary.
+    ``longest`` is that of a callback, or of its next message, from its beginning to the window's end at most.
     """
 
     longest: Nanoseconds
-    total: Nanoseconds
     why: str
 
 
@@ -259,7 +258,7 @@ def _long_name(key: CallbackKey) -> str:
 def _callbacks_of(timeline: Timeline, window: Window) -> Incremental[dict[CallbackKey, CallbackInRun]]:
     callbacks: dict[CallbackKey, CallbackInRun] = {}
     for key, entity in _entities_of(timeline).items():
-        waits = yield from _wait_figures(timeline.waits_of(entity, window), timeline, window)
+        waits = yield from _wait_figures(entity, timeline, window)
         figures = yield from statistics_incrementally(timeline, entity, window)
         callbacks[key] = CallbackInRun(figures, waits)
     return callbacks
@@ -279,22 +278,18 @@ def _description(entity: EntityInfo, timeline: Timeline) -> tuple[str, str, str,
     return timeline.nodes.get(entity.node, ""), entity.kind.value, entity.callback, entity.name
 
 
-def _wait_figures(
-    waits: Sequence[Wait], timeline: Timeline, window: Window
-) -> Incremental[WaitFigures | None]:
-    """The figures of waits, each clipped to the window; a series of waits has one ``since``."""
+def _wait_figures(entity: EntityId, timeline: Timeline, window: Window) -> Incremental[WaitFigures | None]:
+    """The figures of the waits of a callback; a series of waits has one ``since``."""
     shares: defaultdict[str, int] = defaultdict(int)
     series: dict[Nanoseconds, Nanoseconds] = {}
-    for number, wait in enumerate(waits):
+    for number, wait in enumerate(timeline.waits_of(entity, with_calls_at_start(window))):
         end = min(wait.end_at(timeline.end), window.end)
         shares[why_waiting(wait, timeline)] += max(0, end - max(wait.start, window.start))
-        series[wait.since] = min(waited_by(end, wait, timeline), end - window.start)
+        series[wait.since] = waited_by(end, wait, timeline)
         if number % STEP_SIZE == 0:
             yield
     longest = max(series.values(), default=0)
-    return (
-        WaitFigures(longest, sum(shares.values()), max(shares, key=shares.__getitem__)) if longest else None
-    )
+    return WaitFigures(longest, max(shares, key=shares.__getitem__)) if longest else None
 
 
 def _run_figures(timeline: Timeline, window: Window) -> Incremental[RunFigures]:

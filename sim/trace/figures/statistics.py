@@ -9,15 +9,16 @@ from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, groupby, pairwise
-from operator import itemgetter
+from operator import attrgetter
 from typing import Any, TypeAlias
 
 import numpy as np
 
 from sim.trace.events import EntityId, EntityKind, ThreadId
 from sim.trace.figures.concurrency import threads_at_once
+from sim.trace.figures.waiting import waited_by
 from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end, split
-from sim.trace.model import EntityInfo, Nanoseconds, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 
 _Ranked: TypeAlias = np.ndarray[Any, np.dtype[np.int64]]
@@ -41,8 +42,9 @@ class CallbackStatistics:
 
     - ``calls``: the number that started in the window. A resumption starts no call.
     - ``duration``: of those that started in the window and have ended; of a suspended call, each segment.
-    - ``wait``: how long the callback had been ready before each call: the length of the last series of waits
-      that ended in the window and before the call, and belongs to no earlier call. 0 if there is none.
+    - ``wait``: how long the callback, or its message, had waited before each call: the length of the last
+      series of waits that ended in the window and before the call, and belongs to no earlier call. 0 if there
+      is none. It counts from its beginning, which may be before the window.
     - ``jitter``: absolute deviations. Timers: time between the starts of consecutive calls less the period.
       Subscriptions: time between the publications of consecutive messages less the median of these times.
       None for other entities.
@@ -167,35 +169,35 @@ def _waited(
     """The time that the callback had been ready before each call."""
     if not starts:
         return None
-    # A wait that ends with the window's first moment is one for a call that begins then.
-    waits = timeline.waits_of(entity, Window(window.start - 1, window.end))
-    known = yield from collect((wait.since, wait.end) for wait in waits)
-    finished = yield from collect(_finished_series(known))
+    waits = timeline.waits_of(entity, with_calls_at_start(window))
+    finished = yield from collect(_finished_series(waits, timeline))
     return (yield from _distributed(_waits(starts, finished)))
+
+
+def with_calls_at_start(window: Window) -> Window:
+    """Return a window with the waits that end as it begins: those are for calls that begin then."""
+    return Window(window.start - 1, window.end)
 
 
 def _waits(
     starts: Sequence[Nanoseconds], finished: Sequence[tuple[Nanoseconds, Nanoseconds]]
 ) -> Iterator[Nanoseconds]:
-    """The time ready before each start; a series of waits belongs to at most one call."""
+    """The time waited before each start; a series of waits belongs to at most one call."""
     place = 0
     for start in starts:
         waited = 0
         while place < len(finished) and finished[place][0] <= start:
-            ended, since = finished[place]
-            waited = ended - since
+            _, waited = finished[place]
             place += 1
         yield waited
 
 
-def _finished_series(
-    waits: Iterable[tuple[Nanoseconds, Nanoseconds | None]],
-) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
-    """End and ``since`` of each finished series of waits; within a series only the reason changes."""
-    for since, series in groupby(waits, key=itemgetter(0)):
-        *_, (_, end) = series
-        if end is not None:
-            yield end, since
+def _finished_series(waits: Iterable[Wait], timeline: Timeline) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
+    """End and length of each finished series of waits; within a series only the reason changes."""
+    for _, series in groupby(waits, key=attrgetter("since")):
+        *_, last = series
+        if last.end is not None:
+            yield last.end, waited_by(last.end, last, timeline)
 
 
 def _jitter(
