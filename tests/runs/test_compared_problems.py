@@ -45,6 +45,11 @@ def test_other_problems_are_gone_or_new_too() -> None:
     assert told(run_of("call_in_timer"), deaf) == "The deadlock is gone. New in run B: QoS mismatch."
 
 
+def test_a_problem_is_called_by_what_a_learner_sees() -> None:
+    slow = run_of("call_longer_than_period")
+    assert told(well_run(), slow) == "New in run B: callback longer than its timer's period."
+
+
 def test_a_run_is_cured_if_problems_are_gone_and_none_is_new() -> None:
     stuck, starved, well = run_of("call_in_timer"), run_of("held_group"), well_run()
     assert ComparedProblems(stuck, well).is_cured()

@@ -47,6 +47,18 @@ _NAMES = {
     "service-never-comes": "wait for a service",
     "node-never-spins": "node that nobody spins",
     "spin-raised": "exception that ends spin()",
+    "overrun-timer": "callback longer than its timer's period",
+    "falls-behind": "callback slower than its messages",
+    "no-free-worker": "no free thread",
+    "behind-others": "wait behind others",
+    "always-due": "timer of period 0",
+    "times-kept": "times of a clock that was set back",
+    "clock-never-starts": "clock that never starts",
+    "never-destroyed": "timers or the like that pile up",
+    "never-synchronised": "synchroniser that never fires",
+    "unreturned-response": "missing answer",
+    "spin-past-executor": "spin of another executor",
+    "lookup-keeps-transform": "lookup that keeps out its transform",
 }
 """Problems whose rule has another name in sentences."""
 
