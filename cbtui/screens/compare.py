@@ -108,6 +108,7 @@ class CompareScreen(SizedScreen[None]):
         self._gone_or_new = ""
         self._verdict = ""
         self._is_tie = False
+        self._judged = Window(0, 0)
         self._ended_early = ""
         self._first_difference: Nanoseconds | None = None
         self._has_moved = bounds is not None
@@ -225,9 +226,11 @@ class CompareScreen(SizedScreen[None]):
         at = self._first_difference
         notably = " notably" if self._is_real else ""
         where = f"no call differs{notably}" if at is None else f"they differ from {timestamp(at)} on"
-        verdict = f"{where}; {self._verdict[0].lower()}{self._verdict[1:]}"
+        is_part = self._whole and (self._judged.end < self._end or self._bounds is not None)
+        span = f"in {stretch(self._judged)} " if is_part else ""
+        verdict = f"{where}; {span}{self._verdict[0].lower()}{self._verdict[1:]}"
         if not self._whole:
-            verdict = f"On screen: {verdict}"
+            verdict = f"On screen, {stretch(self._judged)}: {verdict}"
         elif self._ended_early:
             verdict = f"{self._ended_early}; {'until then ' if at is None else ''}{where}"
         elif self._is_tie and any(side.alive() for side in self._sides):
@@ -262,6 +265,7 @@ class CompareScreen(SizedScreen[None]):
             yield
             self._gone_or_new, is_cured = self._problems.told(), self._problems.is_cured()
         self._verdict, self._is_tie = verdict(compared, is_cured=is_cured), is_tie(compared)
+        self._judged = asked
         self._ended_early = ended_early(compared)
         if self._whole:
             return self._extent(asked), sections(compared)

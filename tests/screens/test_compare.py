@@ -276,7 +276,7 @@ async def test_a_narrow_screen_names_the_key_that_lets_all_lanes_be_seen() -> No
 
 
 async def test_a_wide_screen_has_room_for_everything() -> None:
-    async with compared(*sides()) as (app, _):
+    async with compared(*sides((9.4, 9.4))) as (app, _):
         table = app.comparison.query_one(ComparisonTable)
         assert table.max_scroll_y == 0
         picture = text_of(app)
@@ -340,11 +340,16 @@ async def test_a_run_that_an_exception_ended_early_is_not_judged_by_what_came_be
 
 async def test_verdict_and_table_are_about_the_same_span() -> None:
     async with compared(*sides()) as (app, pilot):
-        assert "On screen: " not in verdict_of(app)
+        assert "; in 0 to 9.4 s run B is better" in verdict_of(app)
         await press(app, pilot, "greater_than_sign", "w")
-        assert verdict_of(app).startswith("On screen: they differ from")
+        assert verdict_of(app).startswith("On screen, 9 to 9.4 s: they differ from")
         await press(app, pilot, "w")
-        assert "On screen: " not in verdict_of(app)
+        assert "; in 0 to 9.4 s run B is better" in verdict_of(app)
+
+
+async def test_of_runs_of_one_length_the_verdict_names_no_span() -> None:
+    async with compared(*sides((9.4, 9.4))) as (app, _):
+        assert "; run B is better" in verdict_of(app)
 
 
 async def test_a_run_that_has_only_begun_gets_its_verdict_and_the_first_difference_later() -> None:
