@@ -54,6 +54,24 @@ def test_an_exception_that_no_later_callback_brings_out_is_swallowed() -> None:
     assert told.what == "fails raised what spin() has not raised: ValueError: no scan"
 
 
+def test_a_callback_that_began_in_the_moment_of_an_exception_does_not_bring_it_out() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        group = ReentrantCallbackGroup()
+
+        def fails() -> None:
+            raise ValueError("no scan")
+
+        once(node, 0.5, lambda: None, group)
+        once(node, 1.0, lambda: None, group)
+        once(node, 1.0, fails, group)
+        executor = executor_of(2)
+        executor.add_node(node)
+        executor.spin()
+
+    assert diagnosed(program).problems() == {("exception-swallowed", "fails")}
+
+
 def test_an_exception_that_comes_when_the_program_ends_is_told_with_what_main_should_wait_for() -> None:
     events = [each for each in raising(2, ticks_on=False).trace.events if not isinstance(each, RunEnded)]
     ended = RunEnded(max(each.t for each in events), "the program returned", failed=False)

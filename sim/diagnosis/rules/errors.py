@@ -238,13 +238,8 @@ class ExceptionSwallowed(Rule):
             return None
         since = Window(found.until, timeline.end + 1)
         pool = pool_of(found.thread, timeline)
-        starts = [
-            span.start
-            for each in pool
-            for span in timeline.spans_on(each, since)
-            if (span.entity, span.start) != (found.subject, found.at)
-        ]
-        return None if any(start >= found.until for start in starts) else Weight.PROBLEM
+        handed_out = (span.start for each in pool for span in timeline.spans_on(each, since))
+        return None if any(start > found.until for start in handed_out) else Weight.PROBLEM
 
 
 class ExceptionCaught(Rule):
