@@ -141,11 +141,11 @@ class Lanes(PaintedWidget, can_focus=True):
 
     @property
     def _cursor_column(self) -> Window:
-        """The column in which the cursor stands; at the very end, the last one."""
+        """The column in which the cursor stands; at the very end, the last one with what begins then."""
         assert self._picture is not None
         length = self._picture.scale.per_column
         start = max(0, self.now - (self.now == self.timeline.end)) // length * length
-        return Window(start, start + length)
+        return Window(start, max(start + length, self.now + 1))
 
     def jump_targets(self) -> Iterator[JumpTarget]:
         """Yield each lane in view, then the bars on them that are wide enough for a letter and more."""

@@ -5,7 +5,8 @@ from textual.geometry import Region
 
 from cbtui.looks.theme import Charset
 from cbtui.widgets.lanes import Lanes
-from sim.trace.model import Window
+from sim.trace.model import Span, Window
+from tests.support.builder import Run
 from tests.support.runs import ns, shared_group_run
 from tests.widgets.pictures import told
 
@@ -62,6 +63,23 @@ async def test_what_came_since_the_timeline_was_set_does_not_make_now_a_past_mom
         lanes.timeline = lanes.timeline
         await pilot.pause()
         assert "cursor▲" in lines_of(lanes)[-1]
+
+
+async def test_a_call_that_begins_at_the_very_end_can_be_selected() -> None:
+    run = Run()
+    ring = run.timer(run.exclusive(run.node("/bell")), "ring", 0.1)
+    run.start(ring, run.thread("Pool-0_0"), 0.1)
+    app = OneWidget()
+    async with app.run_test(size=(80, 24)) as pilot:
+        lanes = app.query_one(Lanes)
+        lanes.timeline.extend(run.events)
+        lanes.window, lanes.now = Window(0, ns(0.2)), lanes.timeline.end
+        lanes.timeline = lanes.timeline
+        await pilot.pause()
+        assert lanes.now == ns(0.1)
+        selected = lanes.here()
+        assert selected is not None
+        assert isinstance(selected.bar, Span)
 
 
 async def test_only_lines_that_changed_are_drawn_again() -> None:
