@@ -21,7 +21,7 @@ from cbtui.screens.parts.keys import Absences
 from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.run import RunScreen
-from cbtui.widgets.choice import ChoiceView
+from cbtui.widgets.choice import ChoiceOptions, ChoiceView
 from cbtui.widgets.code import CodeView
 from lessons.puzzles import Puzzle
 
@@ -92,6 +92,10 @@ class ChoosingScreen(RunScreen[LiveRun]):
     @on(OptionList.OptionSelected)
     def _choose(self, message: OptionList.OptionSelected) -> None:
         self._choices.choose(message.option_index)
+
+    @on(ChoiceOptions.ChosenUnseen)
+    def _choose_unseen(self, message: ChoiceOptions.ChosenUnseen) -> None:
+        self._choices.choose(message.option)
 
     @on(OptionList.OptionHighlighted)
     def _show_line(self, message: OptionList.OptionHighlighted) -> None:

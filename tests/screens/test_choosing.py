@@ -9,6 +9,7 @@ from textual.pilot import Pilot
 from cbtui.app import CbtuiApp
 from cbtui.screens.choosing import ChoosingScreen
 from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.parts.choices import Choices
 from cbtui.screens.run import RunScreen
 from cbtui.widgets.choice import ChoiceSheet, ChoiceView, kept_of, options_of
 from cbtui.widgets.code import CodeView
@@ -34,6 +35,11 @@ def console(sessions: Callable[..., object] | None, puzzle: Puzzle = PUZZLE) -> 
 
 def news(app: CbtuiApp) -> str:
     return app.screen.query_one(ChoiceView).sheet.news
+
+
+def choices_of(app: CbtuiApp) -> Choices:
+    assert isinstance(app.screen, ChoosingScreen)
+    return app.screen._choices
 
 
 def offered(app: CbtuiApp) -> set[str]:
@@ -79,6 +85,56 @@ async def test_choices_are_moves_until_the_goal_is_reached_which_is_kept() -> No
         assert sessions.latest.commands == [Choose(1), Choose(1)]
         assert news(app) == "✓ Done in 2 moves; the solution takes 2."
         assert Progress().of(PUZZLE.id).passed
+
+
+async def test_keys_that_come_before_their_choices_are_kept_in_order() -> None:
+    sessions = Asking(questions=4)
+    app = console(sessions)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        choosing = choices_of(app)
+        for option in (1, 0, 1):
+            choosing.choose(option)
+        assert sessions.latest.commands == [Choose(1)]
+        await settle(pilot)
+        assert sessions.latest.commands == [Choose(1), Choose(0), Choose(1)]
+        assert news(app) == "Choice 4, 2 moves. Who goes on?"
+
+
+async def test_a_key_that_is_too_early_is_taken_back_before_a_choice_is() -> None:
+    sessions = Asking(questions=4)
+    app = console(sessions)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        choosing = choices_of(app)
+        choosing.choose(1)
+        choosing.choose(0)
+        await choosing.action_undo()
+        await settle(pilot)
+        assert len(sessions.sessions) == 1
+        assert news(app) == "Choice 2, 1 move. Who goes on?"
+        await choosing.action_undo()
+        choosing.choose(0)
+        await settle(pilot)
+        assert len(sessions.sessions) == 2
+        assert news(app) == "Choice 2, 0 moves. Who goes on?"
+
+
+async def test_of_a_held_key_few_are_kept_and_a_choice_that_is_not_there_ends_them() -> None:
+    sessions = Asking(questions=20)
+    app = console(sessions)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        choosing = choices_of(app)
+        for _ in range(15):
+            choosing.choose(0)
+        await settle(pilot)
+        assert len(sessions.latest.commands) == 10
+        for option in (0, 8, 0):
+            choosing.choose(option)
+        await settle(pilot)
+        assert len(sessions.latest.commands) == 11
+        assert [note.message for note in app._notifications] == ["There is no thread 9 to choose now."]
 
 
 async def test_a_goal_that_is_reached_is_at_no_moment_said_to_be_missed(
@@ -214,6 +270,19 @@ async def test_a_puzzle_is_solved_on_an_engine_after_a_choice_was_taken_back() -
         await until(pilot, lambda: "✓" in news(app))
         assert "✓ Done in 2 moves; the solution takes 2." in text_of(app)
         assert Progress().of("two-locks").passed
+
+
+@pytest.mark.slow
+async def test_all_choices_can_be_typed_at_once_and_what_was_raised_is_told_at_the_end() -> None:
+    app = console(None, next(puzzle for puzzle in puzzles() if puzzle.id == "closed-meanwhile"))
+    async with app.run_test(size=WIDE) as pilot:
+        await choose(pilot, "1", 1)
+        await pilot.press(*"221211")
+        await until(pilot, lambda: "✓" in news(app))
+        raised = "write raised AssertionError: closed meanwhile"
+        assert news(app) == f"✓ Done in 3 moves; the solution takes 3. {raised}."
+        await until(pilot, lambda: not choices_of(app).runs.run.alive)
+        await until(pilot, lambda: "1 problem" in text_of(app))
 
 
 MINE = """

@@ -69,7 +69,7 @@ class ChoosingConsole(LinearConsole[LiveRun]):
         self._choices.check_goal()
         super().turn()
         choices, sheet = self._choices, self._choices.sheet
-        is_under_way = choices.question is None and self.runs.run.alive and not choices.reached
+        is_under_way = choices.question is None and self.runs.run.alive and choices.reached is None
         if sheet == self._told or is_under_way:
             return
         self._told = sheet
@@ -89,8 +89,4 @@ class NumberKeys(ScreenPart):
 
     def action_choose(self, number: int) -> None:
         """Choose the option with a number, from 1."""
-        options = self.choices.sheet.options
-        if number <= len(options):
-            self.choices.choose(number - 1)
-        else:
-            self.host.tell(f"There is no thread {number} to choose now.")
+        self.choices.choose(number - 1)

@@ -20,6 +20,9 @@ from sim.engine.setup import RunSetup
 from sim.quantities.plural import counted
 from sim.trace.events import AnyEvent, ChoiceAsked
 
+_EARLY = 9
+"""The most options that are kept for choices to come; a held key types many."""
+
 
 @dataclass
 class Choices(ScreenPart):
@@ -38,8 +41,12 @@ class Choices(ScreenPart):
     """The chosen options by the numbers of the choices."""
     solution: Moves | None = None
     """The moves of the solution while it is shown."""
-    reached: bool = False
-    """Whether the goal was reached."""
+    early: list[int] = field(default_factory=list)
+    """Options that were typed before the choices they are for were asked."""
+    asks: bool = True
+    """Whether the run asks at its next choice."""
+    reached: str | None = None
+    """What reached the goal, as a sentence; "" if there is nothing to tell, None if nothing has."""
 
     def set_up(self, subject: ShownProgram, speed: float | None) -> RunSetup:
         """Return the set-up of a run that repeats the choices so far, and asks from then on."""
@@ -55,14 +62,18 @@ class Choices(ScreenPart):
         for event in events:
             if isinstance(event, ChoiceAsked):
                 self.question = event
+                self.check_goal()
+                if self.early and self.question is not None:
+                    self.choose(self.early.pop(0))
 
     def check_goal(self) -> None:
         """Check whether the goal is reached; then the run goes on to its end without questions."""
         puzzle, run = self.puzzle, self.runs.run
-        if puzzle is None or self.reached or (self.question is None and run.alive):
+        if puzzle is None or self.reached is not None or (self.question is None and run.alive):
             return
-        self.reached = puzzle.goal.check().judge(run.timeline).passed
-        if self.reached:
+        verdict = puzzle.goal.check().judge(run.timeline)
+        if verdict.passed:
+            self.reached = f" {puzzle.goal.raises} raised {verdict.seen}." if puzzle.goal.raises else ""
             if self.solution is None:
                 self.host.console.progress.passes(puzzle.id)
             if self.question is not None:
@@ -73,9 +84,9 @@ class Choices(ScreenPart):
         """Return the content of the pane."""
         puzzle, question = self.puzzle, self.question
         task = "" if puzzle is None else puzzle.task
-        if self.reached and puzzle is not None:
-            least = len(solution_of(puzzle))
-            return ChoiceSheet(f"✓ Done in {counted(self.moves, 'move')}; the solution takes {least}.", task)
+        if self.reached is not None and puzzle is not None:
+            done = f"✓ Done in {counted(self.moves, 'move')}; the solution takes {len(solution_of(puzzle))}."
+            return ChoiceSheet(f"{done}{self.reached}", task)
         if question is not None:
             advised = None if self.solution is None else self.solution.get(question.number, 0)
             asks = "Who goes on?" if advised is None else f"The solution takes {advised + 1}."
@@ -94,8 +105,13 @@ class Choices(ScreenPart):
         return ChoiceSheet(f"✗ Not this time. {undo} takes a choice back, {again} begins again.", task)
 
     def choose(self, option: int) -> None:
-        """Let the thread of an option go on."""
-        if self.question is not None:
+        """Let the thread of an option go on; before the next choice is asked, keep the option for that."""
+        if self.question is None and self.asks and self.runs.run.alive:
+            self.early += [option][: _EARLY - len(self.early)]
+        elif self.question is None or option >= len(self.question.threads):
+            self.early.clear()
+            self.host.tell(f"There is no thread {option + 1} to choose now.")
+        else:
             self.made[self.question.number] = option
             self.question = None
             self.runs.run.choose(option)
@@ -114,7 +130,9 @@ class Choices(ScreenPart):
 
     async def action_undo(self) -> None:
         """Take the last choice back."""
-        if self.made:
+        if self.early and self.runs.run.alive:
+            self.early.pop()
+        elif self.made:
             self.made.popitem()
             await self._run_again()
 
@@ -133,12 +151,14 @@ class Choices(ScreenPart):
             await self._run_again()
 
     async def _run_again(self) -> None:
-        self.question, self.reached = None, False
+        self.question, self.reached, self.asks = None, None, True
+        self.early.clear()
         await self.restarts.start(Changes(), speed=None)
 
     def action_resume(self) -> None:
         """Let the run go on without questions."""
-        self.question = None
+        self.question, self.asks = None, False
+        self.early.clear()
         self.runs.run.resume()
         self.host.redraw()
 

@@ -1,11 +1,13 @@
 """The pane that asks which thread goes on."""
 
+from dataclasses import dataclass
 from typing import ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import VerticalScroll
 from textual.content import Content
+from textual.message import Message
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
@@ -19,6 +21,12 @@ class ChoiceOptions(OptionList, inherit_bindings=False):
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.CHOICE)]
 
+    @dataclass
+    class ChosenUnseen(Message):
+        """An option was chosen by its number, from 0, that is not there now."""
+
+        option: int
+
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer choosing only if there is a thread; numbers do not switch panes here."""
         if action in ("cursor_up", "cursor_down", "take"):
@@ -26,10 +34,12 @@ class ChoiceOptions(OptionList, inherit_bindings=False):
         return super().check_action(action, parameters)
 
     def action_choose(self, number: int) -> None:
-        """Choose the option with a number, from 1."""
+        """Choose the option with a number, from 1, be it one to come."""
         if number <= self.option_count:
             self.highlighted = number - 1
             self.action_select()
+        else:
+            self.post_message(self.ChosenUnseen(number - 1))
 
     def action_take(self) -> None:
         """Choose the highlighted option."""
