@@ -53,8 +53,8 @@ async def test_who_may_go_on_is_asked_and_shown_in_the_code() -> None:
         text = text_of(app)
         assert PUZZLE.task.split(".")[0] in " ".join(text.split("│")[0].split()) or "keeps one" in text
         assert "Choice 1, 0 moves. Who goes on?" in text
-        assert "1 order, line 20 (runs now, Pool-0_0)" in text
-        assert "2 looks for work (Pool-0_1)" in text
+        assert "1 order, line 20 (runs now," in text
+        assert "2 Pool-0_1 looks for work" in text
         assert app.screen.query_one(CodeView).picked == 20
         assert any("self.sent.publish" in line or "publish" in line for line in lines_of(app))
         assert {"take", "resume", "solution", "lesson", "run_again"} <= offered(app)
@@ -228,7 +228,7 @@ def test_it_is_told_why_the_others_may_not_go_on() -> None:
     ]
     assert [(option.text, option.line) for option in options_of(asked, timeline)] == [
         ("slow in order, line 20 (runs now, Pool-0_0)", 20),
-        ("looks for work (Pool-0_1)", 0),
+        ("Pool-0_1 looks for work", 0),
     ]
 
 
@@ -244,7 +244,7 @@ def test_a_callback_whose_last_line_is_done_ends_and_does_not_begin() -> None:
     asked = ChoiceAsked(ns(0.1), 2, pool, ("", ""), (("", 0), ("", 0)), True, (), (0,))
     assert [option.text for option in options_of(asked, timeline)] == [
         "left ends (runs now, Pool-0_0)",
-        "begins (Pool-0_1)",
+        "Pool-0_1 begins",
     ]
     assert [*kept_of(asked, timeline)] == ["not ready, or about to begin: right"]
     alone = ChoiceAsked(ns(0.1), 2, pool[:1], ("",), (("", 0),), True, (), (0,))

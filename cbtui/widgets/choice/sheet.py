@@ -38,14 +38,14 @@ def options_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[ChoiceOpti
     whole = zip(question.threads, question.functions, question.places, strict=True)
     for number, (thread, function, (file, line)) in enumerate(whole):
         callback = callbacks.get(thread, function)
+        about = [*(["runs now"] if question.preempts and not number else []), short_thread(thread)]
         if line:
             where = f"{function if callback == function else f'{callback} in {function}'}, line {line}"
         elif callback:
             where = f"{callback} ends"
         else:
-            where = "looks for work" if number in question.pooled else "begins"
-        runs = "runs now, " if question.preempts and not number else ""
-        yield ChoiceOption(f"{where} ({runs}{short_thread(thread)})", file, line)
+            where = f"{about.pop()} {'looks for work' if number in question.pooled else 'begins'}"
+        yield ChoiceOption(f"{where} ({', '.join(about)})" if about else where, file, line)
 
 
 def kept_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[str]:

@@ -233,7 +233,7 @@ def test_a_recording_is_played_and_gone_through_in_lines(tmp_path: Path) -> None
 def test_a_puzzle_is_played_by_numbers() -> None:
     sessions = Asking()
     script = [
-        ("2: looks for work (Pool-0_1)", "?|1|9|u|2|2"),
+        ("2: Pool-0_1 looks for work", "?|1|9|u|2|2"),
         ("Done in 2 moves", "q"),
     ]
     subject = of_puzzle(PUZZLE)
