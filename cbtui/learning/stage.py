@@ -101,8 +101,8 @@ def stage_note(lesson: Lesson, progress: LessonProgress, stage: Stage) -> StageN
 
 def _to_watch(lesson: Lesson) -> str:
     """What makes a lesson one that was watched."""
-    called = f", call {lesson.service.name}" if lesson.run.calls else ""
-    return f"run it for {lesson.run.seconds:g} s or to its end{called}, or have it explained"
+    called = f" with a call of {lesson.service.name}," if lesson.run.calls else ""
+    return f"run it for {lesson.run.seconds:g} s{called} or to its end, or have it explained"
 
 
 def next_lesson(lessons: Iterable[Lesson], stages: Mapping[str, Stage]) -> Lesson | None:

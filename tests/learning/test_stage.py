@@ -10,7 +10,7 @@ from lessons.progress import LessonProgress
 @pytest.mark.parametrize(
     ("lesson", "missing"),
     [
-        ("cancel-never-served", "run it for 16 s or to its end, call /fetch, or have it explained"),
+        ("cancel-never-served", "run it for 16 s with a call of /fetch, or to its end, or have it explained"),
         ("qos-never-matches", "run it for 20 s or to its end, or have it explained"),
     ],
 )
