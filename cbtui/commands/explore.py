@@ -81,6 +81,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def explore(options: argparse.Namespace) -> int:
     """Run a program under other schedules; returns the exit code: 0 if all succeeded, 1 if some failed.
 
+    It is 2 if a callback is to be changed that the program does not have.
+
     Ctrl-C ends it early with 130; the results so far are printed all the same.
     """
     if options.merge is not None:
@@ -195,7 +197,10 @@ def _interrupted(
 
 
 def _exit_code(shard: "Shard") -> int:
-    return 0 if all(result.well for result in shard.results.values()) else 1
+    results = shard.results.values()
+    if results and all(result.unmatched for result in results):
+        return 2
+    return 0 if all(result.well for result in results) else 1
 
 
 def _merge(options: argparse.Namespace) -> int:

@@ -18,6 +18,7 @@ from cbtui.text.output import complain, say
 from sim.engine.setup import RunSetup
 from sim.quantities.nanoseconds import SECOND, nearest_ns
 from sim.recording import RecordingError, read
+from sim.trace.events import NoticeKind
 from sim.trace.figures.comparison import compare
 from sim.trace.figures.comparison_text import comparison_lines, comparison_text
 from sim.trace.model import Nanoseconds, Window
@@ -254,4 +255,7 @@ def _run(
                 tell(RunProgress(name, "running", timeline.end, setup.until))
         except EngineLostError as error:
             raise CannotCompareError(f"{name} could not be run to its end: {error}") from None
+    for notice in timeline.notices:
+        if notice.kind is NoticeKind.UNMATCHED:
+            raise CannotCompareError(f"{name}: {notice.text}")
     return ComparedSide(name, timeline, compared.service, damage=next(iter(damage), None))

@@ -72,6 +72,14 @@ def test_a_lesson_can_be_compared_with_itself_with_other_threads() -> None:
     assert "  run B waits: no free worker" in text.splitlines()
 
 
+def test_a_callback_that_is_not_there_cannot_be_put_into_another_group() -> None:
+    done = cbtui("compare", "split-groups", "split-groups", "--to", "1", "--group-a", "odo_callback=own")
+    assert (done.returncode, done.stdout) == (2, "")
+    there = "there are odom_callback, scan_callback, timer_callback; did you mean odom_callback?"
+    assert done.stderr.endswith(f"no callback is named odo_callback; {there}\n")
+    assert len(done.stderr.splitlines()) == 1
+
+
 def test_a_lesson_can_be_compared_with_itself_with_a_callback_in_another_group() -> None:
     groups = ("--group-a", "scan_callback=own", "--group-b", "odom_callback=own")
     words = ("--for", "8", "--call", "2.55", *groups, "--threads-b", "2")

@@ -42,6 +42,13 @@ def file(tmp_path: Path) -> Path:
     return tmp_path / "mine.py"
 
 
+def test_a_callback_that_is_not_there_cannot_be_put_into_another_group(file: Path) -> None:
+    file.write_text(IN_ONE_GROUP)
+    explored = cbtui("explore", str(file), "--schedules", "2", "--for", "1", "--group", "nobody=own")
+    assert explored.returncode == 2
+    assert "note: no callback is named nobody; there " in explored.stdout
+
+
 def test_an_order_that_fails_is_found_and_the_simplest_that_does_is_told_and_run_again(file: Path) -> None:
     file.write_text(LOST_UPDATE)
     explored = cbtui("explore", str(file), "--schedules", "8", "--for", "2")

@@ -100,6 +100,8 @@ class ScheduleResult:
     """Where a schedule of moves leaves the usual order, in order."""
     conflicts: tuple[str, ...] = field(default=(), compare=False)
     """Where data was used twice, and changed or read by another thread in between."""
+    unmatched: bool = field(default=False, compare=False)
+    """Whether the run was asked to change a callback that the program does not have."""
 
     @property
     def well(self) -> bool:
@@ -161,6 +163,7 @@ class Exploration:
             repeatable,
             tuple(map(step_text, filter(attrgetter("chosen"), observed.timeline.choices))),
             tuple(conflict_text(each, observed.timeline) for each in observed.timeline.conflicts),
+            any(each.kind is NoticeKind.UNMATCHED for each in observed.timeline.notices),
         )
 
     def _failures(self, observed: ObservedRun, found: Mapping[str, Finding]) -> Iterator[ScheduleFailure]:
