@@ -5,7 +5,7 @@ from collections.abc import Iterable
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of, waiting_name
 from sim.trace.events import EntityId, EntityKind
-from sim.trace.model import Nanoseconds, ThreadInfo, Window
+from sim.trace.model import EntityInfo, Nanoseconds, ThreadInfo, Window
 from sim.trace.timeline import Timeline
 
 SPIN_ALWAYS = "do one step of the loop in a timer's callback, and call rclpy.spin(node)"
@@ -19,11 +19,22 @@ SPIN_ONCE = "add all nodes to one executor by add_node(), and spin that, once"
 
 
 def who(entity: EntityId, timeline: Timeline) -> str:
-    """Return the name of a callback; for a client, the reply that it waits for."""
+    """Return the name of a callback; for a client, the reply that it waits for.
+
+    Of those that share a name, it has its topic or service, or its node, in brackets.
+    """
     known = timeline.entities.get(entity)
-    if known is not None and known.kind is EntityKind.CLIENT:
+    if known is None:
+        return name_of(entity, timeline)
+    if known.kind is EntityKind.CLIENT:
         return f"the reply of {known.name}"
-    return name_of(entity, timeline)
+    name = known.spoken_name
+
+    def apart(each: EntityInfo) -> str:
+        return timeline.nodes.get(each.node, "") if each.name in ("", name) else each.name
+
+    others = {apart(each) for each in timeline.entities.values() if each.spoken_name == name}
+    return f"{name} ({apart(known)})" if len(others) > 1 else name
 
 
 def who_waits(entity: EntityId, during: Window, timeline: Timeline) -> str:

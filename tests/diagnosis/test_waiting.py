@@ -47,6 +47,26 @@ def test_a_callback_that_waits_long_for_its_group_is_starved_by_who_holds_it() -
     assert told.place.file == __file__
 
 
+def test_callbacks_of_one_name_are_told_apart_by_their_nodes_or_topics() -> None:
+    def program(simulation: Simulation) -> None:
+        def long(_message: object = None) -> None:
+            simulation.sleep(3.0)
+
+        def short(_message: object = None) -> None: ...
+
+        long.__name__ = short.__name__ = "callback"
+        one, other = Node("one"), Node("other")
+        once(one, 1.0, long)
+        once(other, 1.1, short)
+        executor = SingleThreadedExecutor()
+        executor.add_node(one)
+        executor.add_node(other)
+        executor.spin()
+
+    told = diagnosed(program).explained("no-free-worker").what
+    assert told == "callback (/other) waited 2.9 s: the only thread ran callback (/one)"
+
+
 def test_with_one_thread_the_cure_of_a_held_group_names_a_thread_too() -> None:
     told = slow_and_quick(same_group=True, threads=None).explained("group-starvation")
     assert "MultiThreadedExecutor(num_threads=2)" in told.cure

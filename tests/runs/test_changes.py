@@ -297,6 +297,16 @@ def test_the_callbacks_are_those_of_the_program_with_their_groups() -> None:
     assert {callback.name for callback in found.values() if callback.period} == {"timer_callback"}
 
 
+def test_callbacks_of_one_name_are_told_apart_by_their_nodes() -> None:
+    run = Run()
+    for node in ("/one", "/other"):
+        run.timer(run.exclusive(run.node(node)), "callback", 1.0)
+    run.timer(run.exclusive(run.node("/third")), "tick", 1.0)
+    found = callbacks_of(timeline_of(run)).values()
+    assert [each.title for each in found] == ["callback (/one)", "callback (/other)", "tick"]
+    assert {each.name for each in found} == {"callback", "tick"}
+
+
 def test_a_lesson_that_takes_numbers_offers_them() -> None:
     about_server = changeable(
         of_lesson(SERVER, lessons()), setup_for(SERVER), timeline_of(dummy_server_run())

@@ -2,7 +2,8 @@
 
 import linecache
 import re
-from dataclasses import dataclass
+from collections import Counter
+from dataclasses import dataclass, replace
 
 from cbtui.runs.setup.changes import CallbackPlace
 from cbtui.runs.setup.quantities import USUAL_SENSOR_RATE, Quantity
@@ -22,7 +23,8 @@ from sim.trace.timeline import Timeline
 @dataclass(frozen=True, slots=True)
 class ChangeableCallback:
     """A callback with its current settings; ``group`` describes its group, ``period`` is 0 if it has no
-    timer. ``maker`` is the expression for the node where its program makes it: ``self`` or ``node``.
+    timer. ``maker`` is the expression for the node where its program makes it: ``self`` or ``node``;
+    ``is_alone`` tells that no other node has one of its name.
     """
 
     place: CallbackPlace
@@ -30,11 +32,17 @@ class ChangeableCallback:
     group: str
     period: Nanoseconds
     maker: str = "self"
+    is_alone: bool = True
 
     @property
     def name(self) -> str:
         """Its name, or its service's if it has none."""
         return self.place[1]
+
+    @property
+    def title(self) -> str:
+        """Its name, with its node if callbacks of other nodes have the same one."""
+        return self.name if self.is_alone else f"{self.name} ({self.place[0]})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +109,8 @@ def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
                     place, entity.kind, _group_of(entity, timeline), entity.period, _maker_of(entity)
                 ),
             )
-    return found
+    names = Counter(name for _, name in found)
+    return {place: replace(each, is_alone=names[each.name] == 1) for place, each in found.items()}
 
 
 def place_of(entity: EntityInfo, timeline: Timeline) -> CallbackPlace:

@@ -169,7 +169,7 @@ class AskedSetUp(ScreenPart):
 
     def _ask_group(self) -> Dialogue:
         callbacks = self._changeable.callbacks
-        names = [f"{each.name}, now in group {each.group}" for each in callbacks]
+        names = [f"{each.title}, now in group {each.group}" for each in callbacks]
         place = yield from choose(self.host, "callback", "Which callback?", names)
         if place is None:
             return

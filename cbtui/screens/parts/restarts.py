@@ -122,7 +122,7 @@ class SetUpKeys(ScreenPart):
     def action_set_up(self) -> None:
         """Open the set-up window at the selected timer's period."""
         callback = self._selected_callback
-        name = callback.name if callback is not None and callback.period else None
+        name = callback.title if callback is not None and callback.period else None
         self._open_set_up(lambda row: isinstance(row, ValueRow) and row.what in {name, name or row.what})
 
     @property

@@ -41,7 +41,7 @@ class GroupScreen(ChoiceScreen[str]):
     def content(self) -> ComposeResult:
         """Lay out the question."""
         now = f"In this run: group {self._callback.group}."
-        question = f"Which callback group should {self._callback.name} have?"
+        question = f"Which callback group should {self._callback.title} have?"
         yield Static(f"{question} The run starts again.\n{now}", markup=False)
         yield PageableOptionList(
             *(

@@ -91,7 +91,7 @@ class GroupRow:
     @property
     def what(self) -> str:
         """The callback."""
-        return self.callback.name
+        return self.callback.title
 
     @property
     def now(self) -> str:
@@ -162,7 +162,7 @@ def _period_row(callback: ChangeableCallback) -> ValueRow[float]:
         return changes.with_period(place, None if seconds is None else nearest_ns(seconds))
 
     return ValueRow(
-        callback.name,
+        callback.title,
         "period",
         PERIOD,
         PERIOD.shown(callback.period / SECOND),
