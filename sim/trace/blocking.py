@@ -3,9 +3,10 @@
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
+from sim.trace.decisions import Decisions
 from sim.trace.events import CallBlocked, CallUnblocked, EntityId, ThreadId
 from sim.trace.lazy import LazySequence
-from sim.trace.model import Blocked, Nanoseconds, Window
+from sim.trace.model import Blocked, Deed, Nanoseconds, Window
 from sim.trace.storage.intervals import IntervalLane, Intervals, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 
@@ -15,8 +16,9 @@ class Blocking(Intervals):
 
     THREAD, ENTITY, CALL, SERVICE = range(2, 6)
 
-    def __init__(self, spill: SpillFile) -> None:
+    def __init__(self, spill: SpillFile, decisions: Decisions) -> None:
         super().__init__(spill, more=4)
+        self._decisions = decisions
         self._services: dict[str, int] = {}
         self._by_thread: defaultdict[ThreadId, IntervalLane] = defaultdict(lambda: IntervalLane(self))
         self._by_entity: defaultdict[EntityId, IntervalLane] = defaultdict(lambda: IntervalLane(self))
@@ -30,6 +32,7 @@ class Blocking(Intervals):
         self._by_thread[event.thread].add(row)
         self._by_entity[event.entity].add(row)
         self._standing[event.thread] = row
+        self._decisions.add(event.t, Deed.BLOCKED, row)
 
     def finish(self, event: CallUnblocked) -> None:
         """End the interval of a call; ignored if its thread is not blocked in it."""
@@ -42,21 +45,23 @@ class Blocking(Intervals):
         row = self._standing.pop(thread, None)
         if row is not None:
             self.close(row, at)
+            self._decisions.add(at, Deed.UNBLOCKED, row)
 
     def on(self, thread: ThreadId, window: Window) -> Sequence[Blocked]:
         """The intervals in which a thread was blocked."""
-        return LazySequence(self._by_thread[thread].overlapping(window), self._blocked)
+        return LazySequence(self._by_thread[thread].overlapping(window), self.blocked)
 
     def at(self, at: Nanoseconds) -> Iterator[Blocked]:
         """The threads that are blocked at ``at``."""
         for lane in list(self._by_thread.values()):
-            yield from map(self._blocked, lane.covering(at))
+            yield from map(self.blocked, lane.covering(at))
 
     def beside(self, entity: EntityId, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
         """The nearest start or end of an interval of the entity's callback, after or before ``at``."""
         yield from self._by_entity[entity].starts_beside(at, step)
         yield from self._by_entity[entity].ends_beside(at, step)
 
-    def _blocked(self, row: RowId) -> Blocked:
+    def blocked(self, row: RowId) -> Blocked:
+        """One interval, as a value."""
         start, end, thread, entity, call, service = self.table.row(row)
         return Blocked(start, end_or_none(end), thread, entity, call, list(self._services)[service])

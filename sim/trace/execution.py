@@ -3,6 +3,7 @@
 from collections import defaultdict, deque
 from collections.abc import Collection, Iterator, Sequence
 
+from sim.trace.decisions import Decisions
 from sim.trace.events import (
     CallbackEnded,
     CallbackFailed,
@@ -15,7 +16,7 @@ from sim.trace.events import (
     ThreadId,
 )
 from sim.trace.lazy import LazySequence
-from sim.trace.model import Nanoseconds, Span, Window
+from sim.trace.model import Deed, Nanoseconds, Span, Window
 from sim.trace.storage.intervals import OPEN, IntervalLane, Intervals, Layer, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import IntegerTable
@@ -121,7 +122,8 @@ class Execution:
     resume first.
     """
 
-    def __init__(self, spill: SpillFile) -> None:
+    def __init__(self, spill: SpillFile, decisions: Decisions) -> None:
+        self._decisions = decisions
         self._spans = Spans(spill)
         self._gaps = Intervals(spill)
         self._threads: defaultdict[ThreadId, ThreadSpans] = defaultdict(lambda: ThreadSpans(self._spans))
@@ -144,13 +146,15 @@ class Execution:
 
     def start(self, event: CallbackStarted) -> None:
         """Start a call."""
-        self._begin(event.t, event.entity, event.thread, event.message, event.age)
+        row = self._begin(event.t, event.entity, event.thread, event.message, event.age)
+        self._decisions.add(event.t, Deed.BEGUN, row)
 
     def finish(self, event: CallbackEnded) -> bool:
         """End a call; return whether it was suspended, and ends without being resumed."""
         row = self._leave(event.entity, event.thread)
         if row is not None:
             self._spans.close(row, event.t)
+            self._decisions.add(event.t, Deed.ENDED, row)
         elif self._awaiting[event.entity]:
             gap, _ = self._awaiting[event.entity].popleft()
             self._gaps.close(gap, event.t)
@@ -163,6 +167,7 @@ class Execution:
         if row is None:
             return
         self._spans.close(row, event.t)
+        self._decisions.add(event.t, Deed.SUSPENDED, row)
         gap = self._gaps.open(event.t)
         self._suspended[event.entity].add(gap)
         self._awaiting[event.entity].append((gap, row))
@@ -175,7 +180,8 @@ class Execution:
             self._gaps.close(gap, event.t)
             message, age = self._spans.taken(row)
         self._resumed_at[event.entity].add([event.t])
-        self._begin(event.t, event.entity, event.thread, message, age, resumed=1)
+        row = self._begin(event.t, event.entity, event.thread, message, age, resumed=1)
+        self._decisions.add(event.t, Deed.RESUMED, row)
 
     def fail(self, event: CallbackFailed) -> None:
         """Set the error of the running call."""
@@ -283,7 +289,7 @@ class Execution:
         message: MessageId,
         age: Nanoseconds,
         resumed: int = 0,
-    ) -> None:
+    ) -> RowId:
         self._newest_taken = max(self._newest_taken, message)
         lane = self._threads[thread]
         while lane.stack and lane.stack[-1] < self._uncertain_below:
@@ -293,6 +299,7 @@ class Execution:
         self._entities[entity].add(row)
         if entity in self._group_of:
             self._group_of[entity].add(row)
+        return row
 
     def _leave(self, entity: EntityId, thread: ThreadId) -> RowId | None:
         """Remove the innermost call of the entity from the thread."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from enum import StrEnum
+from enum import Enum, StrEnum
 from typing import TypeAlias
 
 from sim.trace.events import (
@@ -227,6 +227,18 @@ class Position(Lasting):
     def line(self) -> int:
         """The innermost line."""
         return self.frames[-1].line
+
+
+class Deed(Enum):
+    """What was done with a call of a callback, or to a queue."""
+
+    BEGUN = 0
+    RESUMED = 1
+    SUSPENDED = 2
+    ENDED = 3
+    BLOCKED = 4
+    UNBLOCKED = 5
+    LOST = 6
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """The stores of a run: what its events add up to, and what a timeline queries."""
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from operator import attrgetter
 from typing import Any, TypeAlias
@@ -9,10 +9,11 @@ from typing import Any, TypeAlias
 from sim.trace import events as ev
 from sim.trace.activity import Activity
 from sim.trace.blocking import Blocking
+from sim.trace.decisions import Decisions
 from sim.trace.events import AnyEvent, EntityId, EntityKind
 from sim.trace.execution import Execution
 from sim.trace.makings import Makings
-from sim.trace.model import AxisMark, AxisMarkKind, Nanoseconds, Queue
+from sim.trace.model import AxisMark, AxisMarkKind, Blocked, Deed, Nanoseconds, Queue, Span, Window
 from sim.trace.participants import Participants
 from sim.trace.positions import Positions
 from sim.trace.publications import Publications
@@ -50,9 +51,10 @@ class RunStores:
         self.participants = Participants()
         self.makings = Makings()
         self.active = Activity()
-        self.execution = Execution(spill)
+        self.decisions = Decisions(spill)
+        self.execution = Execution(spill, self.decisions)
         self.waiting = Waiting(spill)
-        self.blocking = Blocking(spill)
+        self.blocking = Blocking(spill, self.decisions)
         self.positions = Positions(spill)
         self.queues: defaultdict[EntityId, QueueHistory] = defaultdict(lambda: QueueHistory(spill))
         self.dropped_at = IntegerTable(spill, 1)
@@ -94,6 +96,17 @@ class RunStores:
     def queue(self, entity: EntityId, at: Nanoseconds) -> Queue:
         """The queue of an entity."""
         return self.queues[entity].queue(at, self._origin_time(entity))
+
+    def decided(self, window: Window) -> Iterator[tuple[Deed, Span | Blocked | EntityId]]:
+        """The decisions of a window with their calls, ``Blocked``, or the entities that lost something."""
+        for deed, number in self.decisions.within(window):
+            match deed:
+                case Deed.LOST:
+                    yield deed, number
+                case Deed.BLOCKED | Deed.UNBLOCKED:
+                    yield deed, self.blocking.blocked(number)
+                case _:
+                    yield deed, self.execution.span(number)
 
     def _origin_time(self, entity: EntityId) -> OriginTime:
         """The origin times of what an entity's queue holds; messages and calls are numbered separately."""
@@ -183,6 +196,7 @@ class RunStores:
     def _message_dropped(self, event: ev.MessageDropped) -> None:
         self.queues[event.entity].lose(event.t, event.depth, event.message)
         self.dropped_at.add([event.t])
+        self.decisions.add(event.t, Deed.LOST, event.entity)
         self.active.note(event.entity, event.t)
 
     def _wait_ended(self, event: ev.WaitEnded) -> None:

@@ -11,6 +11,7 @@ from sim.trace.model import (
     AxisMark,
     Blocked,
     Call,
+    Deed,
     EntityInfo,
     ExecutorInfo,
     Frame,
@@ -293,6 +294,10 @@ class Timeline:
         """The publication of a message; None if it is unknown."""
         return self._run.publications.of(message)
 
+    def decisions(self, window: Window) -> Iterator[tuple[Deed, Span | Blocked | EntityId]]:
+        """What was done with calls, and which entities lost something, in the order of the trace."""
+        return self._run.decided(window)
+
     def neighbour(self, at: Nanoseconds, step: int, losses: bool = True) -> Nanoseconds | None:
         """Time of the next (``step`` > 0) or previous event: never ``at`` itself.
 
@@ -373,11 +378,7 @@ class Timeline:
         return Moment(
             at,
             {thread: span for thread, span in running.items() if span is not None},
-            {
-                entity: wait
-                for entity, wait in waiting.items()
-                if wait is not None and entity in self.entities
-            },
+            {each: wait for each, wait in waiting.items() if wait is not None and each in self.entities},
             {blocked.thread: blocked for blocked in self._run.blocking.at(at)},
             LazyMapping(self.entities, lambda entity: self.queue(entity, at)),
             self._holders(at),

@@ -6,8 +6,9 @@ from itertools import pairwise
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sim.trace import events as ev
 from sim.trace.events import AnyEvent
-from sim.trace.model import Window
+from sim.trace.model import Blocked, Deed, Span, Window
 from sim.trace.timeline import Timeline
 from tests.trace.naive import Naive
 from tests.trace.systems import GROUP_KINDS, GROUP_OF, THREADS, jumbled_runs, legal_runs
@@ -143,3 +144,32 @@ def everything(at: int, window: Window) -> tuple[Callable[[Timeline], object], .
         lambda timeline: (timeline.scan(at), timeline.scan_seen(at)),
         lambda timeline: [timeline.neighbour(at, step) for step in (1, -1)],
     )
+
+
+DEEDS = {
+    ev.CallbackStarted: Deed.BEGUN,
+    ev.CallbackResumed: Deed.RESUMED,
+    ev.CallbackSuspended: Deed.SUSPENDED,
+    ev.CallbackEnded: Deed.ENDED,
+    ev.CallBlocked: Deed.BLOCKED,
+    ev.CallUnblocked: Deed.UNBLOCKED,
+    ev.MessageDropped: Deed.LOST,
+}
+
+
+@given(legal_runs(), several)
+def test_decisions_are_in_the_order_of_the_trace(events: list[AnyEvent], at: list[tuple[int, int]]) -> None:
+    timeline = timeline_of(events)
+    for window in windows(events, at):
+        made = [
+            (deed, what.thread if isinstance(what, Span | Blocked) else what)
+            for deed, what in timeline.decisions(window)
+        ]
+        assert made == [
+            (
+                DEEDS[type(event)],
+                getattr(event, "entity" if isinstance(event, ev.MessageDropped) else "thread"),
+            )
+            for event in events
+            if type(event) in DEEDS and window.start <= event.t < window.end
+        ]
