@@ -18,7 +18,13 @@ from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of, waiting_name
 from sim.trace.events import EntityKind, KeyboardAsked, Notice, NoticeKind, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
-from sim.trace.figures.waiting import WORTH_TELLING, is_running, next_in_turn, waits_for_others, waits_since
+from sim.trace.figures.waiting import (
+    WORTH_TELLING,
+    is_held_by_own_call,
+    next_in_turn,
+    waits_for_others,
+    waits_since,
+)
 from sim.trace.model import AxisMarkKind, Call, EntityInfo, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -195,7 +201,7 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
         nothing = _no_reply(pending, moment.at, timeline) or "nothing waits"
         return Diagnosis(in_a_call or f"{nothing}; {threads}", DiagnosisLevel.FINE)
     nothing = "no other callback waits" if pending else "nothing else waits"
-    overdue = _overdue(timeline.entities[for_itself], moment, since)
+    overdue = _overdue(timeline.entities[for_itself], moment, timeline, since)
     text = f"{overdue}; {in_a_call or nothing}"
     if in_a_call:
         return Diagnosis(text, DiagnosisLevel.FINE)
@@ -261,9 +267,10 @@ def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
     return None
 
 
-def _overdue(entity: EntityInfo, moment: Moment, since: Nanoseconds) -> str:
+def _overdue(entity: EntityInfo, moment: Moment, timeline: Timeline, since: Nanoseconds) -> str:
     """The text on a callback that only waits for its own previous call, or is about to be called again."""
-    does, waited = "still runs" if is_running(entity.id, moment) else "is next", duration(moment.at - since)
+    waited = duration(moment.at - since)
+    does = "still runs" if is_held_by_own_call(entity.id, moment, timeline) else "is next"
     match entity.kind:
         case EntityKind.TIMER:
             return f"{entity.spoken_name} {does}, due {waited} ago"

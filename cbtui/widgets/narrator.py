@@ -1,6 +1,7 @@
 """The narrator: the executor's decisions at a moment, and their reasons, for each callback."""
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 from textual.geometry import Size
 from textual.reactive import reactive
@@ -13,8 +14,8 @@ from sim.diagnosis.words import group_of, thread_count
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import Doing, EntityId, EntityKind, Reason
-from sim.trace.figures.waiting import WORTH_TELLING, is_running, next_in_turn
-from sim.trace.model import Blocked, EntityInfo, Moment, Nanoseconds, Span, Wait, Window
+from sim.trace.figures.waiting import WORTH_TELLING, admits_others, is_held_by_own_call, next_in_turn
+from sim.trace.model import Blocked, Deed, EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 ROWS = 4
@@ -106,25 +107,42 @@ def narration(timeline: Timeline, at: Nanoseconds, stepped: bool = False) -> tup
         return ("nothing has happened yet",)
     if stepped and last < at:
         return _without_decision(timeline, at, last)
-    moment = timeline.moment(last)
-    left = [wait for wait in moment.waiting.values() if wait.holder != wait.entity]
-    left.sort(key=lambda wait: _place(timeline.entities[wait.entity]))
-    first, *more = _decided(timeline, last, left) or ("the executor looks again",)
-    then = _by_cause(left, timeline, last) if left else (_at_rest(timeline, last),)
-    return (f"{timestamp(last)}: {first}", *more, *then)
+    first, *more = _decided(timeline, last) or ("the executor looks again",)
+    return (f"{timestamp(last)}: {first}", *more, *_waits(timeline, at, last))
 
 
 def decisions_at(timeline: Timeline, at: Nanoseconds) -> int:
     """Return with how many sentences ``narration`` tells what was decided at a moment; at least 1."""
-    left = [wait for wait in timeline.moment(at).waiting.values() if wait.holder != wait.entity]
-    return max(1, len(_decided(timeline, at, left)))
+    return max(1, len(_decided(timeline, at)))
 
 
-def _decided(timeline: Timeline, at: Nanoseconds, left: Sequence[Wait]) -> Sequence[str]:
+def _decided(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:
     """What was decided at a moment; who has become ready, if that is all, as it is told with the waits."""
-    ready = [f"{name_of(each.entity, timeline)} is ready" for each in left if each.since == at]
-    did = (*_ended(timeline, at), *_blocked(timeline, at), *_begun(timeline, at, left), *_lost(timeline, at))
-    return did or tuple(filter(None, ("; ".join(ready),)))
+    ready = [
+        f"{name_of(wait.entity, timeline)} {_readied(wait, timeline)}"
+        for wait in timeline.moment(at).waiting.values()
+        if wait.since == at
+    ]
+    return tuple(_deeds(timeline, at)) or tuple(filter(None, ("; ".join(ready),)))
+
+
+def _deeds(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
+    """What was done at a moment, in the order of the trace; calls without duration and losses each once."""
+    made = list(timeline.decisions(Window(at, at + 1)))
+    at_once = [span for (_, span), then in pairwise(made) if then == (Deed.ENDED, span)]
+    losses = iter(_lost(timeline, at))
+    for deed, what in made:
+        match what:
+            case Span() if deed is Deed.SUSPENDED:
+                yield _suspending(what, timeline)
+            case Span() if deed is not Deed.ENDED:
+                yield from _begun(what, deed, timeline, returns=what in at_once)
+            case Span() if what not in at_once:
+                yield returning(what, timeline)
+            case Blocked():
+                yield _blocked(what, deed, timeline)
+            case int():
+                yield from losses
 
 
 def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) -> tuple[str, ...]:
@@ -133,8 +151,6 @@ def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) ->
     A live run stops at a moment before its threads go on, so what they did at the moment before is told, too.
     """
     moment = timeline.moment(at)
-    left = [wait for wait in moment.waiting.values() if wait.holder != wait.entity]
-    left.sort(key=lambda wait: _place(timeline.entities[wait.entity]))
     then = "; ".join((*_sent(timeline, at), *_done(timeline, at)))
     present = (timeline.position_on(thread, at) for thread in timeline.threads)
     since = max((each.start for each in present if each and each.start > last), default=at)
@@ -150,7 +166,22 @@ def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) ->
     if robot is not None and (robot.linear or robot.angular):
         goes_on.append("the robot drives on" if robot.linear else "the robot turns on")
     first = f"{first}: {', '.join(goes_on)}" if goes_on and not then else first
-    return (first, *_by_cause(left, timeline, at)) if left else (first, _at_rest(timeline, at))
+    return (first, *_waits(timeline, at, at))
+
+
+def _waits(timeline: Timeline, at: Nanoseconds, since: Nanoseconds) -> Sequence[str]:
+    """Who waits at a moment, and why; for its own last call only if nobody else waits, or from ``since``."""
+    left = _left(timeline, at)
+    turns = next_in_turn(timeline.moment(at), timeline).items()
+    told_too = [_turn(each, begun, timeline, at) for each, begun in turns if not left or begun >= since]
+    told = (*_by_cause(left, timeline, at), "; ".join(told_too))
+    return tuple(filter(None, told)) or (_at_rest(timeline, at),)
+
+
+def _left(timeline: Timeline, at: Nanoseconds) -> list[Wait]:
+    """The waits of a moment that others cause, in the order in which an executor examines who waits."""
+    waits = (wait for wait in timeline.moment(at).waiting.values() if not wait.is_for_own_call)
+    return sorted(waits, key=lambda wait: _place(timeline.entities[wait.entity]))
 
 
 def _sent(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
@@ -182,31 +213,52 @@ def _place(entity: EntityInfo) -> tuple[int, int, EntityId]:
     return entity.node, _ORDER.index(entity.kind), entity.id
 
 
-def _spans_at(timeline: Timeline, at: Nanoseconds) -> Iterator[Span]:
-    for thread in timeline.threads:
-        yield from timeline.spans_on(thread, Window(max(0, at - 1), at + 1))
-
-
-def _ended(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
-    for span in _spans_at(timeline, at):
-        if span.end == at and span.start < at:
-            yield returning(span, timeline)
-
-
 def returning(span: Span, timeline: Timeline) -> str:
     """Return the sentence on the end of a call, and what that frees."""
-    name, group = name_of(span.entity, timeline), group_of(span.entity, timeline)
+    name, group = name_of(span.entity, timeline), _exclusive_group(span.entity, timeline)
     lasted = duration(span.end_at(timeline.end) - span.start)
     if timeline.processes_ended.get(timeline.threads[span.thread].process) == span.end:
         return f"{name} does not return: its process ends, {lasted} after it began"
-    return f"{name} returns after {lasted}, {group} is free"
+    freed = group or ("" if _around(span, timeline) else short_thread(timeline.threads[span.thread].name))
+    return f"{name} returns after {lasted}{f', {freed} is free' if freed else ''}"
 
 
-def _blocked(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
-    stuck: Sequence[Blocked] = [each for each in timeline.moment(at).blocked.values() if each.start == at]
-    for each in stuck:
-        caller = name_of(each.entity, timeline) if each.entity else "the program"
-        yield f"{caller} calls {each.service}, and keeps its thread and its group until the reply"
+def _suspending(span: Span, timeline: Timeline) -> str:
+    kept = _exclusive_group(span.entity, timeline)
+    keeps = f", and keeps {kept} meanwhile" if kept else ""
+    return f"{name_of(span.entity, timeline)} awaits, on no thread{keeps}"
+
+
+def _exclusive_group(entity: EntityId, timeline: Timeline) -> str:
+    """The group that a call of an entity holds; "" for one that admits others meanwhile, or is not asked."""
+    is_held = _asks_groups(timeline) and not admits_others(entity, timeline)
+    return group_of(entity, timeline) if is_held else ""
+
+
+def _asks_groups(timeline: Timeline) -> bool:
+    """Whether not every executor is an EventsExecutor, which asks no group."""
+    kinds = {each.kind for each in timeline.executors.values()}
+    return kinds != {"EventsExecutor"}
+
+
+def _around(span: Span, timeline: Timeline) -> str:
+    """The callback inside which a call runs, as by a nested spin; "" for none."""
+    if not timeline.has_nested(span.thread):
+        return ""
+    made = list(timeline.decisions(Window(span.start, span.start + 1)))
+    before = made[: [what for _, what in made].index(span)]
+    over = [what for deed, what in before if deed in (Deed.ENDED, Deed.SUSPENDED)]
+    beside = timeline.spans_on(span.thread, Window(max(0, span.start - 1), span.start + 1))
+    around = [each for each in beside if each.number < span.number and each not in over]
+    return name_of(around[-1].entity, timeline) if around else ""
+
+
+def _blocked(blocked: Blocked, deed: Deed, timeline: Timeline) -> str:
+    caller = name_of(blocked.entity, timeline) if blocked.entity else "the program"
+    if deed is Deed.UNBLOCKED:
+        return f"{caller} goes on after its call of {blocked.service}"
+    group = " and its group" if blocked.entity and _exclusive_group(blocked.entity, timeline) else ""
+    return f"{caller} calls {blocked.service}, and keeps its thread{group} until the reply"
 
 
 def _lost(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:
@@ -222,19 +274,23 @@ def _lost(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:
     return ["; ".join(losses)] if losses else []
 
 
-def _begun(timeline: Timeline, at: Nanoseconds, left: Sequence[Wait]) -> Iterator[str]:
-    for span in _spans_at(timeline, at):
-        entity = timeline.entities.get(span.entity)
-        if span.start == at and entity is not None:
-            thread = short_thread(timeline.threads[span.thread].name)
-            returns = ", and returns at once" if span.end == at else ""
-            yield ", ".join(
-                (
-                    f"{thread} is free: {entity.spoken_name} {_readiness(entity, span)}",
-                    *_why_first(entity, left, timeline),
-                    f"{group_of(entity.id, timeline)} lets it in → runs{returns}",
-                )
-            )
+def _begun(span: Span, deed: Deed, timeline: Timeline, *, returns: bool) -> Iterator[str]:
+    entity = timeline.entities.get(span.entity)
+    if entity is None:
+        return
+    thread, around = short_thread(timeline.threads[span.thread].name), _around(span, timeline)
+    is_free = f"{thread} spins inside {around}" if around else f"{thread} is free"
+    end = ", and returns at once" if returns else ""
+    if deed is Deed.RESUMED:
+        yield f"{is_free}: {entity.spoken_name} goes on after its await{end}"
+        return
+    reasons = [
+        f"{is_free}: {entity.spoken_name} {_readiness(entity, span)}",
+        *_why_first(entity, _left(timeline, span.start), timeline),
+    ]
+    if _asks_groups(timeline):
+        reasons.append(f"{group_of(entity.id, timeline)} lets it in")
+    yield f"{', '.join(reasons)} → runs{end}"
 
 
 def _readiness(entity: EntityInfo, span: Span) -> str:
@@ -302,20 +358,26 @@ def _why(wait: Wait, timeline: Timeline) -> str:
             return "nobody spins its node"
 
 
-def _turn(entity: EntityInfo, since: Nanoseconds, moment: Moment) -> str:
+def _readied(wait: Wait, timeline: Timeline) -> str:
+    return _again(wait.entity, timeline) if wait.is_for_own_call else "is ready"
+
+
+def _again(entity: EntityId, timeline: Timeline) -> str:
+    return "is due again" if timeline.entities[entity].kind is EntityKind.TIMER else "is ready again"
+
+
+def _turn(each: EntityId, since: Nanoseconds, timeline: Timeline, at: Nanoseconds) -> str:
     """Say what a callback that waits for no other one is to take, and when."""
+    entity, moment = timeline.entities[each], timeline.moment(at)
     queued, waited = moment.queues[entity.id].depth, moment.at - since
-    is_ready = f"has {queued} queued" if queued else "is ready again"
+    is_ready = f"has {queued} queued" if queued else _again(each, timeline)
     lasted = f"{', the next' if queued else ''} for {duration(waited)}" if waited else ""
-    when = "its last call still runs" if is_running(entity.id, moment) else "it is free to run"
+    when = "its last call still runs" if is_held_by_own_call(each, moment, timeline) else "it is free to run"
     return f"{entity.spoken_name} {is_ready}{lasted}: {when}"
 
 
 def _at_rest(timeline: Timeline, at: Nanoseconds) -> str:
     moment = timeline.moment(at)
-    turns = next_in_turn(moment, timeline)
-    if turns:
-        return "; ".join(_turn(timeline.entities[entity], since, moment) for entity, since in turns.items())
     busy = len(moment.running)
     threads = max(busy, thread_count(timeline))
     if busy == threads:

@@ -160,6 +160,11 @@ class Wait(Lasting):
     holder: EntityId
     workers_busy: bool
 
+    @property
+    def is_for_own_call(self) -> bool:
+        """Whether its own last call keeps it waiting, and not just for a thread, as in a reentrant group."""
+        return self.holder == self.entity and self.reason is not Reason.NO_FREE_WORKER
+
 
 @dataclass(slots=True)
 class Blocked(Lasting):

@@ -129,7 +129,7 @@ def test_between_two_calls_a_queue_is_not_told_as_nothing_that_waits() -> None:
         "scan_callback is next, and the next message has waited 900 ms for it"
     )
     runs, ended = narration(timeline, ns(1.5)), narration(timeline, ns(2.0))
-    assert runs[1] == "scan_callback has 1 queued: its last call still runs"
+    assert runs[1] == "scan_callback has 5 queued, the next for 400 ms: its last call still runs"
     assert ended == (
         "2.000 s: scan_callback returns after 1.0 s, group A is free",
         "scan_callback has 8 queued, the next for 900 ms: it is free to run",

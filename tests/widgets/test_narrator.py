@@ -1,5 +1,7 @@
 """The narrator: what the executor did, and why, at any moment of any run."""
 
+import re
+
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -8,10 +10,29 @@ from textual.geometry import Size
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import visible
+from cbtui.widgets.diagnosis import diagnosis_at
 from cbtui.widgets.narrator import ROWS, Narrator, decisions_at, narration
-from sim.trace.events import CallbackAt, Doing, ProcessAppeared, ProcessEnded, Reason, ThreadAppeared
+from sim.trace.events import (
+    AnyEvent,
+    CallbackAt,
+    CallbackEnded,
+    CallbackResumed,
+    CallbackStarted,
+    CallbackSuspended,
+    CallBlocked,
+    CallUnblocked,
+    Doing,
+    EntityId,
+    GroupKind,
+    ProcessAppeared,
+    ProcessEnded,
+    Reason,
+    ThreadAppeared,
+)
+from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
+from tests.trace.systems import legal_runs
 from tests.widgets.pictures import told
 
 RUNS = [told(shared_group_run()), told(split_groups_run()), told(dummy_server_run())]
@@ -75,6 +96,136 @@ def test_a_step_to_a_moment_without_a_decision_is_told_at_its_time() -> None:
     assert narration(timeline, ns(2.7), stepped=True)[0] == "2.700 s: a line is written to the log"
     assert narration(timeline, ns(2.8), stepped=True)[0] == "2.800 s: 2 lines are written to the log"
     assert narration(timeline, ns(1.5))[0].startswith("1.000 s: ")
+
+
+def test_decisions_of_a_moment_are_told_in_the_order_of_the_trace() -> None:
+    run = Run()
+    node = run.node("/n")
+    left = run.timer(run.exclusive(node), "left", 1.0)
+    hold = run.service(run.exclusive(node), "/clamp", "hold")
+    first, second = run.thread("MainThread"), run.thread("Thread-1")
+    run.callback(left, first, 1.0, 2.0)
+    run.blocked(run.call("/clamp", 1.0, 3.0, entity=left), "/clamp", first, left, 1.0, 3.0)
+    run.callback(hold, second, 1.0, 2.0)
+    begun = narration(told(run), ns(1.0))
+    assert [line.split(", ")[0] for line in begun[:3]] == [
+        "1.000 s: MainThread is free: left is due",
+        "left calls /clamp",
+        "Thread-1 is free: hold has a request",
+    ]
+
+
+SAID = {
+    CallbackStarted: "→ runs",
+    CallbackResumed: "goes on after its await",
+    CallbackSuspended: "awaits",
+    CallbackEnded: "returns",
+    CallBlocked: "calls /service",
+    CallUnblocked: "goes on after its call",
+}
+
+
+@given(legal_runs())
+@settings(deadline=None)
+def test_what_is_told_of_any_moment_follows_the_trace(events: list[AnyEvent]) -> None:
+    timeline = Timeline()
+    timeline.extend(events)
+    callers: dict[int, EntityId] = {
+        each.call: each.entity for each in events if isinstance(each, CallBlocked)
+    }
+    open_groups = [each.letter for each in timeline.groups.values() if each.kind is GroupKind.REENTRANT]
+    for at in {event.t for event in events}:
+        lines = narration(timeline, at)
+        place = 0
+        for event in events:
+            if event.t != at or type(event) not in SAID:
+                continue
+            entity = callers[event.call] if isinstance(event, CallUnblocked) else getattr(event, "entity", 0)
+            name = f"callback{entity}" if entity else "the program"
+            says = re.compile(rf"{name}\b.* ?{SAID[type(event)]}")
+            place = next(number for number in range(place, len(lines)) if says.search(lines[number]))
+        assert not any(f"group {letter} is free" in line for letter in open_groups for line in lines)
+
+
+def test_a_callback_that_its_own_last_call_keeps_waiting_is_told() -> None:
+    run = Run()
+    group, thread = run.exclusive(run.node("/n")), run.thread("MainThread")
+    tick, heard = run.timer(group, "tick", 1.0), run.subscription(group, "/a", "heard")
+    run.callback(tick, thread, 1.0, 3.0)
+    run.wait(tick, 2.0, 4.0, Reason.GROUP_HELD, tick)
+    run.message(heard, 2.5)
+    run.wait(heard, 2.5, 4.0, Reason.GROUP_HELD, tick)
+    timeline = told(run)
+    assert narration(timeline, ns(2.0)) == (
+        "2.000 s: tick is due again",
+        "tick is due again: its last call still runs",
+    )
+    assert narration(timeline, ns(2.5)) == (
+        "2.500 s: heard is ready",
+        "heard is ready, 1 queued: group A held by tick",
+    )
+
+
+def test_in_a_reentrant_group_a_callback_waits_for_a_thread_and_not_for_its_own_last_call() -> None:
+    run = Run()
+    run.executor("MultiThreadedExecutor", 1)
+    asked = run.service(run.reentrant(run.node("/n")), "/a", "asked")
+    run.callback(asked, run.thread("MainThread"), 1.0, 2.0)
+    run.request(asked, 1.5)
+    run.wait(asked, 1.5, 3.0, Reason.NO_FREE_WORKER, asked, workers_busy=True)
+    timeline = told(run)
+    assert narration(timeline, ns(2.0)) == (
+        "1.500 s: asked is ready",
+        "asked has waited since 1.500 s, 1 queued: group A would let it in, but no thread is free",
+    )
+    assert narration(timeline, ns(3.0))[0] == "3.000 s: asked returns after 2.0 s, MainThread is free"
+    assert diagnosis_at(timeline, ns(2.0), Concurrency(timeline)).text == (
+        "asked waits 500 ms: the only thread runs asked"
+    )
+
+
+def test_waits_are_told_as_of_the_moment_and_decisions_as_of_their_own() -> None:
+    run = Run()
+    group = run.exclusive(run.node("/n"))
+    tick, heard = run.timer(group, "tick", 1.0), run.subscription(group, "/a", "heard")
+    run.callback(tick, run.thread("MainThread"), 1.0, 3.0)
+    run.wait(heard, 2.0, 4.0, Reason.GROUP_HELD, tick)
+    for at in (2.0, 2.4, 2.8):
+        run.message(heard, at)
+    assert narration(told(run), ns(2.9)) == (
+        "2.000 s: heard is ready",
+        "heard has waited since 2.000 s, 3 queued: group A held by tick",
+    )
+
+
+def test_a_callback_that_awaits_is_not_said_to_return_or_to_free_its_group() -> None:
+    run = Run()
+    tick, thread = run.timer(run.exclusive(run.node("/n")), "tick", 1.0), run.thread("MainThread")
+    run.start(tick, thread, 1.0)
+    run.suspend(tick, thread, 1.5)
+    run.resume(tick, thread, 2.0)
+    run.end(tick, thread, 2.0)
+    timeline = told(run)
+    assert (
+        narration(timeline, ns(1.5))[0] == "1.500 s: tick awaits, on no thread, and keeps group A meanwhile"
+    )
+    assert narration(timeline, ns(2.0))[0] == (
+        "2.000 s: MainThread is free: tick goes on after its await, and returns at once"
+    )
+
+
+def test_a_callback_inside_another_one_is_not_said_to_have_or_to_leave_a_free_thread() -> None:
+    run = Run()
+    node, thread = run.node("/n"), run.thread("MainThread")
+    ask, tick = run.timer(run.exclusive(node), "ask", 1.0), run.timer(run.reentrant(node), "tick", 1.0)
+    run.start(ask, thread, 1.0)
+    run.callback(tick, thread, 2.0, 0.5)
+    run.callback(tick, thread, 3.0, 0.0)
+    run.end(ask, thread, 3.0)
+    timeline = told(run)
+    assert narration(timeline, ns(2.5))[0] == "2.500 s: tick returns after 500 ms"
+    for at in (2.0, 3.0):
+        assert "MainThread spins inside ask: tick is due" in narration(timeline, ns(at))[0]
 
 
 def test_who_waits_for_a_group_is_told_with_its_holder() -> None:

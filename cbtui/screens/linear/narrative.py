@@ -79,7 +79,7 @@ class Narrative:
         for entity in timeline.entities.values():
             for wait in timeline.waits_of(entity.id, window):
                 end = min(now, wait.end_at(now))
-                if wait.holder != wait.entity and end - wait.since >= self.least:
+                if not wait.is_for_own_call and end - wait.since >= self.least:
                     begins = f"{timestamp(wait.start)}: {waiting(wait, timeline, wait.start, 'waits')}"
                     took = duration(end - wait.since)
                     ends = f"{timestamp(end)}: {entity.spoken_name} waits no longer, after {took}"

@@ -159,7 +159,7 @@ def _reasons(timeline: Timeline, waits: Sequence[Wait]) -> str:
 
 
 def _reason(timeline: Timeline, wait: Wait) -> str:
-    if wait.holder == wait.entity and wait.holder:
+    if wait.is_for_own_call and wait.holder:
         return "its last call still ran"
     return why_waiting(wait, timeline)
 

@@ -1,6 +1,6 @@
 """The callbacks that wait for others: one answer for every pane and sentence."""
 
-from sim.trace.events import EntityId, EntityKind
+from sim.trace.events import EntityId, EntityKind, GroupKind
 from sim.trace.model import Moment, Nanoseconds, Queue, Wait
 from sim.trace.timeline import Timeline
 
@@ -17,7 +17,7 @@ def waits_since(wait: Wait, queue: Queue) -> Nanoseconds:
     arrived = queue.next_arrived
     if arrived is None:
         return wait.since
-    return arrived if wait.holder == wait.entity else min(arrived, wait.since)
+    return arrived if wait.is_for_own_call else min(arrived, wait.since)
 
 
 def waited_by(end: Nanoseconds, wait: Wait, timeline: Timeline) -> Nanoseconds:
@@ -30,7 +30,7 @@ def waits_for_others(moment: Moment) -> list[Wait]:
 
     The longest is first.
     """
-    waits = (wait for wait in moment.waiting.values() if wait.holder != wait.entity)
+    waits = (wait for wait in moment.waiting.values() if not wait.is_for_own_call)
     ordered = sorted((waits_since(wait, moment.queues[wait.entity]), wait.entity) for wait in waits)
     return [moment.waiting[entity] for since, entity in ordered if moment.at - since >= WORTH_TELLING]
 
@@ -47,10 +47,18 @@ def next_in_turn(moment: Moment, timeline: Timeline) -> dict[EntityId, Nanosecon
         if entity not in moment.waiting and timeline.entities[entity].kind in kinds
         if (arrived := moment.queues[entity].next_arrived) is not None
     }
-    own = (wait for wait in moment.waiting.values() if wait.holder == wait.entity)
+    own = (wait for wait in moment.waiting.values() if wait.is_for_own_call)
     return found | {wait.entity: waits_since(wait, moment.queues[wait.entity]) for wait in own}
 
 
-def is_running(entity: EntityId, moment: Moment) -> bool:
-    """Return whether a call of a callback runs; one that has just returned does not."""
-    return any(span.entity == entity for span in moment.running.values())
+def is_held_by_own_call(entity: EntityId, moment: Moment, timeline: Timeline) -> bool:
+    """Return whether a call of a callback runs and lets no second one begin; one that is over does not."""
+    is_running = any(span.entity == entity for span in moment.running.values())
+    return is_running and not admits_others(entity, timeline)
+
+
+def admits_others(entity: EntityId, timeline: Timeline) -> bool:
+    """Return whether the group of a callback may admit others beside it: it is not mutually exclusive."""
+    known = timeline.entities.get(entity)
+    group = None if known is None else timeline.groups.get(known.group)
+    return group is not None and group.kind is not GroupKind.EXCLUSIVE
