@@ -87,6 +87,9 @@ class LaneStatus:
         return TextRun(state, PLAIN if holders else FAINT)
 
     def _entity(self, entity: EntityInfo, latest: Span | None) -> TextRun:
+        if latest is not None:  # the cursor's column may show a longer call before the last one
+            since = Window(latest.start, self.moment.at + 1)
+            latest = next(reversed(self.timeline.spans_of(entity.id, since)), latest)
         match entity.kind:
             case EntityKind.TIMER:
                 return self._timer(entity, latest)

@@ -162,6 +162,13 @@ def test_a_timer_that_found_no_worker_is_marked_late() -> None:
     )
 
 
+@pytest.mark.parametrize("start", [4.0 + place / 50 for place in range(10)])
+def test_a_timer_that_has_just_begun_tells_how_late_whatever_fills_its_column(start: float) -> None:
+    window = Window(ns(start), ns(start + 10.0))
+    timer = plain(LanePainter().paint(told(shared_group_run()), window, ns(14.0), 80, 8).rows).splitlines()[4]
+    assert timer.endswith("was late 9.5 s ")
+
+
 def test_a_wide_picture_names_threads_as_rclpy_does_and_tells_more() -> None:
     picture = plain(LanePainter().paint(told(split_groups_run(), until=9.412), *last(10, 9.412), 138, 9).rows)
     assert "ThreadPoolExecutor-0_0 │" in picture
