@@ -12,11 +12,11 @@ from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
 from cbtui.widgets.lanes.service_calls import LatestCalls, unanswered
 from sim.diagnosis import CodeLocation
-from sim.diagnosis.words import only_thread, thread_count, threads_needed
+from sim.diagnosis.words import late_reply, only_thread, thread_count, threads_needed
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.descriptions import name_of, waiting_name
-from sim.trace.events import EntityKind, KeyboardAsked, Notice, NoticeKind, Reason, Severity
+from sim.trace.descriptions import doing_of, name_of, waiting_name
+from sim.trace.events import Doing, EntityKind, KeyboardAsked, Notice, NoticeKind, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.figures.waiting import (
     WORTH_TELLING,
@@ -25,7 +25,17 @@ from sim.trace.figures.waiting import (
     waits_for_others,
     waits_since,
 )
-from sim.trace.model import AxisMarkKind, Call, EntityInfo, Moment, Nanoseconds, Wait, Window
+from sim.trace.model import (
+    AxisMarkKind,
+    Blocked,
+    Call,
+    EntityInfo,
+    Moment,
+    Nanoseconds,
+    Position,
+    Wait,
+    Window,
+)
 from sim.trace.timeline import Timeline
 
 _SERIOUS: Nanoseconds = SECOND
@@ -37,8 +47,15 @@ class DiagnosisLevel(Enum):
     """The importance of a diagnosis."""
 
     FINE = auto()
+    PENDING = auto()
+    """Something is late, blocked or without a reply, and keeps no other callback waiting."""
     WAITS = auto()
     TROUBLE = auto()
+
+    @property
+    def is_calm(self) -> bool:
+        """Whether no callback waits for another one."""
+        return self in (DiagnosisLevel.FINE, DiagnosisLevel.PENDING)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +132,7 @@ def with_worst_problem(
     if moment.stays and not (moment.is_stall and worst.explanation.for_ever):
         no_tick = moment.level is DiagnosisLevel.FINE
         return replace(moment, level=DiagnosisLevel.WAITS) if no_tick else moment
-    if moment.level is not DiagnosisLevel.FINE and worst not in (*endless, *in_vain):
+    if not moment.level.is_calm and worst not in (*endless, *in_vain):
         return moment
     explanation = worst.explanation
     what, level = explanation.what, DiagnosisLevel.WAITS if worst in in_vain else DiagnosisLevel.TROUBLE
@@ -173,7 +190,7 @@ def diagnosis_at(
         return Diagnosis(notice.text, DiagnosisLevel.TROUBLE, stays=True, is_stall=stalled)
     asked = timeline.asked(at)
     if asked is not None and not timeline.entities:
-        return Diagnosis(_of_keyboard(asked, keymap, can_type), DiagnosisLevel.FINE)
+        return Diagnosis(_of_keyboard(asked, keymap, can_type), DiagnosisLevel.PENDING)
     if not timeline.entities:
         return Diagnosis("no callback yet: the node is starting", DiagnosisLevel.FINE)
     moment = timeline.moment(at)
@@ -181,7 +198,7 @@ def diagnosis_at(
     if for_others:
         return _of_waits(for_others, moment, timeline)
     if asked is not None:
-        return Diagnosis(_of_keyboard(asked, keymap, can_type), DiagnosisLevel.FINE)
+        return Diagnosis(_of_keyboard(asked, keymap, can_type), DiagnosisLevel.PENDING)
     return _at_rest(moment, timeline, concurrency.peak(at))
 
 
@@ -194,18 +211,20 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
         return Diagnosis(f"{time}{raised[-1].text}", DiagnosisLevel.WAITS, time=time)
     turns = next_in_turn(moment, timeline)
     since, for_itself = min(((since, entity) for entity, since in turns.items()), default=(moment.at, 0))
-    in_a_call = _in_a_call(moment, timeline)
+    stuck = _stuck(moment, timeline)
     threads, briefly = _threads_needed(timeline, peak)
     pending = unanswered(LatestCalls(timeline).latest, moment.at)
     if moment.at - since < WORTH_TELLING:
-        nothing = _no_reply(pending, moment.at, timeline) or "nothing waits"
-        return Diagnosis(in_a_call or f"{nothing}; {threads}", DiagnosisLevel.FINE)
+        ready = [f"{name_of(each, timeline)} is ready" for each in (*moment.waiting, *turns)]
+        waits = stuck or _no_reply(pending, moment.at, timeline) or next(iter(ready), "")
+        level = DiagnosisLevel.PENDING if waits else DiagnosisLevel.FINE
+        return Diagnosis(stuck or f"{waits or 'nothing waits'}; {threads}", level)
     nothing = "no other callback waits" if pending else "nothing else waits"
     overdue = _overdue(timeline.entities[for_itself], moment, timeline, since)
-    text = f"{overdue}; {in_a_call or nothing}"
-    if in_a_call:
-        return Diagnosis(text, DiagnosisLevel.FINE)
-    return Diagnosis(f"{text}; {briefly}", DiagnosisLevel.FINE, at_length=f"{text}; {threads}")
+    text = f"{overdue}; {stuck or nothing}"
+    if stuck:
+        return Diagnosis(text, DiagnosisLevel.PENDING)
+    return Diagnosis(f"{text}; {briefly}", DiagnosisLevel.PENDING, at_length=f"{text}; {threads}")
 
 
 def _no_reply(pending: Sequence[Call], at: Nanoseconds, timeline: Timeline) -> str:
@@ -220,13 +239,21 @@ def _no_reply(pending: Sequence[Call], at: Nanoseconds, timeline: Timeline) -> s
     return f"{caller} has no reply from {call.service} for {duration(at - call.sent)}; no callback waits"
 
 
-def _in_a_call(moment: Moment, timeline: Timeline) -> str:
-    """The text on the callback that has been blocked longest in a service call; "" if none has."""
-    stuck = min(moment.blocked.values(), key=lambda blocked: blocked.start, default=None)
+def _stuck(moment: Moment, timeline: Timeline) -> str:
+    """The text on the callback that has waited longest in its call, for a reply or a lock; "" for none."""
+    positions = (timeline.position_on(thread, moment.at) for thread in moment.running)
+    waiting: list[Blocked | Position] = [*moment.blocked.values()]
+    waiting += [each for each in positions if each is not None and each.doing is Doing.WAITS]
+    stuck = min(waiting, key=lambda each: each.start, default=None)
     if stuck is None or moment.at - stuck.start < WORTH_TELLING:
         return ""
     who = name_of(stuck.entity, timeline) if stuck.entity else "the program"
-    return f"{who} has been blocked in the call of {stuck.service} for {duration(moment.at - stuck.start)}"
+    lasts = duration(moment.at - stuck.start)
+    if isinstance(stuck, Blocked):
+        return late_reply(stuck, moment, timeline) or (
+            f"{who} has been blocked in the call of {stuck.service} for {lasts}"
+        )
+    return f"{who} {doing_of(stuck)} for {lasts}"
 
 
 def _of_keyboard(asked: KeyboardAsked, keymap: Keymap, can_type: bool) -> str:
@@ -237,7 +264,8 @@ def _of_keyboard(asked: KeyboardAsked, keymap: Keymap, can_type: bool) -> str:
 def call_note(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
     """Return texts on the latest call from outside, the fullest first: without reply, or just answered.
 
-    Of a call without a reply the number of others gives way first, then the service's name. Else ().
+    Of a call without a reply the number of others gives way first, then the service's name. Else (); also
+    while the program itself has a call of the service without a reply.
     """
     lately = Window(at - _REPLY_STAYS - 1, at + 1)
     calls = [call for call in timeline.calls_within(lately) if call.caller == 0]
@@ -248,6 +276,8 @@ def call_note(timeline: Timeline, at: Nanoseconds) -> tuple[str, ...]:
         return (f"{texts[0]} and {len(pending) - 1} more", *texts) if len(pending) > 1 else texts
     latest = max(calls, key=lambda call: call.replied or 0, default=None)
     if latest is None or latest.replied is None or at - latest.replied > _REPLY_STAYS:
+        return ()
+    if any(call.service == latest.service for call in unanswered(timeline.calls_within(lately), at)):
         return ()
     return f"{latest.service} replied {response_of(latest)}", f"{latest.service} replied"
 

@@ -17,6 +17,7 @@ from cbtui.widgets.painted_widget import PaintedWidget, painted
 
 _INKS = {
     DiagnosisLevel.FINE: Ink(Role.TEXT),
+    DiagnosisLevel.PENDING: Ink(Role.TEXT),
     DiagnosisLevel.WAITS: Ink(Role.STRONG),
     DiagnosisLevel.TROUBLE: Ink(Role.WARN),
 }
@@ -25,7 +26,12 @@ _GAP = 2
 """Columns between the sentence and the text at the right."""
 _MOST = 4
 """The most lines of a sentence."""
-_SIGNS = {DiagnosisLevel.FINE: "✓", DiagnosisLevel.WAITS: "·", DiagnosisLevel.TROUBLE: "!"}
+_SIGNS = {
+    DiagnosisLevel.FINE: "✓",
+    DiagnosisLevel.PENDING: "·",
+    DiagnosisLevel.WAITS: "·",
+    DiagnosisLevel.TROUBLE: "!",
+}
 
 
 class DiagnosisLine(PaintedWidget):
@@ -102,7 +108,7 @@ def diagnosis_row(diagnosis: Diagnosis, note: tuple[str, ...], problems: str, wi
     fitting = [each for each in texts if len(each) <= room] or [sign + cut]
     beside = {each: room - len(each) - _INDENT for each in fitting}
     with_note = (each for way in note for each in fitting if len(way) < beside[each])
-    text = next(with_note, fitting[0]) if diagnosis.level is DiagnosisLevel.FINE else fitting[0]
+    text = next(with_note, fitting[0]) if diagnosis.level.is_calm else fitting[0]
     shown_note = next((f"{way} " for way in note if len(way) < room - len(text) - _INDENT), "")
     runs = [
         TextRun(fit(text, room - len(shown_note), Charset.BRAILLE), ink),

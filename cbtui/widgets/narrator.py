@@ -10,7 +10,7 @@ from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.text.cells import MOST_COLUMNS, fit, lines_of_text
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.painted_widget import PaintedWidget, painted
-from sim.diagnosis.words import group_of, thread_count
+from sim.diagnosis.words import group_of, late_reply, thread_count
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import Doing, EntityId, EntityKind, Reason
@@ -172,9 +172,11 @@ def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) ->
 def _waits(timeline: Timeline, at: Nanoseconds, since: Nanoseconds) -> Sequence[str]:
     """Who waits at a moment, and why; for its own last call only if nobody else waits, or from ``since``."""
     left = _left(timeline, at)
-    turns = next_in_turn(timeline.moment(at), timeline).items()
+    moment = timeline.moment(at)
+    turns = next_in_turn(moment, timeline).items()
     told_too = [_turn(each, begun, timeline, at) for each, begun in turns if not left or begun >= since]
-    told = (*_by_cause(left, timeline, at), "; ".join(told_too))
+    late = [late_reply(each, moment, timeline) for each in moment.blocked.values()]
+    told = (*_by_cause(left, timeline, at), "; ".join(told_too), *late)
     return tuple(filter(None, told)) or (_at_rest(timeline, at),)
 
 

@@ -2,10 +2,11 @@
 
 from collections.abc import Iterable
 
+from sim.quantities.durations import timestamp
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of, waiting_name
 from sim.trace.events import EntityId, EntityKind
-from sim.trace.model import EntityInfo, Nanoseconds, ThreadInfo, Window
+from sim.trace.model import Blocked, EntityInfo, Moment, Nanoseconds, ThreadInfo, Window
 from sim.trace.timeline import Timeline
 
 SPIN_ALWAYS = "do one step of the loop in a timer's callback, and call rclpy.spin(node)"
@@ -84,6 +85,24 @@ def threads_needed(peak: int, count: int, timeline: Timeline) -> str:
     if timeline.ended is None:
         return f"so far {peak} of {count} threads {was} needed at once"
     return f"{peak} of {count} threads {was} ever needed at once"
+
+
+def late_reply(blocked: Blocked, moment: Moment, timeline: Timeline) -> str:
+    """Say that a call's reply was taken and its caller not woken, which needs a thread, too; else ""."""
+    window = Window(blocked.start, moment.at + 1)
+    clients = [
+        each.id
+        for each in timeline.entities.values()
+        if each.kind is EntityKind.CLIENT and each.name == blocked.service
+    ]
+    spans = (span for client in clients for span in timeline.spans_of(client, window))
+    taken = [span.end for span in spans if span.message == blocked.call and span.end is not None]
+    if not taken or taken[0] > moment.at:
+        return ""
+    who = name_of(blocked.entity, timeline) if blocked.entity else "the program"
+    is_full = len(moment.running) >= thread_count(timeline)
+    why = "no thread is free to hand it over" if is_full else "the executor has yet to hand it over"
+    return f"{who} has had its reply from {blocked.service} since {timestamp(taken[0])}, but {why}"
 
 
 def thread_count(timeline: Timeline) -> int:

@@ -13,7 +13,7 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from cbtui.widgets.code.marks import marks_at
 from cbtui.widgets.code.source_files import SourceFiles
-from cbtui.widgets.diagnosis import diagnosis_at
+from cbtui.widgets.diagnosis import DiagnosisLevel, diagnosis_at
 from cbtui.widgets.factory.scene import FactoryScene, scene_of
 from cbtui.widgets.factory.texts import headlines, wait_texts
 from cbtui.widgets.lanes.details import details_of
@@ -169,7 +169,8 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
         return
     calls = LatestCalls(timeline)
     has_no_reply = any("no reply" in calls.summary(each.service, at) for each in calls.latest)
-    assert ("nothing waits" in told.text) <= (not waits and not moment.blocked and not has_no_reply)
+    is_well = not moment.waiting and not moment.blocked and not has_no_reply
+    assert (told.level is DiagnosisLevel.FINE) == ("nothing waits" in told.text) <= is_well
     if waits:
         more = re.search(r"; (\d+) more", told.at_length)
         assert 1 + (int(more[1]) if more else 0) == len(waits)

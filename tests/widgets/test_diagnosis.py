@@ -14,12 +14,13 @@ from cbtui.widgets.diagnosis import (
     with_worst_problem,
 )
 from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
+from cbtui.widgets.narrator import narration
 from sim.diagnosis import RULES, CodeLocation, Explanation, Finding
 from sim.diagnosis import Weight as RuleWeight
 from sim.diagnosis.words import threads_needed
 from sim.engine.setup import ProgramSetup, RealRos, RunSetup
 from sim.trace.descriptions import executor_label
-from sim.trace.events import Reason, RunEnded, Severity
+from sim.trace.events import CallbackAt, CallbackStarted, Doing, Reason, RunEnded, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -78,8 +79,55 @@ def test_a_wait_of_less_than_a_second_is_no_trouble_yet() -> None:
     assert said(shared_group_run(), 4.4).level is DiagnosisLevel.WAITS
 
 
-def test_a_hand_over_is_not_a_wait() -> None:
-    assert said(shared_group_run(), 4.005).level is DiagnosisLevel.FINE
+def test_a_hand_over_is_neither_a_wait_nor_nothing_that_waits() -> None:
+    told = said(shared_group_run(), 4.005)
+    assert told.text == "odom_callback is ready; one thread does all the work"
+    assert told.level is DiagnosisLevel.PENDING
+    assert diagnosis_row(told, (), "", 80)[0].text.startswith(" · ")
+
+
+def test_a_callback_that_waits_for_a_lock_is_not_told_as_nothing_waits() -> None:
+    run = Run()
+    tick = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    thread = run.thread("MainThread")
+    run.callback(tick, thread, 1.0, None)
+    frames = (("node.py", "tick", 7),)
+    run.add(CallbackAt(ns(1.0), tick, thread, Doing.WAITS, "Lock.acquire", frames))
+    run.stop(4.0)
+    told = said(run, 3.5)
+    assert (told.text, told.level) == ("tick waits for a lock for 2.5 s", DiagnosisLevel.PENDING)
+
+
+def test_a_reply_that_no_thread_hands_over_is_told_as_there() -> None:
+    run = Run()
+    run.executor("MultiThreadedExecutor", 2)
+    node = run.node("/n")
+    first, second = run.thread("MainThread"), run.thread("Thread-1")
+    client = run.client(run.exclusive(node), "/clamp")
+    left, other = run.timer(run.exclusive(node), "left", 1.0), run.timer(run.exclusive(node), "other", 1.0)
+    run.start(left, first, 1.0)
+    call = run.call("/clamp", 1.0, 2.0, entity=left)
+    run.blocked(call, "/clamp", first, left, 1.0, 3.0)
+    run.add(CallbackStarted(ns(2.0), client, second, call, 0, 0))
+    run.end(client, second, 2.0)
+    run.callback(other, second, 2.0, 1.0)
+    told, timeline = said(run, 2.5), timeline_of(run, 2.5)
+    there = "left has had its reply from /clamp since 2.000 s, but no thread is free to hand it over"
+    assert told.text == there
+    assert there in narration(timeline, ns(2.0))
+    assert there not in narration(timeline, ns(1.5))
+    assert said(run, 1.5).text == "left has been blocked in the call of /clamp for 500 ms"
+
+
+def test_an_old_reply_is_not_told_while_the_program_waits_for_a_newer_one() -> None:
+    run = Run()
+    ask = run.timer(run.exclusive(run.node("/n")), "ask", 1.0)
+    run.call("/part", 0.5, 1.5)
+    run.call("/part", 2.2, 3.2, entity=ask)
+    run.stop(4.0)
+    assert call_note(timeline_of(run, 2.0), ns(2.0))
+    assert call_note(timeline_of(run, 2.7), ns(2.7)) == ()
+    assert said(run, 2.7).level is DiagnosisLevel.PENDING
 
 
 def test_a_call_without_a_reply_is_not_told_as_nothing_waits() -> None:
@@ -117,9 +165,9 @@ def test_a_timer_that_outlasts_its_period_waits_for_nobody_else() -> None:
         "timer_callback still runs, due 4.9 s ago; nothing else waits; 2 of 4 threads needed"
     )
     (run,) = diagnosis_row(told, (), "", 80)
-    assert run.text.strip() == "✓ timer still runs, due 4.9 s ago; nothing else waits; 2 of 4 threads needed"
+    assert run.text.strip() == "· timer still runs, due 4.9 s ago; nothing else waits; 2 of 4 threads needed"
     assert told.at_length == f"{told.text.rpartition(';')[0]}; so far 2 of 4 threads were needed at once"
-    assert told.level is DiagnosisLevel.FINE
+    assert told.level is DiagnosisLevel.PENDING
 
 
 def test_a_wait_for_a_worker_names_what_the_workers_do() -> None:
