@@ -87,19 +87,22 @@ async def test_a_step_back_from_the_beginning_says_that_this_is_the_beginning() 
         assert any(note.message.startswith("This is the beginning") for note in app._notifications)
 
 
-async def test_a_wide_narrator_grows_where_a_moment_needs_more_rows() -> None:
+@pytest.mark.parametrize(("rows", "narrated"), [(40, 4), (60, 6)])
+async def test_a_wide_narrator_grows_where_a_moment_needs_more_rows_and_the_panes_have_room(
+    rows: int, narrated: int
+) -> None:
     run = Run()
     group, thread = run.exclusive(run.node("/n")), run.thread("MainThread")
     for number in range(5):
         run.callback(run.timer(group, f"tick_{number}", 1.0), thread, 1.0, 0.0)
     run.log("later", 3.0)
     app = RecordedConsole("shared-group", run.events, 3.0)
-    async with app.run_test(size=WIDE) as pilot:
+    async with app.run_test(size=(140, rows)) as pilot:
         await settle(pilot)
         await press(pilot, "comma")
         narrator = app.screen.query_one(Narrator)
         await press(pilot, "comma")
-        assert narrator.outer_size.height == 6
+        assert narrator.outer_size.height == narrated
         assert narrator.place == 3
         await press(pilot, *["comma"] * 4)
         assert narrator.now == 0
