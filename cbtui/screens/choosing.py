@@ -23,6 +23,7 @@ from cbtui.screens.parts.runs import RunController
 from cbtui.screens.run import RunScreen
 from cbtui.widgets.choice import ChoiceOptions, ChoiceView
 from cbtui.widgets.code import CodeView
+from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
 from lessons.puzzles import Puzzle
 
 _PUZZLE_SPAN = 200_000_000
@@ -77,6 +78,13 @@ class ChoosingScreen(RunScreen[LiveRun]):
             pane.show(self._choices.sheet)
         else:
             super().draw_pane(pane)
+
+    def diagnosis(self) -> Diagnosis:
+        """Return the diagnosis; at an open choice a thread may wait that the trace does not tell of yet."""
+        told, is_open = super().diagnosis(), self._choices.question and self.navigation.playhead.at is None
+        if not is_open or told.level is not DiagnosisLevel.FINE:
+            return told
+        return Diagnosis("time stands still until you choose who goes on", DiagnosisLevel.PENDING)
 
     def drawn(self) -> None:
         """Show the code beside the choice, and check whether the goal is reached."""

@@ -242,10 +242,11 @@ def _no_reply(pending: Sequence[Call], at: Nanoseconds, timeline: Timeline) -> s
 def _stuck(moment: Moment, timeline: Timeline) -> str:
     """The text on the callback that has waited longest in its call, for a reply or a lock; "" for none."""
     positions = (timeline.position_on(thread, moment.at) for thread in moment.running)
-    waiting: list[Blocked | Position] = [*moment.blocked.values()]
+    calls = (each for each in moment.blocked.values() if moment.at - each.start >= WORTH_TELLING)
+    waiting: list[Blocked | Position] = [*calls]
     waiting += [each for each in positions if each is not None and each.doing is Doing.WAITS]
     stuck = min(waiting, key=lambda each: each.start, default=None)
-    if stuck is None or moment.at - stuck.start < WORTH_TELLING:
+    if stuck is None:
         return ""
     who = name_of(stuck.entity, timeline) if stuck.entity else "the program"
     lasts = duration(moment.at - stuck.start)
@@ -253,7 +254,7 @@ def _stuck(moment: Moment, timeline: Timeline) -> str:
         return late_reply(stuck, moment, timeline) or (
             f"{who} has been blocked in the call of {stuck.service} for {lasts}"
         )
-    return f"{who} {doing_of(stuck)} for {lasts}"
+    return f"{who} {doing_of(stuck)}{f' for {lasts}' if moment.at > stuck.start else ''}"
 
 
 def _of_keyboard(asked: KeyboardAsked, keymap: Keymap, can_type: bool) -> str:

@@ -56,6 +56,7 @@ async def test_who_may_go_on_is_asked_and_shown_in_the_code() -> None:
         assert "1 order, line 20 (runs now," in text
         assert "2 Pool-0_1 looks for work" in text
         assert app.screen.query_one(CodeView).picked == 20
+        assert lines_of(app)[-2].startswith(" · time stands still until you choose who goes on")
         assert any("self.sent.publish" in line or "publish" in line for line in lines_of(app))
         assert {"take", "resume", "solution", "lesson", "run_again"} <= offered(app)
         assert not {"undo", "step", "pause"} & offered(app)

@@ -96,6 +96,8 @@ def test_a_callback_that_waits_for_a_lock_is_not_told_as_nothing_waits() -> None
     run.stop(4.0)
     told = said(run, 3.5)
     assert (told.text, told.level) == ("tick waits for a lock for 2.5 s", DiagnosisLevel.PENDING)
+    begins = said(run, 1.0)
+    assert (begins.text, begins.level) == ("tick waits for a lock", DiagnosisLevel.PENDING)
 
 
 def test_a_reply_that_no_thread_hands_over_is_told_as_there() -> None:
