@@ -14,6 +14,8 @@ from cbtui.widgets.diagnosis import (
     with_worst_problem,
 )
 from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
+from cbtui.widgets.factory.scene import scene_of
+from cbtui.widgets.factory.texts import blocked_texts
 from cbtui.widgets.narrator import narration
 from sim.diagnosis import RULES, CodeLocation, Explanation, Finding
 from sim.diagnosis import Weight as RuleWeight
@@ -119,6 +121,10 @@ def test_a_reply_that_no_thread_hands_over_is_told_as_there() -> None:
     assert there in narration(timeline, ns(2.0))
     assert there not in narration(timeline, ns(1.5))
     assert said(run, 1.5).text == "left has been blocked in the call of /clamp for 500 ms"
+    for at, why in ((1.5, "no reply for 500 ms"), (2.5, "its reply not handed over")):
+        scene = scene_of(timeline, ns(at), ns(0.1))
+        blocked = next(worker for worker in scene.workers if worker.blocked)
+        assert blocked_texts(blocked, scene)[0] == f"blocked in call of /clamp, {why}"
 
 
 def test_an_old_reply_is_not_told_while_the_program_waits_for_a_newer_one() -> None:

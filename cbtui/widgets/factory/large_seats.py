@@ -25,7 +25,7 @@ class LargeSeatPainter(SeatPainter):
     tall = 3
 
     def _worker(self, worker: FactoryWorker, line: int, rows: int) -> None:
-        trouble = blocked_texts(worker, self._scene.now)
+        trouble = blocked_texts(worker, self._scene)
         self._seat(self._start + 1, line)
         if worker.stay is WorkerState.COMES:
             self._walker(worker, line)

@@ -94,7 +94,7 @@ class SeatPainter:
 
     def _worker(self, worker: FactoryWorker, line: int, rows: int) -> None:
         """Draw a worker in its seat, or a taken seat and the worker on its way."""
-        trouble = blocked_texts(worker, self._scene.now)
+        trouble = blocked_texts(worker, self._scene)
         took = self._took(worker)
         if worker.stay is WorkerState.COMES:
             self._walker(worker, line)

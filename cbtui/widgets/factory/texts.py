@@ -7,6 +7,7 @@ from typing import NamedTuple
 from cbtui.text.callback_names import short_name
 from cbtui.widgets.factory.scene import Area, Belt, FactoryScene, FactoryWorker, WorkerState
 from cbtui.widgets.lanes.names import told_apart
+from sim.diagnosis.words import late_reply
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.descriptions import name_of
@@ -205,13 +206,15 @@ def _letter(worker: FactoryWorker, timeline: Timeline) -> str:
     return "?" if entity is None else timeline.groups[entity.group].letter
 
 
-def blocked_texts(worker: FactoryWorker, now: Nanoseconds) -> tuple[str, ...]:
+def blocked_texts(worker: FactoryWorker, scene: FactoryScene) -> tuple[str, ...]:
     """Return that a worker waits inside a service call, from the longest text to the shortest; () if not."""
     if worker.blocked is None:
         return ()
-    took, service = duration(now - worker.blocked.start), worker.blocked.service
+    took, service = duration(scene.now - worker.blocked.start), worker.blocked.service
+    is_there = late_reply(worker.blocked, scene.timeline.moment(scene.now), scene.timeline)
+    why = "its reply not handed over" if is_there else f"no reply for {took}"
     return (
-        f"blocked in call of {service}, no reply for {took}",
+        f"blocked in call of {service}, {why}",
         f"blocked in call of {service} {took}",
         f"blocked in {service} {took}",
         f"blocked in call {took}",
