@@ -153,10 +153,13 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
     belts = {belt.entity.id: belt for area in scene.areas for belt in area.belts}
     for wait in waits:
         reasons = {wait_texts(belts[wait.entity], timeline, at)[0]}
-        if callback := timeline.entities[wait.entity].callback:
+        is_running = any(span.entity == wait.entity for span in moment.running.values())
+        if (callback := timeline.entities[wait.entity].callback) and not is_running:
             actor = Actor(figure="hand", follows=callback)
             reasons.add(plain(paint_scene([actor], timeline, at, 120, 2, Charset.BRAILLE)))
-        if wait.entity in in_code:  # what rclpy makes for itself is in no code of the lesson's
+        if (
+            wait.entity in in_code and not is_running
+        ):  # what rclpy makes for itself is in no code of the lesson's
             reasons.add(in_code[wait.entity])
         if wait == waits[0] and not told.stays:
             reasons.add(told.text)
