@@ -16,6 +16,7 @@ from textual.content import Content
 from textual.geometry import Region, Size
 from textual.screen import Screen
 from textual.widget import Widget
+from textual.widgets import OptionList
 
 if TYPE_CHECKING:
     from textual.worker import Worker
@@ -65,6 +66,13 @@ def update_now(screen: Screen[None]) -> None:
     if screen.is_current and not waits:
         screen._compositor.update_widgets(screen._dirty_widgets)
         screen._compositor_refresh()
+
+
+def first_lines(options: OptionList) -> list[tuple[int, int]]:
+    """Return the row and the index of each option whose first line is in view; some take more lines."""
+    top = round(options.scroll_offset.y)
+    shown = options._lines[top : top + options.size.height]
+    return [(row, index) for row, (index, line) in enumerate(shown) if line == 0]
 
 
 def resize_content(widget: Widget, size: Size) -> None:

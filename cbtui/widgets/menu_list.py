@@ -14,6 +14,7 @@ from textual.widgets.option_list import Option
 from cbtui.learning.stage import Stage, next_lesson
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, time_ago
+from cbtui.terminal.textual_internals import first_lines
 from cbtui.text.cells import fit, visible
 from cbtui.widgets.jump import JumpTarget
 from cbtui.widgets.pageable_option_list import PageableOptionList
@@ -85,12 +86,11 @@ class MenuList(PageableOptionList, inherit_bindings=False):
         self.highlighted = None if first is None else self.get_option_index(first)
 
     def jump_targets(self) -> Iterator[JumpTarget]:
-        """Yield the entries in view; each takes one row."""
-        top = round(self.scroll_offset.y)
-        for row in range(top, min(top + self.size.height, self.option_count)):
-            entry = self.get_option_at_index(row).id
+        """Yield the entries in view; the letter takes the place of the sign before the number."""
+        for row, index in first_lines(self):
+            entry = self.get_option_at_index(index).id
             if entry is not None:
-                yield JumpTarget(Offset(0, row - top), partial(self.choose, entry))
+                yield JumpTarget(Offset(-1, row), partial(self.choose, entry))
 
     def _option(self, option_id: str, choice: MenuChoice, row: Content) -> Option:
         self._choices[option_id] = choice

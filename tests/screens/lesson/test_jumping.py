@@ -14,11 +14,12 @@ from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.log import LogLines
 from cbtui.widgets.menu_list import MenuList
 from lessons.lesson import Lesson
+from lessons.puzzles import Puzzle
 from sim.trace.model import Wait
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.fake_session import FakeEngines
-from tests.support.pictures import lines_of, text_of
+from tests.support.pictures import lines_of, picture_of, text_of
 from tests.support.runs import shared_group_run
 from tests.widgets.pictures import told
 
@@ -86,7 +87,7 @@ async def test_a_letter_in_the_menu_highlights_its_entry_and_one_in_a_comparison
     app = CbtuiApp(open_session=FakeEngines(EVENTS, ns(0)))
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
-        await jump_to(app, pilot, r"\d  One shared group")
+        await jump_to(app, pilot, " 2  One shared group")
         chosen = app.screen.query_one(MenuList).chosen
         assert isinstance(chosen, Lesson)
         assert chosen.id == "shared-group"
@@ -95,6 +96,21 @@ async def test_a_letter_in_the_menu_highlights_its_entry_and_one_in_a_comparison
         await settle(pilot)
         await jump_to(app, pilot, "dom ")
         assert app.screen.query(Lanes).first().selection is not None
+
+
+@pytest.mark.parametrize("last", [False, True], ids=["top", "bottom"])
+async def test_in_a_menu_with_long_headings_each_entry_in_view_has_a_letter_of_its_own(last: bool) -> None:
+    async with CbtuiApp(open_session=FakeEngines(EVENTS, ns(0))).run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        await pilot.press("end" if last else "home")
+        menu = pilot.app.screen.query_one(MenuList)
+        shown = dict(enumerate(picture_of(pilot.app, menu).splitlines()))
+        entries = {row: line for row, line in shown.items() if line.lstrip().startswith("·")}
+        for target in menu.jump_targets():
+            target.go()
+            assert isinstance(menu.chosen, Lesson | Puzzle)
+            assert menu.chosen.title in entries.pop(target.place.y)
+        assert not entries
 
 
 async def test_any_other_key_leaves_and_meanwhile_the_picture_stands() -> None:
