@@ -51,13 +51,14 @@ class TerminalDriver(LinuxDriver):
         """Continue after SIGCONT; after SIGSTOP, which has no handler, the terminal is first released.
 
         Otherwise the driver would save its own settings as the terminal's, and start a second input thread.
+        A process that was started in the background has stopped before it took the terminal.
         """
         if self._is_writing():
             self._loop.call_soon_threadsafe(self._sigcont_application)
             return
         if signal.getsignal(signal.SIGCONT) is signal.SIG_DFL:  # the terminal was given back meanwhile
             return
-        if self._auto_restart and not self._must_signal_resume:
+        if self._auto_restart and self._writer_thread is not None and not self._must_signal_resume:
             self.suspend_application_mode()
             self._must_signal_resume = True
         super()._sigcont_application(*signal_and_frame)

@@ -22,6 +22,20 @@ _TAKEN = "\x1b[?1049h"
 _LEFT = "\x1b[?1049l"
 """Leaves the console's screen for the one before, as the terminal is given back."""
 HUNG_UP = 128 + signal.SIGHUP
+_SHELL = """
+import os, signal, sys
+
+child = os.fork()
+if not child:
+    os.setpgid(0, 0)
+    os.execv(sys.executable, [sys.executable, "-m", "cbtui"])
+os.waitpid(child, os.WUNTRACED)
+print("stopped", flush=True)
+os.tcsetpgrp(0, child)
+os.kill(child, signal.SIGCONT)
+sys.exit(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]))
+"""
+"""Does what a shell does after ``cbtui &`` and ``fg``."""
 
 
 @contextmanager
@@ -88,6 +102,18 @@ def test_a_console_that_was_stopped_goes_on_and_gives_the_terminal_back(tmp_path
         console.until("Split groups")
         console.press("q")
         assert console.ended() == 0
+        assert console.left_on() == set()
+
+
+@pytest.mark.slow
+def test_a_console_that_is_started_in_the_background_opens_once_it_is_in_the_foreground(
+    tmp_path: Path,
+) -> None:
+    with nothing_left(), opened(80, 24, tmp_path, program=("-c", _SHELL)) as console:
+        console.until("stopped")
+        console.until("Split groups")
+        console.press("q")
+        assert console.ended() == 0, console.said()
         assert console.left_on() == set()
 
 
