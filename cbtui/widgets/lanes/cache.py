@@ -8,7 +8,7 @@ from typing import Any
 from cbtui.looks.theme import Charset, TextRun
 from cbtui.text.cells import CellRow
 from cbtui.widgets.lanes.columns import I, InstantColumns, LaneColumn, LaneColumns
-from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
+from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, SoleLane, ThreadLane
 from cbtui.widgets.lanes.scale import TimeScale
 from sim.trace.events import EntityId
 from sim.trace.model import Blocked, EntityInfo, Position, Span, Wait, Window
@@ -46,7 +46,7 @@ class LaneCache:
     _columns: dict[tuple[str, int], LaneColumns[Any]] = field(default_factory=dict)
     _losses: dict[EntityId, InstantColumns] = field(default_factory=dict)
 
-    def spans(self, lane: Lane) -> LaneColumns[Span]:
+    def spans(self, lane: ThreadLane | GroupLane | MemberLane | SoleLane) -> LaneColumns[Span]:
         """Return the aggregated calls of a lane."""
         match lane:
             case ThreadLane(thread):
@@ -55,8 +55,6 @@ class LaneCache:
                 return self.columns(self.timeline.spans_in, group.id)
             case MemberLane(entity) | SoleLane(entity):
                 return self.columns(self.timeline.spans_of, entity.id)
-            case ServiceLane():
-                return LaneColumns(lambda _: ())
 
     def columns(self, query: Callable[[int, Window], Sequence[I]], subject: int) -> LaneColumns[I]:
         """Return the cached columns of a query of the timeline for an id."""

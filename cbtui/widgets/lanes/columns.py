@@ -116,6 +116,8 @@ class _SettledColumns(Generic[I]):
         self.kept: dict[int, LaneColumn[I] | None] = {}
         self.lasting: dict[_Key, int] = {}
         self.told: set[_Key] = set()
+        self.shown: dict[int, LaneColumn[I] | None] = {}
+        """Columns of the last answer that are to be aggregated again."""
 
 
 class LaneColumns(Generic[I]):
@@ -129,14 +131,16 @@ class LaneColumns(Generic[I]):
         self._per_column = 0
         self._pasts: dict[Nanoseconds, _SettledColumns[I]] = {}
         self.unseen: tuple[int, ...] = ()
-        """The columns of the last answer that are not aggregated yet."""
+        """The columns of the last answer that were never aggregated."""
+        self.is_behind = False
+        """Whether columns of the last answer are still to be aggregated, perhaps again."""
 
     def over(
         self, scale: TimeScale, edge: Nanoseconds, ration: IntervalBudget | None = None
     ) -> list[LaneColumn[I] | None]:
         """Aggregate a scale's columns, the newest first; open intervals end at ``edge``.
 
-        Columns beyond the budget are None, and listed in ``unseen``.
+        Columns beyond the budget are those of the answer before, or None, and listed in ``unseen``.
         """
         past = self._past_of(scale, edge)
         running = self._forget_what_changed(past)
@@ -145,7 +149,9 @@ class LaneColumns(Generic[I]):
         after = min(scale.first + scale.columns, edge // scale.per_column + 1)
         missing = [number for number in range(first, after) if number not in kept]
         fresh, left = self._newest_of(missing, edge, ration or IntervalBudget())
-        self.unseen = tuple(number - scale.first for number in missing[:left])
+        late = {number: past.shown[number] for number in missing[:left] if number in past.shown}
+        self.unseen = tuple(number - scale.first for number in missing[:left] if number not in late)
+        self.is_behind = left > 0
         before, past.settled = past.settled, max(0, (edge - _SETTLED_AFTER) // scale.per_column)
         for number, column in fresh.items():
             if number < past.settled:
@@ -155,7 +161,8 @@ class LaneColumns(Generic[I]):
                     past.lasting[key] = min(number, past.lasting.get(key, number))
         past.told = set(running if past.settled == before else self._running_at(past.settled))
         columns = list(map(kept.get, range(scale.first, scale.first + scale.columns)))
-        for number, column in fresh.items():
+        past.shown = late | fresh
+        for number, column in past.shown.items():
             columns[number - scale.first] = column
         return columns
 
@@ -163,8 +170,11 @@ class LaneColumns(Generic[I]):
         """The valid cached columns of this length."""
         self._per_column = scale.per_column
         past = self._pasts.pop(scale.per_column, None)
-        if past is None or len(past.kept) > 4 * scale.columns or edge < past.edge:
+        if past is None or edge < past.edge:
             past = _SettledColumns()
+        elif len(past.kept) > 4 * scale.columns:
+            shown = range(scale.first, scale.first + scale.columns)
+            past.kept = {number: column for number, column in past.kept.items() if number in shown}
         self._pasts[scale.per_column] = past
         past.edge = edge
         if len(self._pasts) > _LENGTHS_KEPT:
@@ -183,6 +193,7 @@ class LaneColumns(Generic[I]):
         changed += [past.lasting.pop(key) for key in ended]
         if changed:
             since = min(changed)
+            past.shown |= past.kept
             past.kept = {number: column for number, column in past.kept.items() if number < since}
             past.lasting = {key: number for key, number in past.lasting.items() if number < since}
         return running

@@ -41,9 +41,9 @@ PLAIN = Ink(Role.TEXT)
 NOW = Ink(Role.NOW)
 MARK = Ink(Role.MARK)
 
-INTERVALS_PER_FRAME = 500
-"""Intervals that are examined per frame: a lesson's lanes are complete after two or three frames, an hour
-zoomed out after some fifty, with its overview, and keys stay responsive.
+INTERVALS_PER_FRAME = 1000
+"""Intervals that are examined per frame: a lesson's lanes are complete after one or two frames, at any speed
+in each; an hour zoomed out after some thirty, with its overview, and keys stay responsive.
 """
 
 _MOST_NESTED = 100
@@ -120,7 +120,7 @@ class LanePainter:
         if height > len(rows) and (whole or has_overview(timeline, width, window)):
             overview = whole_scale(max(timeline.end, window.end, whole), layout.columns)
             rows.append(frame.overview(overview))
-        complete = not frame.unseen
+        complete = not frame.is_behind
         return LanePicture(tuple(tuple(row) for row in rows), tuple(shown), layout, scale, complete, overview)
 
 
@@ -149,7 +149,7 @@ class _LaneFrame:
         self._now = now
         self._told = moment.at
         self._ration = IntervalBudget(painter.looks)
-        self.unseen = False
+        self.is_behind = False
         self._charset = painter.charset
         self._glyphs = GLYPHS[painter.charset]
         self._edge = max(now, end) if timeline.ended is None else end
@@ -223,7 +223,7 @@ class _LaneFrame:
         if key is None or key != kept_key:
             unseen: set[int] = set()
             painted = self._painted_inside(lane, rows, unseen)
-            self._cache.inside[lane] = (None if unseen else key, painted)
+            self._cache.inside[lane] = (None if self.is_behind else key, painted)
         nothing = TextRun("", PLAIN)
         return [self._framed([nothing], runs, nothing, chosen=False) for runs in painted]
 
@@ -237,7 +237,6 @@ class _LaneFrame:
             ]
             self._bars.nested(rows[-1], nested)
             self._bars.inside(rows[0], self._summed(columns, unseen))
-        self.unseen = self.unseen or bool(unseen)
         for row in rows:
             self._show_cursor(row)
         return [row.runs() for row in rows]
@@ -262,7 +261,7 @@ class _LaneFrame:
         if key != self._cache.overview[0]:
             unseen: set[int] = set()
             busy = self._busy_threads(scale, unseen)
-            self._cache.overview = (None if unseen else key, busy)
+            self._cache.overview = (None if self.is_behind else key, busy)
         row = self._cache.overview[1].copy()
         row.put(scale.column_of(self._now), self._glyphs.cursor, NOW)
         row.inks = [
@@ -278,7 +277,6 @@ class _LaneFrame:
             self._summed(self._cache.columns(self._timeline.spans_on, thread), unseen, scale)
             for thread in threads
         ]
-        self.unseen = self.unseen or bool(unseen)
         for place, columns in enumerate(zip(*lanes, strict=True)):
             busy = [column for column in columns if column is not None]
             if busy:
@@ -306,7 +304,7 @@ class _LaneFrame:
     def _sums(self, lane: Lane) -> LaneSummary:
         cache, timeline = self._cache, self._timeline
         unseen: set[int] = set()
-        calls = self._summed(cache.spans(lane), unseen)
+        calls = [] if isinstance(lane, ServiceLane) else self._summed(cache.spans(lane), unseen)
         waits: list[LaneColumn[Wait] | None] = []
         blocks: list[LaneColumn[Blocked] | None] = []
         locked: list[LaneColumn[Position] | None] = []
@@ -321,7 +319,6 @@ class _LaneFrame:
             case MemberLane(entity) | SoleLane(entity):
                 waits = self._summed(cache.columns(timeline.waits_of, entity.id), unseen)
                 losses = cache.losses(entity).over(self._scale, self._edge)
-        self.unseen = self.unseen or bool(unseen)
         lasting = dict.fromkeys(
             column.top.start
             for columns in (calls, waits)
@@ -339,6 +336,7 @@ class _LaneFrame:
         """Aggregate within the picture's budget, and add the remaining columns to ``unseen``."""
         summed = columns.over(scale or self._scale, self._edge, self._ration)
         unseen.update(columns.unseen)
+        self.is_behind = self.is_behind or columns.is_behind
         return summed
 
     def _draw(self, row: CellRow, lane: Lane, sums: LaneSummary) -> None:

@@ -159,6 +159,20 @@ def test_what_a_ration_leaves_out_comes_with_the_next_pictures(stays: list[Stay]
     assert not columns.unseen
 
 
+def test_columns_that_change_stay_as_they_were_until_the_ration_reaches_them() -> None:
+    long = Stay(2 * S, None)
+    store = Store(long, *(Stay(place * S, place * S + 1, 2) for place in range(24)))
+    columns, scale = LaneColumns(store.query), TimeScale(0, S, 24)
+    before = columns.over(scale, 24 * S)
+    long.end = 20 * S
+    summed = columns.over(scale, 24 * S, IntervalBudget(10))
+    assert columns.is_behind
+    assert not columns.unseen
+    assert summed[:8] == before[:8]
+    assert columns.over(scale, 24 * S) == LaneColumns(store.query).over(scale, 24 * S)
+    assert not columns.is_behind
+
+
 def test_what_is_kept_is_not_examined_again_while_older_columns_are_missing_and_time_goes_on() -> None:
     asked: list[Window] = []
     store = Store(*(Stay(place * S, place * S + 1) for place in range(400)))

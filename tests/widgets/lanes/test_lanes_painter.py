@@ -7,6 +7,7 @@ from rich.cells import cell_len
 
 from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.lanes import LanePainter, wanted_rows
+from cbtui.widgets.lanes.painter import INTERVALS_PER_FRAME
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from sim.trace.events import Reason
 from sim.trace.model import Window
@@ -228,6 +229,16 @@ def test_lanes_that_grow_look_as_if_painted_at_once() -> None:
         assert plain(painter.paint(growing, *last(10, now), 100, 8).rows) == plain(
             LanePainter().paint(growing, *last(10, now), 100, 8).rows
         )
+
+
+def test_at_the_highest_speed_each_picture_of_a_lesson_is_complete() -> None:
+    events = shared_group_run().events
+    growing, painter = Timeline(), LanePainter(looks=INTERVALS_PER_FRAME)
+    for frame in range(1, 18):
+        now = frame * ns(20 / 12)
+        since = now - ns(20 / 12) if frame > 1 else -1
+        growing.extend([event for event in events if since < event.t <= now])
+        assert painter.paint(growing, Window(now - ns(10), now), now, 80, 8).complete
 
 
 def test_a_callbacks_name_never_reaches_the_terminal_as_a_control() -> None:
