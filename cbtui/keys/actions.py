@@ -271,7 +271,9 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
     Scope.DIAGNOSES: (
         ("previous", "up", "choose", "Highlight the one above", "Highlight another"),
         ("next", "down", "choose", "Highlight the one below", "Highlight another"),
-        ("go", "enter", "go there", "Go to the moment and the code; on an arrow, do what it says"),
+        ("go", "enter", "go there", "Go to the moment and the code"),
+        ("open_lesson", "enter", "open the lesson", "Open the lesson that shows the problem"),
+        ("try_this", "enter", "try the cure", "Run again with the highlighted cure, and compare"),
         ("try_cure", "t", "try the cure", "Run again with the cure, and compare with the run before"),
         ("page_up", "pageup", "scroll", "Scroll the text up"),
         ("page_down", "pagedown", "scroll", "Scroll the text down"),

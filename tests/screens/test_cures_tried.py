@@ -17,6 +17,7 @@ from cbtui.screens.windows.diagnoses import (
     NextStep,
     cure_details,
 )
+from lessons.catalogue import find
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import CodeEdit
 from tests.screens.test_diagnoses import TURNED, console, press, told_of
@@ -66,6 +67,18 @@ async def test_a_cure_is_offered_once_it_was_found_to_help(keys: tuple[str, ...]
         assert chosen == []
         await press(pilot, "up", "up", *keys)
         assert chosen == [ChosenStep(findings[0], NextStep.CURE, EDIT)]
+
+
+async def test_the_key_bar_tells_what_enter_does_on_each_row() -> None:
+    async with console() as (app, pilot):
+        findings = told_of(shared_group_run().until(TURNED))[:1]
+        lesson = find("single-thread")
+        await app.push_screen(DiagnosesScreen(findings, Charset.BRAILLE, Trial(), lambda _: lesson))
+        await app.workers.wait_for_complete()
+        await pilot.pause()
+        for row in ("⏎ go there  t try the cure", "⏎ t try the cure", "⏎ open the lesson  t try the cure"):
+            assert row in text_of(app)
+            await press(pilot, "down")
 
 
 async def test_beside_a_cure_that_helps_another_one_is_being_tried() -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from enum import Enum, auto
+from enum import Enum
 from functools import partial
 from threading import Event
 from time import monotonic
@@ -61,11 +61,11 @@ class Trial(Protocol):
 
 
 class NextStep(Enum):
-    """A way to continue from a finding."""
+    """A way to continue from a finding, by the action that takes it."""
 
-    LOOK = auto()
-    CURE = auto()
-    LESSON = auto()
+    LOOK = "go"
+    CURE = "try_this"
+    LESSON = "open_lesson"
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,10 +240,10 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         match action:
             case "previous" | "next":
                 return len(self._rows) > 1
-            case "go":
-                return chosen is not None and (
-                    chosen.step is not NextStep.LOOK or self._findings[chosen.place].leads_somewhere
-                )
+            case "go" | "try_this" | "open_lesson":
+                if chosen is None or chosen.step.value != action:
+                    return False
+                return chosen.step is not NextStep.LOOK or self._findings[chosen.place].leads_somewhere
             case "try_cure":
                 return self._cure_at_hand is not None
             case "page_up" | "page_down":
@@ -300,6 +300,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         if self._chosen is not None:
             row = self._chosen
             self.dismiss(ChosenStep(self._findings[row.place], row.step, row.cure))
+
+    action_try_this = action_open_lesson = action_go
 
     def action_try_cure(self) -> None:
         """Run again with the highlighted cure."""
