@@ -18,6 +18,7 @@ from cbtui.screens.windows.prediction import PredictionScreen
 from cbtui.screens.windows.tour import STOPS, TourScreen
 from cbtui.terminal import pending_keys
 from cbtui.widgets.description_pane import described, of_lesson
+from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.guide import Guide
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
@@ -224,6 +225,17 @@ async def test_keys_turn_the_pages_of_the_tour_and_its_last_page_ends_it() -> No
         assert f"Tour 3/{len(STOPS)}" in text_of(app)
         await pilot.press(*["space"] * (len(STOPS) - 2))
         await until(pilot, lambda: isinstance(app.screen, PredictionScreen))
+
+
+async def test_the_tour_leaves_the_line_above_the_keys_in_sight() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("T")
+        await until(pilot, lambda: isinstance(app.screen, TourScreen))
+        await until(pilot, lambda: app.screen.query_one(".window").region.height > 0)
+        line = app.screen_stack[-2].query_one(DiagnosisLine)
+        assert line.region.height == 1
+        assert not app.screen.query_one(".window").region.overlaps(line.region)
 
 
 def test_no_page_of_the_tour_turns_faster_than_one_reads() -> None:
