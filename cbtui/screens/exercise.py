@@ -85,7 +85,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
             self, runs, Changes(), self.show_new_run, speed=lambda: None, at_any_time=True
         )
         self.add_parts(
-            PaceKeys(self, runs),
+            PaceKeys(self, runs, self.navigation.action_live),
             TimeRefusals(self, runs, lambda action: self._parts.offer(action, ())),
             Absences(self, runs, lesson, lambda action: self._parts.offer(action, ()), self._kind),
             RecordingKey(self, runs, self.finisher),

@@ -78,7 +78,7 @@ class LessonScreen(RunScreen[LiveRun]):
         if lesson is not None and lesson.exercise is not None:
             more["exercise"] = lambda: self.console.open_exercise(lesson, runs.run.setup.real)
         self.add_parts(
-            PaceKeys(self, runs),
+            PaceKeys(self, runs, self.navigation.action_live),
             RecordingKey(self, runs, self.finisher),
             WorldKeys(self, runs),
             TypingKeys(runs, self.panes, lambda: self.query_one(ShellView)),

@@ -18,10 +18,11 @@ _GOES_ON = "Real ROS 2 goes on by itself: only the model's time can be stopped, 
 
 @dataclass
 class PaceKeys(ScreenPart):
-    """Pauses and resumes a run, and changes its speed."""
+    """Pauses and resumes a run, and changes its speed; ``resumed`` is called when it was resumed."""
 
     host: DrawnHost
     runs: RunController[ShownRun]
+    resumed: Callable[[], object] = lambda: None
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer the actions that would have an effect."""
@@ -42,6 +43,7 @@ class PaceKeys(ScreenPart):
     def action_resume(self) -> None:
         """Let time go on."""
         self.runs.run.resume()
+        self.resumed()
         self.host.redraw()
 
     def action_slower(self) -> None:

@@ -51,6 +51,17 @@ async def test_a_step_is_offered_in_a_pause_and_reaches_the_engine() -> None:
         assert "PAUSED" in status(app)
 
 
+async def test_who_looks_back_in_a_pause_follows_the_run_again_when_it_goes_on() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "space", "left_square_bracket")
+        assert "BACK" in status(app)
+        await press(pilot, "space")
+        app.engines.latest.play(ns(14.5))
+        await settle(pilot)
+        assert "LIVE" in status(app)
+        assert app.lesson_screen.query_one(Lanes).now == ns(14.5)
+
+
 async def test_a_comma_looks_back_by_one_event_and_a_full_stop_forward_until_live_again() -> None:
     async with console() as (app, pilot):
         timeline = app.lesson_screen.runs.run.timeline
