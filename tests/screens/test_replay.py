@@ -13,6 +13,7 @@ from cbtui.runs.live.replay import RecordingReader, of_recording
 from cbtui.runs.recorded.recording_file import about
 from cbtui.screens.replay import ReplayScreen
 from cbtui.widgets.shell import Prompt
+from lessons.catalogue import lessons
 from sim.engine.setup import ProgramSetup, RunSetup
 from sim.recording import Recording, RecordingMetadata, read
 from sim.trace.events import AnyEvent, KeyboardAsked, Reading, RunEnded
@@ -216,6 +217,12 @@ def test_a_program_that_neither_was_recorded_nor_is_here_is_said_to_be_missing(t
     assert subject.node_path == Path(PROGRAM)
     assert subject.source is not None
     assert "holds no source" in subject.source
+
+
+def test_a_recording_of_a_lesson_with_a_scene_shows_that_scene(tmp_path: Path) -> None:
+    lesson = next(each for each in lessons() if each.scene)
+    subject = of_recording(recording(tmp_path, RecordingMetadata(title=lesson.id, clock="virtual")))
+    assert subject.scene == lesson.scene
 
 
 def test_recorded_texts_are_shown_as_texts(tmp_path: Path) -> None:

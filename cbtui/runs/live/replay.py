@@ -13,6 +13,7 @@ from cbtui.runs.recorded.recording_file import date_text, setup_of
 from cbtui.runs.setup.own_files import PROGRAMS
 from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.text.markdown import as_it_is
+from lessons.catalogue import lessons
 from sim.engine.setup import RunSetup
 from sim.files.untrusted import read_text
 from sim.recording import Recording, RecordingError, RecordingMetadata, read
@@ -180,6 +181,7 @@ def of_recording(recording: Recording) -> ShownProgram:
         set_up=lambda _threads, _speed: setup,
         source=source,
         sources=recording.sources,
+        scene=next((lesson.scene for lesson in lessons() if lesson.id == about.title), ()),
     )
 
 

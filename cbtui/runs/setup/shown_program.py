@@ -73,7 +73,8 @@ class ShownProgram:
 
     ``source`` is the program's text if that differs from the file at ``node_path``, ``sources`` the texts of
     a recording, by path. ``is_own_file`` tells that it is a file which the learner edits, whose guide is
-    written as it runs. ``counts_processes`` has the heading tell how many processes there are.
+    written as it runs. ``scene`` are the figures in place of a robot. ``counts_processes`` has the heading
+    tell how many processes there are.
     """
 
     heading: str
@@ -84,6 +85,7 @@ class ShownProgram:
     set_up: SetUp
     lesson: Lesson | None = None
     following: Lesson | None = None
+    scene: tuple[Actor, ...] = ()
     source: str | None = None
     sources: Mapping[str, str] = field(default_factory=dict)
     is_own_file: bool = False
@@ -101,11 +103,6 @@ class ShownProgram:
         running = timeline.processes.keys() - timeline.processes_ended.keys()
         return f"{self.heading}: {counted(len(running), 'process')}"
 
-    @property
-    def scene(self) -> tuple[Actor, ...]:
-        """The figures that are shown in place of a robot."""
-        return () if self.lesson is None else self.lesson.scene
-
 
 def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> ShownProgram:
     """Return the program of a lesson, one of ``lessons``."""
@@ -119,6 +116,7 @@ def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> ShownProgram:
         set_up=lambda threads, speed: setup_for(lesson, threads=threads, speed=speed),
         lesson=lesson,
         following=lessons[place + 1] if place + 1 < len(lessons) else None,
+        scene=lesson.scene,
     )
 
 
