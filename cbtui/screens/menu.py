@@ -36,7 +36,7 @@ from cbtui.widgets.menu_list import (
     MenuRows,
     Taught,
     WideMenuRows,
-    found_first,
+    found_in,
     id_of,
     with_words,
 )
@@ -161,7 +161,7 @@ class MenuScreen(SizedScreen[None]):
         kind = WideMenuRows if self.layout_now is Layout.GRID else MenuRows
         rows = kind(self._lessons, self._stages, self._now())
         files = filter(with_words(self._words), self._recents.files)
-        self._list.show(found_first(tuple(self._taught()), self._words), files, rows)
+        self._list.show(found_in(tuple(self._taught()), self._words), files, rows)
         self._tell_troubles()
         self._describe()
 
@@ -274,7 +274,7 @@ class MenuScreen(SizedScreen[None]):
         """Show the results, and open a lesson at once if only its number begins with the typed digits."""
         self._words = words
         self._fill()
-        self._list.highlight_first()
+        self._list.highlight_first(words)
         found = list(filter(with_words(words), self._lessons)) if words.isdecimal() else []
         if len(found) == 1 and words == str(found[0].number):
             self._list.choose(found[0].id)

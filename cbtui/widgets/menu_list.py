@@ -80,9 +80,10 @@ class MenuList(PageableOptionList, inherit_bindings=False):
         if option_id in self._choices:
             self.highlighted = self.get_option_index(option_id)
 
-    def highlight_first(self) -> None:
-        """Highlight the first choice."""
-        first = next(iter(self._choices), None)
+    def highlight_first(self, text: str = "") -> None:
+        """Highlight the first choice whose title has all words of a text, or else the first one."""
+        titled = (each for each, choice in self._choices.items() if _is_titled(choice, text))
+        first = next(titled, next(iter(self._choices), None))
         self.highlighted = None if first is None else self.get_option_index(first)
 
     def jump_targets(self) -> Iterator[JumpTarget]:
@@ -185,17 +186,22 @@ def with_words(text: str) -> Callable[[MenuChoice], bool]:
     return lambda choice: all(word in _said(choice) for word in words)
 
 
-def found_first(taught: Sequence[Taught], text: str) -> list[Taught]:
-    """Return the lessons and puzzles that a text finds, those first whose titles have all of its words.
+def found_in(taught: Sequence[Taught], text: str) -> list[Taught]:
+    """Return the lessons and puzzles that a text finds, in their order.
 
-    If there are such ones, the others need the text as it was typed.
+    If there are some whose titles have all of its words, the others need the text as it was typed.
     """
     found = [each for each in taught if with_words(text)(each[1])]
-    words, phrase = text.casefold().split(), text.casefold().strip()
-    titled = [each for each in found if all(word in each[1].title.casefold() for word in words)]
-    if not titled or text.isdecimal():
-        return found
-    return titled + [each for each in found if each not in titled and phrase in _said(each[1])]
+    phrase = text.casefold().strip()
+    titled = [each for each in found if _is_titled(each[1], text)]
+    return [each for each in found if not titled or each in titled or phrase in _said(each[1])]
+
+
+def _is_titled(choice: MenuChoice, text: str) -> bool:
+    """Whether the title of a lesson or puzzle has all words of a text, which is no number."""
+    if isinstance(choice, RecentEntry) or text.isdecimal():
+        return False
+    return all(word in choice.title.casefold() for word in text.casefold().split())
 
 
 def _said(choice: MenuChoice) -> str:

@@ -1,5 +1,6 @@
 """The search of the menu."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -47,7 +48,7 @@ async def test_words_show_only_what_has_them_and_escape_shows_all(program: Path)
         assert not app.screen.query(MenuSearch)
 
 
-async def test_a_title_is_found_first_and_chosen_and_what_only_has_the_words_somewhere_is_hidden() -> None:
+async def test_a_title_is_chosen_and_what_only_has_the_words_somewhere_is_hidden() -> None:
     app = menu()
     async with app.run_test(size=TALL) as pilot:
         await pilot.press("slash", *"call in")
@@ -56,6 +57,18 @@ async def test_a_title_is_found_first_and_chosen_and_what_only_has_the_words_som
         assert isinstance(chosen, Lesson)
         assert chosen.id == "call-in-a-callback"
         assert "Single thread" not in text_of(app)
+
+
+async def test_what_is_found_stands_below_the_heading_of_its_unit_in_the_order_of_the_course() -> None:
+    app = menu()
+    async with app.run_test(size=TALL) as pilot:
+        await pilot.press("slash", *"wait")
+        await pilot.pause()
+        units = [int(unit) for unit in re.findall(r"Unit (\d+) ", text_of(app))]
+        assert units == sorted(set(units))
+        chosen = app.screen.query_one(MenuList).chosen
+        assert isinstance(chosen, Lesson)
+        assert "wait" in chosen.title
 
 
 async def test_what_is_found_by_its_text_alone_is_shown_too() -> None:
