@@ -14,7 +14,7 @@ from sim.ros.scheduling.callback_groups import (
 )
 from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, executor_of, once, spin
 from tests.support.builder import ns
-from tests.support.engine_runs import program_setup, run_lesson, run_to_end
+from tests.support.engine_runs import program_setup, run_lesson, run_program, run_to_end
 from tests.support.simulation import Simulation
 
 
@@ -216,6 +216,62 @@ def test_a_long_call_is_told_at_the_line_that_took_most_of_it_or_that_led_to_suc
     place = found.rule.explain(found, timeline).place
     assert place is not None
     assert line in path.read_text().splitlines()[place.first_line - 1]
+
+
+KEPT_LOCK = """
+import threading
+import time
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+
+rclpy.init()
+node, lock = rclpy.create_node("n"), threading.Lock()
+
+def count():
+    with lock:
+        pass
+
+def save():
+    with lock:
+        time.sleep(0.45)
+
+node.create_timer(0.1, count, MutuallyExclusiveCallbackGroup())
+executor = MultiThreadedExecutor(2)
+executor.add_node(node)
+{other}
+{spin}
+"""
+
+
+@pytest.mark.parametrize(
+    ("other", "spin", "cure", "line"),
+    [
+        (
+            "node.create_timer(0.5, save, MutuallyExclusiveCallbackGroup())",
+            "executor.spin()",
+            "let save let go of the lock before anything that takes long",
+            "time.sleep(0.45)",
+        ),
+        (
+            "threading.Thread(target=executor.spin, daemon=True).start()",
+            "while True:\n    save()\n    time.sleep(0.15)",
+            "find who keeps the lock, and let go of it before anything that takes long",
+            "with lock",
+        ),
+    ],
+    ids=["a callback", "the program"],
+)
+def test_a_timer_is_not_said_to_be_slow_where_it_waits_for_a_lock(
+    tmp_path: Path, other: str, spin: str, cure: str, line: str
+) -> None:
+    run = run_program(tmp_path, KEPT_LOCK.format(other=other, spin=spin))
+    [found] = [each for each in diagnose(run.timeline) if each.rule.id == "overrun-timer"]
+    told = found.rule.explain(found, run.timeline)
+    assert told.cure == cure
+    assert told.why.split(" ", 2)[2].startswith("of that it waited for a lock")
+    assert told.place is not None
+    assert line in (tmp_path / "node.py").read_text().splitlines()[told.place.first_line - 1]
 
 
 TALKS_FASTER = """
