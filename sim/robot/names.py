@@ -1,8 +1,8 @@
 """The robot's names: on the network, and of its thread."""
 
-from sim.trace.events import ROBOT_SERVICES, VELOCITY_TOPIC
+from sim.trace.events import ROBOT_SERVICES, SENSOR_TOPICS, VELOCITY_TOPIC
 
-NAMES = ("/odom", "/scan", VELOCITY_TOPIC, *ROBOT_SERVICES)
+NAMES = (*SENSOR_TOPICS, VELOCITY_TOPIC, *ROBOT_SERVICES)
 """The robot's topics and services."""
 
 THREAD = "robot_driver"

@@ -9,7 +9,7 @@ from sim.diagnosis.edits.names import rename, rename_publisher
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, entity_of, made_at, place_of
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import who
-from sim.trace.events import ROBOT_SERVICES, VELOCITY_TOPIC, EntityKind
+from sim.trace.events import ROBOT_SERVICES, SENSOR_TOPICS, VELOCITY_TOPIC, EntityKind
 from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -26,7 +26,7 @@ class MisspeltTopic(Rule):
 
     The robot's ``/cmd_vel`` counts as a subscription's. If that lasts for a while, both ends are probably
     meant to be one topic. Of topics that others hear only one of the same type is taken to be meant, whose
-    name differs by a slip.
+    name differs by a slip. So is that of a sensor of the robot, which comes only where a topic is its own.
     """
 
     id = "misspelt-topic"
@@ -42,22 +42,27 @@ class MisspeltTopic(Rule):
         unheard = [name for name in unheard if name not in timeline.services_called][:_MOST]
         silent = [each for each in ends if each.made_at[0] and not timeline.sent_on(each.name)][:_MOST]
         sent = {name: kind for name, kind in heard.items() if name in timeline.names_sent}
-        pairs = [(each.id, nearest(each.name, unheard) or _meant(each, sent)) for each in silent]
+        known = sent if timeline.arena is not None else SENSOR_TOPICS | sent
+        pairs = [(each.id, nearest(each.name, unheard) or _meant(each, known)) for each in silent]
         if timeline.arena is not None and not timeline.sent_on(VELOCITY_TOPIC):
             pairs.append((0, nearest(VELOCITY_TOPIC, unheard)))
         for entity, near in pairs:
-            since = timeline.sent_on(near)[0].at if near else view.end
-            if view.end - since >= self.threshold:
+            first = timeline.sent_on(near)[:1] if near else ()
+            since = first[0].at if first else 0
+            if near and view.end - since >= self.threshold:
                 yield Finding(self, since, view.end, entity, about=near, detail=near if near in sent else "")
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         if not found.subject:
             return _explain_robot(found.about, timeline)
         end = entity_of(found, timeline)
-        first = timeline.sent_on(found.about)[0].sender
+        sent = timeline.sent_on(found.about)
+        first = sent[0].sender if sent else None
         by = "" if first is None else f" by {who(first.entity, timeline)}"
         silent = f"{who(found.subject, timeline)} hears nothing: nobody publishes on {end.name}"
-        if found.detail:
+        if not sent:
+            what, cure = f"{silent}; did you mean {found.about}, which the lessons' robot publishes?", ""
+        elif found.detail:
             what, cure = f"{silent}; did you mean {found.about}, which is published{by}?", ""
         else:
             what = f"{silent}, and nobody hears {found.about}, which is published{by}"

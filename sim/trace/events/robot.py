@@ -55,6 +55,9 @@ class Scanned(TraceEvent, frozen=True, tag="scan"):
 VELOCITY_TOPIC = "/cmd_vel"
 """The topic on which the robot is told where to go."""
 
+SENSOR_TOPICS = {"/odom": "nav_msgs/msg/Odometry", "/scan": "sensor_msgs/msg/LaserScan"}
+"""The topics on which the robot publishes what it measures, and their types."""
+
 ROBOT_SERVICES = ("/reset_world", "/motor_power")
 """The services that the robot offers."""
 
