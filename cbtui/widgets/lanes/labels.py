@@ -1,7 +1,7 @@
 """The labels at the left of lanes: names, and the letters and textures of groups."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from cbtui.looks.theme import Glyphs, Ink, Role, TextRun, texture_of
 from cbtui.widgets.lanes.names import (
@@ -15,6 +15,7 @@ from cbtui.widgets.lanes.names import (
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from sim.trace.events import GroupId
 from sim.trace.model import EntityInfo, GroupInfo
+from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
 
 _PLAIN = Ink(Role.TEXT)
@@ -24,7 +25,7 @@ _SWATCH = 2
 """Columns of texture beside a group's letter."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class LaneLabels:
     """Labels of ``width`` columns; ``numbers`` are the places of the groups, by which they are coloured."""
 
@@ -32,6 +33,11 @@ class LaneLabels:
     width: int
     glyphs: Glyphs
     numbers: Mapping[GroupId, int]
+    _names: list[str] = field(init=False)
+
+    def __post_init__(self) -> None:
+        staged = roster_of(self.timeline).staged(self.timeline)
+        self._names = [self._name(member) for _, members in staged for member in members]
 
     def of(self, lane: Lane) -> list[TextRun]:
         """Return a lane's label; its last run may have to be cut."""
@@ -44,13 +50,15 @@ class LaneLabels:
                 letter = self._letter(group)
                 return [*letter, TextRun(group_name(group, self.room_after(letter)), _PLAIN)]
             case MemberLane(entity):
-                return [TextRun(f"  {entity_name(self._name(entity), self.width - 3, ellipsis)}", _PLAIN)]
+                name = entity_name(self._name(entity), self.width - 2, ellipsis, self._names)
+                return [TextRun(f"  {name}", _PLAIN)]
             case SoleLane(entity, group):
                 letter = self._letter(group)
-                name = sole_name(self._name(entity), group, self.room_after(letter), ellipsis)
+                name = sole_name(self._name(entity), group, self.room_after(letter), ellipsis, self._names)
                 return [*letter, TextRun(name, _PLAIN)]
             case ServiceLane(service):
-                return [TextRun(service_name(service, self.width, ellipsis), _PLAIN)]
+                name = service_name(service, self.width, ellipsis, self.timeline.services_called)
+                return [TextRun(name, _PLAIN)]
 
     def room_after(self, runs: Sequence[TextRun]) -> int:
         """Return the columns that are left after parts of a label."""

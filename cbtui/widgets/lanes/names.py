@@ -1,5 +1,7 @@
 """The names of lanes, shortened to the available columns."""
 
+from collections.abc import Collection
+
 from cbtui.text.callback_names import short_name
 from sim.trace.events import EntityKind
 from sim.trace.model import EntityInfo, GroupInfo, ThreadInfo
@@ -7,7 +9,7 @@ from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
 
 _LEAST_PROGRAM = 3
-"""Columns below which a program's name cannot be recognised."""
+"""Columns below which a program's or an action's name cannot be recognised."""
 _BRIEF = 4
 """Letters that identify a kind of group."""
 _OF_ACTIONS = {"send_goal": "send", "get_result": "result", "cancel_goal": "cancel"}
@@ -22,7 +24,8 @@ def short_thread(name: str) -> str:
 def thread_name(thread: ThreadInfo, room: int, ellipsis: str) -> str:
     """Return a thread's name in at most ``room`` columns, if it can be shortened so far.
 
-    Of several programs, the program's name is shortened in its middle: their ends differ.
+    Of several programs, the program's name is shortened in its middle: their ends differ. A function that
+    a thread runs, ``Thread-1 (spin)``, may be cut.
     """
     for name in (thread.name, short_thread(thread.name)):
         if len(name) <= room:
@@ -30,27 +33,38 @@ def thread_name(thread: ThreadInfo, room: int, ellipsis: str) -> str:
     program, between, rest = short_thread(thread.name).rpartition(" ")
     for brief in (rest, rest.replace("MainThread", "Main").replace("Pool-", "P")):
         left = room - len(brief) - 1
-        if between and left >= min(len(program), _LEAST_PROGRAM):
+        if between and not rest.startswith("(") and left >= min(len(program), _LEAST_PROGRAM):
             return f"{shortened(program, left, ellipsis)} {brief}"
     return short_thread(thread.name)
 
 
-def shortened(text: str, room: int, ellipsis: str) -> str:
-    """Return a name in at most ``room`` columns, without its middle: similar names differ at an end."""
+def shortened(text: str, room: int, ellipsis: str, names: Collection[str] = ()) -> str:
+    """Return one of ``names`` in at most ``room`` columns, so that it stays different from the others.
+
+    A last word stays whole. The rest loses its end, or its middle if another name begins like it: similar
+    names differ at an end.
+    """
     if len(text) <= room or room < 3:
         return text
+    first, between, last = text.rpartition(" ")
+    if between and room - len(last) - 1 >= _LEAST_PROGRAM:
+        firsts = [name.removesuffix(f" {last}") for name in names if name.endswith(f" {last}")]
+        return f"{shortened(first, room - len(last) - 1, ellipsis, firsts)} {last}"
+    if sum(name.startswith(text[: room - 1]) for name in names) == 1:
+        return text[: room - 1] + ellipsis
     before = (room - 1) // 2
     return f"{text[:before]}{ellipsis}{text[len(text) - (room - 1 - before) :]}"
 
 
-def service_name(service: str, room: int, ellipsis: str) -> str:
-    """Return a service's name; of an action's services, what differs stays: ``fetch cancel``."""
+def service_name(service: str, room: int, ellipsis: str, names: Collection[str] = ()) -> str:
+    """Return one of the services ``names``; of an action's, what differs stays: ``fetch cancel``."""
     action, of_action, part = service.partition("/_action/")
     if len(service) <= room or not of_action:
-        return shortened(service, room, ellipsis)
+        return shortened(service, room, ellipsis, names)
     action, word = action.removeprefix("/"), _OF_ACTIONS.get(part, part)
     left = room - len(word) - 1
-    return f"{shortened(action, left, ellipsis)} {word}" if left >= min(len(action), 3) else word
+    actions = {name[1:].partition("/_action/")[0] for name in names if of_action in name}
+    return f"{shortened(action, left, ellipsis, actions)} {word}" if left >= min(len(action), 3) else word
 
 
 def group_name(group: GroupInfo, room: int) -> str:
@@ -76,18 +90,17 @@ def told_apart(entity: EntityInfo, timeline: Timeline, reply: str) -> str:
     return entity.callback or entity.label
 
 
-def entity_name(name: str, room: int, ellipsis: str) -> str:
+def entity_name(name: str, room: int, ellipsis: str, names: Collection[str] = ()) -> str:
     """Return the name of a callback in a group of several."""
-    return name if len(name) <= room else shortened(short_name(name), room, ellipsis)
+    return name if len(name) <= room else shortened(short_name(name), room, ellipsis, names)
 
 
-def sole_name(name: str, group: GroupInfo, room: int, ellipsis: str) -> str:
+def sole_name(name: str, group: GroupInfo, room: int, ellipsis: str, names: Collection[str] = ()) -> str:
     """Return the name of a group's only callback, behind the group's kind if there is room."""
-    names = (name, short_name(name))
-    for text in (f"{kind} {each}" for kind in _kinds(group) for each in names):
+    for text in (f"{kind} {each}" for kind in _kinds(group) for each in (name, short_name(name))):
         if len(text) <= room:
             return text
-    return shortened(short_name(name), room, ellipsis)
+    return shortened(short_name(name), room, ellipsis, names)
 
 
 def more_lanes(hidden: int, key: str, room: int) -> str:

@@ -50,6 +50,21 @@ def test_lanes_without_room_are_told_of_with_their_key(hidden: int, key: str, ro
     assert more_lanes(hidden, key, room) == shown
 
 
+@pytest.mark.parametrize(
+    ("names", "room", "shown"),
+    [
+        (["dummy_server", "odom"], 9, ["dummy_se…", "odom"]),
+        (["ask_and_wait", "ask_and_leave", "walk"], 9, ["ask_…wait", "ask_…eave", "walk"]),
+        (["get_a_part", "get_a_part ◂"], 9, ["get_…part", "get_a_… ◂"]),
+        (["fetch_it client", "fetch_it server"], 10, ["fe… client", "fe… server"]),
+    ],
+)
+def test_a_name_loses_its_end_unless_another_one_begins_like_it(
+    names: list[str], room: int, shown: list[str]
+) -> None:
+    assert [shortened(name, room, "…", names) for name in names] == shown
+
+
 def test_names_that_differ_at_an_end_stay_apart() -> None:
     names = ("front_wheel_odometry", "rear_wheel_odometry", "front_wheel_current")
     assert len({shortened(name, 9, "…") for name in names}) == 3
@@ -70,6 +85,12 @@ def test_names_that_differ_at_an_end_stay_apart() -> None:
 )
 def test_an_actions_services_differ_by_a_word(service: str, room: int, shown: str) -> None:
     assert service_name(service, room, "…") == shown
+
+
+def test_services_of_actions_that_begin_alike_stay_apart() -> None:
+    services = [f"/fetch_{what}/_action/send_goal" for what in ("it", "them")]
+    assert service_name(services[0], 12, "…", services[:1]) == "fetch_… send"
+    assert len({service_name(service, 12, "…", services) for service in services}) == 2
 
 
 def test_lanes_of_one_group_have_names_of_their_own() -> None:

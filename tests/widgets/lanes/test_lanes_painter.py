@@ -144,7 +144,7 @@ def test_a_reentrant_group_shows_how_many_run_at_once() -> None:
         |Pool-0_0    │              ▎    ▎ ▕A service_callback █████▊  ▎│  50% busy      |
         |Pool-0_1    │                        ▎    ▎    ▎    ▎    ▎     │   0% busy      |
         |A reentrant │              ·    · ── 2 at once ═────═────═──  ·│ open           |
-        |  dumm…_srv │                     ▲s──── runs 5.0 s ───────◂   │ 1 call, 5.0 s  |
+        |  dummy_ser…│                     ▲s──── runs 5.0 s ───────◂   │ 1 call, 5.0 s  |
         |  timer     │              ▎    ▎    ▎    ▎    ▎    ▎    ▎    ▎│ on time        |
         |seconds     │         0         2         4         6      now▲│ 200 ms/col     |
         """
