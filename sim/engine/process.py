@@ -62,7 +62,8 @@ from sim.ros import importing
 from sim.ros.middleware.contents import Contents
 from sim.ros.middleware.host import Host, install
 from sim.ros.middleware.process import simulate_processes
-from sim.trace.events import Notice, Printed, RunStarted, Severity
+from sim.trace.events import Notice, NoticeKind, Printed, RunStarted, Severity
+from sim.trace.events.fields import SourcePlace
 
 if TYPE_CHECKING:
     from sim.shell import OnExit, Running
@@ -229,8 +230,11 @@ class Engine:
             self._exit_process(outcome.status)  # a program forked, and this is the other one
         self._shutdown.finish(outcome)
 
-    def _tell_of_error(self, sentence: str) -> None:
-        self._outbox.record(Notice(self._clock.now(), Severity.ERROR, sentence))
+    def _tell_of_error(self, sentence: str, thread_died: str, place: SourcePlace) -> None:
+        kind = NoticeKind.THREAD_DIED if thread_died else NoticeKind.OTHER
+        self._outbox.record(
+            Notice(self._clock.now(), Severity.ERROR, sentence, kind=kind, problem=thread_died, place=place)
+        )
 
     def _look_at_waits(self) -> int | None:
         assert self._endless is not None

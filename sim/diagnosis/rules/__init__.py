@@ -5,7 +5,13 @@ from sim.diagnosis.rules.actions import CancelIgnored, GoalNeverExecuted
 from sim.diagnosis.rules.clocks import AlwaysDue, ClockNeverStarts, TimesKept
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
 from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing, WaitsForLock
-from sim.diagnosis.rules.errors import ExceptionCaught, ExceptionSwallowed, ProgramRaised, SpinRaised
+from sim.diagnosis.rules.errors import (
+    ExceptionCaught,
+    ExceptionSwallowed,
+    ProgramRaised,
+    SpinRaised,
+    ThreadRaised,
+)
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.leaks import NeverDestroyed
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, SentTooEarly, StaleData
@@ -43,6 +49,7 @@ RULES: tuple[Rule, ...] = (
     StaysInLoop(),
     ProgramRaised(),
     SpinRaised(),
+    ThreadRaised(),
     NodeNeverSpins(),
     NobodyOffers(),
     QosMismatch(),

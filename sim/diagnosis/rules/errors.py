@@ -13,7 +13,7 @@ from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of, raised
 from sim.diagnosis.words import listed, often, who
 from sim.interpreter.exception_text import UNREADABLE
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import EntityId, EntityKind, Reason, RunEnded
+from sim.trace.events import EntityId, EntityKind, Notice, NoticeKind, Reason, RunEnded
 from sim.trace.model import AxisMarkKind, EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -181,6 +181,36 @@ class SpinRaised(Rule):
             f"correct the line, or catch the exception in {subject}",
             line_location(*span.raised_at) or place_of(found.subject, timeline),
         )
+
+
+class ThreadRaised(Rule):
+    """An exception ended a thread of the program's own, unless it came out of a callback: that is told."""
+
+    id = "thread-raised"
+    summary = "an exception ends a thread, and the program goes on without it"
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each line once, as the engine reports it."""
+        for notice in view.timeline.notices:
+            if notice.kind is NoticeKind.THREAD_DIED and notice.t <= view.end:
+                about = f"{notice.place[0]}:{notice.place[1]}"
+                yield Finding(self, notice.t, notice.t, about=about, event=notice, detail=notice.problem)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        notice = found.event
+        assert isinstance(notice, Notice)
+        return Explanation(
+            f"a thread of the program ended by {found.detail}, and the rest went on without it",
+            "Python prints what a thread raises, and ends that thread alone",
+            "correct the line, or catch the exception in the thread, log it, and go on",
+            line_location(*notice.place),
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant if a callback raised it."""
+        spans = (timeline.spans_of(each, Window(0, found.at + 1))[-1:] for each in timeline.entities)
+        raised = any(span.error == found.detail for (span,) in filter(None, spans))
+        return None if raised else super().weigh(found, timeline)
 
 
 class ExceptionSwallowed(Rule):

@@ -8,23 +8,25 @@ from typing import Any
 
 from sim.engine.failures.failure import place_of
 from sim.interpreter.exception_text import error_line
+from sim.probes.own_code import raised_at
+from sim.trace.events.fields import SourcePlace
 
-Tell = Callable[[str], None]
+Tell = Callable[[str, str, SourcePlace], None]
 
 
 def report_uncaught(tell: Tell, path: str, folder: str) -> None:
     """Print the tracebacks of such exceptions, and pass one sentence for each source line to ``tell``.
 
-    ``path`` is the program's file; files in ``folder`` also count as the learner's own. Exceptions from
-    outside these files are only printed.
+    It also gets the exception if that ended a thread, else "", and its line. ``path`` is the program's file;
+    files in ``folder`` also count as the learner's own. Exceptions from outside these files are only printed.
     """
     told: set[str] = set()
 
-    def say(error: BaseException, what_follows: str) -> None:
+    def say(error: BaseException, what_follows: str, thread_died: str = "") -> None:
         place = place_of(error, path, folder)
         if place and place not in told:
             told.add(place)
-            tell(f"{place}: {error_line(error)}; {what_follows}")
+            tell(f"{place}: {error_line(error)}; {what_follows}", thread_died, raised_at(error))
 
     def of_thread(failed: threading.ExceptHookArgs) -> None:
         error = failed.exc_value
@@ -32,7 +34,7 @@ def report_uncaught(tell: Tell, path: str, folder: str) -> None:
             return
         name = "a thread" if failed.thread is None else failed.thread.name
         if not isinstance(error, KeyboardInterrupt):
-            say(error, f"{name} ended by it, and the rest goes on")
+            say(error, f"{name} ended by it, and the rest goes on", error_line(error))
         sys.stderr.write(f"Exception in thread {name}:\n")
         traceback.print_exception(error)
 

@@ -92,6 +92,8 @@ class NoticeKind(StrEnum):
     """A callback asks a future for its result as soon as the request is sent, so it is None."""
     REFUSAL_OVERLOOKED = "refusal overlooked"
     """A parameter is refused, and the program makes nothing of the answer that says so."""
+    THREAD_DIED = "thread died"
+    """An exception ended a thread that is the program's own; ``problem`` is the exception."""
     PUBLISHERS_KEPT = "publishers kept"
     """Callbacks have made several publishers at one line, and destroyed none."""
     UNMATCHED = "unmatched"
