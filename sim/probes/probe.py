@@ -189,10 +189,9 @@ class Probe:
         """The entity whose callback runs on the calling thread; 0 for none."""
         return self._here.entity
 
-    def running_here(self) -> RunningCallback | None:
-        """The callback that runs on the calling thread."""
-        here = self._here
-        return RunningCallback(here.entity, here.thread, here.begun) if here.entity else None
+    def running_here(self) -> RunningCallback:
+        """The callback that runs on the calling thread; its entity is 0 for none."""
+        return RunningCallback(self._here.entity, self._here.thread, self._here.begun)
 
     def running(self) -> dict[int, RunningCallback]:
         """The callbacks that run now, by the identifier of their thread; any thread may call this."""
