@@ -124,6 +124,11 @@ _KNOWN = tuple(
             r"end that callback with: return SetParametersResult(successful=True)",
         ),
         (
+            r"TypeError: CallbackGroup\.add_entity\(\) missing 1 required positional argument: 'entity'",
+            r"the class of a callback group was handed over in place of a group",
+            r"make a group of the class by parentheses, such as ReentrantCallbackGroup()",
+        ),
+        (
             _NO_FLOAT.pattern,
             r"a field of type float takes no int, and no bool: 1 is an int",
             r"write a float: 1.0 in place of 1, or float(...)",

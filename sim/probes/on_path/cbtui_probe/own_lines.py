@@ -46,7 +46,8 @@ def culprit_of(error: BaseException, is_own: IsOwn) -> tuple[str, int, str] | No
 
 
 def _rejected_callback(error: BaseException, frame: FrameType) -> tuple[str, int, str] | None:
-    if not any(each in str(error) for each in ("positional argument", "callback should")):
+    text = str(error)
+    if "add_entity()" in text or not any(each in text for each in ("positional argument", "callback should")):
         return None
     inside = frame.f_locals
     caller = inside.get("self")
@@ -101,8 +102,11 @@ def _hiding_attribute(error: BaseException, frame: FrameType, line: int) -> tupl
 
 
 def _used(frame: FrameType, line: int) -> Iterator[tuple[Any, type, tuple[type, ...], str]]:
-    """The nodes at hand at a line, with ``Node``, the own classes made of it, and a name of its there."""
-    used = re.findall(r"\.(\w+)", linecache.getline(frame.f_code.co_filename, line))
+    """The nodes at hand at a line, with ``Node``, the own classes made of it, and a name of its there.
+
+    Every class may have an ``__init__`` and the like of its own.
+    """
+    used = re.findall(r"\.(?!__)(\w+)", linecache.getline(frame.f_code.co_filename, line))
     for node in frame.f_locals.values():
         classes = type(node).__mro__
         base = next((each for each in classes if (each.__module__, each.__name__) == _NODE), None)
