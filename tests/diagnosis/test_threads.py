@@ -8,6 +8,7 @@ from sim.ros.scheduling.callback_groups import (
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
+from sim.ros.scheduling.executors import MultiThreadedExecutor
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, executor_of, spin
 from tests.support.simulation import Simulation
 
@@ -48,6 +49,17 @@ def test_more_threads_than_ever_needed_are_remarked_on() -> None:
     run = two_timers(two_groups(), threads=4)
     assert rules(run) == ["threads-never-used"]
     assert run.explained("threads-never-used").what == "2 of 4 threads were ever needed at once"
+
+
+def test_threads_are_not_counted_where_a_callback_blocks_in_a_call() -> None:
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        node.create_service(SetBool, "/serve", lambda request, response: response)
+        client = node.create_client(SetBool, "/serve", callback_group=ReentrantCallbackGroup())
+        node.create_timer(1.0, lambda: client.call(SetBool.Request()), MutuallyExclusiveCallbackGroup())
+        spin(node, 4)
+
+    assert rules(diagnosed(program, until=5.0)) == []
 
 
 def test_threads_of_an_executor_are_not_judged_by_those_of_others() -> None:
@@ -92,6 +104,27 @@ def test_a_reentrant_group_changes_nothing_where_there_is_one_thread() -> None:
 
 def test_the_default_groups_of_several_nodes_are_nobodys_choice() -> None:
     assert rules(two_timers((None, None), threads=None, nodes=("a", "b"))) == []
+
+
+def test_the_group_of_a_rate_is_nobodys_choice() -> None:
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(1.0, lambda: None)
+        node.create_rate(5.0)
+        spin(node, None)
+
+    assert rules(diagnosed(program, until=5.0)) == []
+
+
+def test_the_threads_of_an_executor_that_never_spins_are_not_counted() -> None:
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(1.0, lambda: None)
+        node.create_timer(1.0, lambda: None)
+        node.executor = MultiThreadedExecutor(2)
+        spin(node, None)
+
+    assert rules(diagnosed(program, until=5.0)) == []
 
 
 def test_one_thread_and_the_default_group_are_well() -> None:

@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, is_models, place_of
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, thread_count, threads_needed
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind, GroupId, GroupKind, NodeId
-from sim.trace.model import EntityInfo, ExecutorInfo, GroupInfo, Nanoseconds
+from sim.trace.model import EntityInfo, ExecutorInfo, GroupInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _WARMED_UP: Nanoseconds = SECOND
@@ -16,7 +16,11 @@ _WARMED_UP: Nanoseconds = SECOND
 
 
 class ThreadsNeverUsed(Rule):
-    """An executor has more threads than ever ran callbacks at once; not told where others run some, too."""
+    """An executor has more threads than ever ran callbacks at once; not told where others run some, too.
+
+    Nor where a callback was blocked in a call: its reply needs a thread besides, and in another run others
+    may be blocked meanwhile.
+    """
 
     id = "threads-never-used"
     summary = "fewer threads would have done"
@@ -28,7 +32,7 @@ class ThreadsNeverUsed(Rule):
         threads = sum(each.threads for each in _with_workers(view.timeline))
         needed = view.threads_needed
         is_judged = view.end >= _WARMED_UP and 0 < needed < threads and _only_group(view.timeline) is None
-        if is_judged and _runs_on_one_executor(view):
+        if is_judged and _runs_on_one_executor(view) and not _blocks_in_calls(view.timeline):
             yield Finding(self, 0, view.end, size=needed, detail=str(threads))
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
@@ -76,7 +80,9 @@ class GroupsChangeNothing(Rule):
             )
         goals = _groups_of_goals(timeline)
         groups = [
-            each for each in timeline.groups.values() if each.node == subject.node and each.id not in goals
+            each
+            for each in timeline.groups.values()
+            if each.node == subject.node and each.id not in goals and _callbacks(timeline, each)
         ]
         plural = len(groups) > 1
         named = listed(_abbreviated([each.letter for each in groups]))
@@ -109,12 +115,19 @@ def _groups_of_goals(timeline: Timeline) -> set[GroupId]:
 
 
 def _with_workers(timeline: Timeline) -> list[ExecutorInfo]:
-    return [each for each in timeline.executors.values() if each.threads > 1]
+    """The executors with several threads that have begun to run callbacks on them."""
+    at_work = {each.executor for each in timeline.threads.values()}
+    return [each for each in timeline.executors.values() if each.threads > 1 and each.id in at_work]
 
 
 def _runs_on_one_executor(view: TimelineView) -> bool:
     threads = view.timeline.threads.values()
     return len({each.executor for each in threads if view.timeline.spans_on(each.id, view.window)}) == 1
+
+
+def _blocks_in_calls(timeline: Timeline) -> bool:
+    whole = Window(0, timeline.end + 1)
+    return any(each.entity for thread in timeline.threads for each in timeline.blocks_on(thread, whole))
 
 
 def _only_group(timeline: Timeline) -> GroupInfo | None:
@@ -143,5 +156,5 @@ def _node_with_groups(timeline: Timeline) -> EntityInfo | None:
 
 def _callbacks(timeline: Timeline, group: GroupInfo) -> list[EntityInfo]:
     """The first two entities of a group that a program made: those with a callback, and clients."""
-    members = timeline.group_members(group.id)
-    return list(islice((each for each in members if each.callback or each.kind is EntityKind.CLIENT), 2))
+    own = (each for each in timeline.group_members(group.id) if not is_models(each))
+    return list(islice((each for each in own if each.callback or each.kind is EntityKind.CLIENT), 2))
