@@ -2,6 +2,8 @@
 
 import ast
 import builtins
+import linecache
+import re
 import sys
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -80,9 +82,17 @@ def _misplaced(name: str, line: int, owner: str) -> str:
     return f"the {name}() of line {line} is indented into the class {owner}; move it to the left margin"
 
 
-def never_spun() -> str:
+def never_spun(path: str) -> str:
     """Return advice if the calling thread's program created callbacks and never spun; else an empty text."""
     process = current_process()
     if process.callbacks == 0 or process.spins > 0:
         return ""
+    if any(map(_SPINS.match, linecache.getlines(path))):
+        return (
+            "the program returned without coming to its spin(), so none of its callbacks ran; "
+            "an exception may have been caught on the way"
+        )
     return "the program returned without spinning, so none of its callbacks ran; end it with rclpy.spin(node)"
+
+
+_SPINS = re.compile(r"[^#]*\bspin(_once|_until_future_complete)?\(")

@@ -110,7 +110,7 @@ def _outcome_of(program: ProgramSpec) -> ProgramOutcome:
         traceback.print_exception(error)
         told = failure(error, program.path, program.folder)
         return ProgramOutcome(told.sentence, failed=True, status=1, error=error_line(error), failure=told)
-    return ProgramOutcome(never_spun() or _returned(), failed=status != 0, status=status)
+    return ProgramOutcome(never_spun(program.path) or _returned(), failed=status != 0, status=status)
 
 
 def _returned() -> str:

@@ -373,6 +373,12 @@ def test_a_file_that_runs_alone_is_told_of_the_same_way_and_fails(
             "the program returned without spinning, so none of its callbacks ran; "
             "end it with rclpy.spin(node)",
         ),
+        (
+            HEAD + "rclpy.init()\nnode = Node('n')\nnode.create_timer(1.0, print)\n"
+            "try:\n    node.get_parameter('none')\n    rclpy.spin(node)\nexcept Exception:\n    pass",
+            "the program returned without coming to its spin(), so none of its callbacks ran; "
+            "an exception may have been caught on the way",
+        ),
         (b"\xef\xbb\xbfprint('byte order mark')", "the program returned"),
         ("# -*- coding: latin-1 -*-\nprint('caf\xe9')".encode("latin-1"), "the program returned"),
     ),
