@@ -52,6 +52,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "wait_for_service(",
             "call /motor_power, which is offered",
         ),
+        (
+            "await_in_vain",
+            "group-starvation",
+            "await self.ready",
+            "give tick a callback group of its own, and let on_start complete it",
+        ),
         ("wait_for_event", "endless-wait", "self.opened.wait()", "give go a callback group of its own"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("call_in_script", "self-made-deadlock", "client.call(", "give ask a callback group of its own"),

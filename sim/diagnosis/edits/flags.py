@@ -25,14 +25,16 @@ def setters(source: SourceEditor, line: int) -> tuple[str, ...]:
 
 @asked_of_file
 def event_setters(source: SourceEditor, line: int) -> tuple[str, ...]:
-    """Return the functions that set the event, or notify the condition, for which a line waits."""
-    waits = (each.func for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0))
+    """Return the functions that set the event or future, or notify the condition, for which a line waits."""
+    there = [each for each in source.nodes(ast.expr) if each.lineno <= line <= (each.end_lineno or 0)]
+    waits = (each.func for each in there if isinstance(each, ast.Call))
     awaited = {
         ast.unparse(each.value)
         for each in waits
         if isinstance(each, ast.Attribute) and each.attr in ("wait", "wait_for")
     }
-    wakes = {f"{each}.{name}" for each in awaited for name in ("set", "notify", "notify_all")}
+    awaited |= {ast.unparse(each.value) for each in there if isinstance(each, ast.Await)}
+    wakes = {f"{each}.{name}" for each in awaited for name in ("set", "notify", "notify_all", "set_result")}
     return tuple(
         function.name
         for function in source.nodes(ast.FunctionDef)

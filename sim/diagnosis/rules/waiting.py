@@ -33,10 +33,10 @@ from sim.diagnosis.words import (
     who,
     who_waits,
 )
-from sim.quantities.durations import duration
+from sim.quantities.durations import duration, timestamp
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
-from sim.trace.model import EntityInfo, Nanoseconds, Window
+from sim.trace.model import AWAIT, EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 HALF_A_SECOND = SECOND // 2
@@ -133,18 +133,26 @@ class GroupStarvation(_KeptWaiting):
         cure = f"{room.words(timeline)}; or let {culprit} return sooner"
         if awaited:
             why, cure = f"{why}, and {culprit} waits for what {listed(awaited)} sets", room.words(timeline)
-        busy = ""
+        group, busy = group_of(found.subject, timeline), ""
         if _others_waiting(found, Reason.NO_FREE_WORKER, timeline):
             is_only = threads_for([found.culprit], found.until, timeline) == 1
             busy = f", on {only_thread(timeline)}" if is_only else ", and all threads were busy"
-        return self._explained(
-            found,
-            timeline,
-            f"{group_of(found.subject, timeline)} was held by {culprit}{busy}",
-            why,
-            cure,
-            room,
-        )
+        held = f"{group} was held by {culprit}{busy}"
+        if (since := _awaits_in_vain_since(found, timeline)) is not None:
+            held = f"{culprit} awaits what has not come since {timestamp(since)}, and keeps {group} meanwhile"
+            room = Remedy((found.culprit,))
+            completes = (
+                f"let {listed(setters)} complete it" if setters else "make sure that something completes it"
+            )
+            cure = f"{room.words(timeline)}, and {completes}"
+        return self._explained(found, timeline, held, why, cure, room)
+
+
+def _awaits_in_vain_since(found: Finding, timeline: Timeline) -> Nanoseconds | None:
+    """When the culprit began an await that lasts, of a future that is not the reply to a call of its."""
+    last = timeline.positions_of(found.culprit, Window(found.at, found.until + 1))[-1:]
+    asks = any(each.caller == found.culprit for each in timeline.moment(found.until).pending_calls)
+    return next((each.start for each in last if each.call == AWAIT and each.end is None and not asks), None)
 
 
 class NoFreeWorker(_KeptWaiting):
