@@ -218,7 +218,7 @@ def test_what_asyncio_misses_in_a_callback_is_told_with_what_to_await_instead(th
         ),
         (
             "AttributeError: property 'speed' of 'Motor' object has no setter",
-            "an exception that no except clause takes ends the program, and spin() with it",
+            "an exception that no except clause takes ends the program",
             "correct the line, or catch the exception there",
         ),
     ],
@@ -231,6 +231,38 @@ def test_an_exception_that_rclpy_makes_of_a_usual_slip_is_told_in_its_terms(
     (found,) = diagnose(timeline)
     told = found.rule.explain(found, timeline)
     assert (told.why, told.cure) == (why, cure)
+
+
+GIVE_DEPTH = "give it as the last argument, such as 10"
+
+
+@pytest.mark.parametrize(
+    ("slip", "cure"),
+    [
+        (lambda node: type(node)(), "give it one: super().__init__('my_node')"),
+        (lambda node: node.create_publisher(Int32, "t"), "give it as the last argument, such as 10"),
+        (
+            lambda node: node.create_subscription(Int32, "t", print),
+            "give it as the last argument, such as 10",
+        ),
+        (
+            lambda node: node.create_subscription(Int32, "t", print, 10, ReentrantCallbackGroup()),
+            "name the argument: callback_group=...",
+        ),
+        (
+            lambda node: node.create_timer(node.get_name, 0.5),
+            "if this makes a timer, swap the two: create_timer(0.5, self.tick)",
+        ),
+        (
+            lambda node: node.create_publisher(Int32, "t", 10).publish(3),
+            "make a Int32(), set its fields, and publish that",
+        ),
+    ],
+)
+def test_a_slip_in_a_call_of_rclpy_is_told_with_what_the_call_wants(
+    slip: Callable[[Any], object], cure: str
+) -> None:
+    assert explained_end(lambda node: once(node, 1.0, lambda: slip(node))).cure == cure
 
 
 def test_a_timer_that_was_given_what_a_call_returned_is_told_with_its_own_line() -> None:

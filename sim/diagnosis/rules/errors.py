@@ -47,7 +47,9 @@ class ProgramRaised(Rule):
         ended = timeline.ended
         assert ended is not None
         place = line_location(*ended.place)
-        why = "an exception that no except clause takes ends the program, and spin() with it"
+        has_spun = any(each.executor for each in timeline.threads.values())
+        why = "an exception that no except clause takes ends the program"
+        why += ", and spin() with it" if has_spun else ""
         cure = "correct the line, or catch the exception there"
         if ended.exception in UNREADABLE:
             why, cure = "Python could not read the file, so nothing of it ran", "correct the line"
@@ -132,6 +134,31 @@ _KNOWN = tuple(
             _NO_FLOAT.pattern,
             r"a field of type float takes no int, and no bool: 1 is an int",
             r"write a float: 1.0 in place of 1, or float(...)",
+        ),
+        (
+            r"TypeError: Node\.__init__\(\) missing 1 required positional argument: 'node_name'",
+            r"a node has a name, by which others know it",
+            r"give it one: super().__init__('my_node')",
+        ),
+        (
+            r"TypeError: Node\.(create_\w+)\(\) missing 1 required positional argument: 'qos_profile'",
+            r"\1() has to know how many messages a queue holds, or a whole QoSProfile",
+            r"give it as the last argument, such as 10",
+        ),
+        (
+            r"TypeError: Node\.(create_\w+)\(\) takes \d+ positional arguments but \d+ were given",
+            r"\1() takes the callback group, and what follows it, by name alone",
+            r"name the argument: callback_group=...",
+        ),
+        (
+            r"TypeError: float\(\) argument must be a string or a real number, not '(?:method|function)'",
+            r"a function is no number; create_timer() takes the period in seconds first, then the callback",
+            r"if this makes a timer, swap the two: create_timer(0.5, self.tick)",
+        ),
+        (
+            r"TypeError: Expected <class '[\w.]+\.(\w+)'>, got <class '[\w.]+'>",
+            r"a publisher of \1 publishes messages of that class, and no bare values",
+            r"make a \1(), set its fields, and publish that",
         ),
         (
             r"EOFError: EOF when reading a line",
