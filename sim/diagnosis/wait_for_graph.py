@@ -154,6 +154,12 @@ class WaitForGraph:
             call = self._call(number)
             if call is not None and self._is_answered(call):
                 yield call
+        for wait in self._moment.waiting.values():  # the replies that came since an action's client waits
+            action, _, end = self._timeline.entities[wait.entity].name.partition(" ")
+            since = Window(max(0, wait.since - 1), self._at + 1)
+            for call in self._timeline.calls_within(since) if end == "client" else ():
+                if call.service.startswith(f"{action}/_action/") and self._is_answered(call):
+                    yield call
 
     def _is_answered(self, call: Call) -> bool:
         return call.replied is not None and call.replied <= self._at

@@ -156,6 +156,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("lock_acquired_twice", "self-made-deadlock", "self.lock.acquire()", "threading.RLock"),
         ("lock_taken_twice", "self-made-deadlock", "with self.lock", "threading.RLock"),
         ("no_response", "unreturned-response", "def answer(", "return response"),
+        (
+            "goal_awaited_in_one_group",
+            "self-made-deadlock",
+            "await self.client",
+            "give send a callback group",
+        ),
         ("goal_in_timer", "self-made-deadlock", "self.client.send_goal(", "add_done_callback"),
         ("call_in_parameter_callback", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("held_group", "group-starvation", "time.sleep(0.8)", "a callback group of its own"),

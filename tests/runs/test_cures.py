@@ -144,6 +144,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ),
         ("lock_acquired_twice", ["make the lock a threading.RLock (diff)"]),
         ("sensor_misspelt", ["subscribe to /scan (diff)"]),
+        ("goal_awaited_in_one_group", ["give send a callback group of its own"]),
         ("messages_in_bursts", ["give count a queue of 5 (diff)"]),
         ("call_in_parameter_callback", [APART.replace("tick", "tune")]),
         ("no_response", ["end answer with: return response (diff)"]),

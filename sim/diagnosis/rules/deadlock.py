@@ -304,7 +304,7 @@ def _is_long(blocked: Blocked, until: Nanoseconds) -> bool:
 
 def _call_waits_for_group(view: TimelineView) -> bool:
     """Whether a request or reply waits for a group, as behind a callback of that group that awaits it."""
-    for entity in view.entities(EntityKind.CLIENT, EntityKind.SERVICE):
+    for entity in view.entities(EntityKind.CLIENT, EntityKind.SERVICE, EntityKind.WAITABLE):
         for wait in view.waits(entity.id)[-1:]:
             held = wait.parts[-1].reason is Reason.GROUP_HELD
             if wait.is_open and held and wait.until - wait.since >= SETTLES:
