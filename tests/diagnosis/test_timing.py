@@ -89,6 +89,52 @@ def test_a_service_that_serves_two_at_once_is_a_remark() -> None:
     assert run.problems() == set()
 
 
+SERVES_LOCKED = """
+import time
+from threading import Lock
+
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+
+class Server(Node):
+    def __init__(self):
+        super().__init__("server")
+        self.number = 0
+        self.lock = Lock()
+        group = ReentrantCallbackGroup()
+        self.create_service(SetBool, "s", self.serve, callback_group=group)
+        self.client = self.create_client(SetBool, "s", callback_group=group)
+        self.create_timer(1.0, self.ask, callback_group=group)
+
+    def serve(self, request, response):
+        with self.lock:
+            self.number += 1
+        time.sleep(1.5)
+        return response
+
+    def ask(self):
+        self.client.call_async(SetBool.Request())
+
+
+rclpy.init()
+executor = MultiThreadedExecutor(3)
+executor.add_node(Server())
+executor.spin()
+"""
+
+
+@pytest.mark.parametrize(("guard", "is_told"), [("with self.lock:", False), ("if True:", True)])
+def test_calls_that_overlap_are_well_where_a_lock_guards_all_that_they_change(
+    guard: str, *, is_told: bool, tmp_path: Path
+) -> None:
+    run = run_program(tmp_path, SERVES_LOCKED.replace("with self.lock:", guard), seconds=5.0)
+    assert is_told == any(each.rule.id == "overlapping-callback" for each in diagnose(run.timeline))
+
+
 def sleeper_and_sensor(*, same_group: bool, length: float = 2.0) -> Diagnosed:
     def program(simulation: Simulation) -> None:
         node = Node("n")

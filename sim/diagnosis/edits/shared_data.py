@@ -1,8 +1,10 @@
-"""What the methods of a class share: whether one of them uses an attribute that another one changes."""
+"""What the methods of a class share: whether one uses what another one changes, and what locks guard."""
 
 import ast
+from collections import defaultdict
 from collections.abc import Iterator
 
+from sim.diagnosis.edits.locks import keeps_lock
 from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.source_editor import Function, NotSimpleError, SourceEditor
 
@@ -20,7 +22,21 @@ def uses_what_is_set(source: SourceEditor, setter: int, user: int) -> bool | Non
         one, other = _Reach(source, setter), _Reach(source, user)
     except NotSimpleError:
         return None
-    return one.owner is not other.owner or bool(one.changed & other.used)
+    return one.owner is not other.owner or bool(one.changed & other.used.keys())
+
+
+@asked_of_file
+def guards_what_it_changes(source: SourceEditor, line: int) -> bool:
+    """Return whether a method changes anything of its node's, and uses it inside ``with`` of a lock alone.
+
+    ``line`` is one of its lines. What methods of the class do that it calls counts as its.
+    """
+    try:
+        reach = _Reach(source, line)
+    except NotSimpleError:
+        return False
+    lines = [each for name in reach.changed for each in reach.used[name]]
+    return bool(lines) and all(keeps_lock(source, each) for each in lines)
 
 
 class _Reach:
@@ -31,7 +47,8 @@ class _Reach:
     """
 
     def __init__(self, source: SourceEditor, line: int) -> None:
-        self.used: set[str] = set()
+        self.used: defaultdict[str, list[int]] = defaultdict(list)
+        """The lines of each."""
         self.changed: set[str] = set()
         first = source.function_at(line)
         owner = source.owner_of(first)
@@ -56,7 +73,7 @@ class _Reach:
             if isinstance(each, ast.Global | ast.Nonlocal):
                 raise NotSimpleError
             if isinstance(each, ast.Name) and each.id in self._globals:
-                self.used.add(each.id)
+                self.used[each.id].append(each.lineno)
                 self.changed.add(each.id)
             if not (isinstance(each, ast.Name) and each.id == itself):
                 continue
@@ -67,7 +84,7 @@ class _Reach:
             parent = parents[attribute]
             if isinstance(parent, ast.Call) and parent.func is attribute:
                 continue
-            self.used.add(attribute.attr)
+            self.used[attribute.attr].append(attribute.lineno)
             if _changes(attribute, parents):
                 self.changed.add(attribute.attr)
 

@@ -5,6 +5,7 @@ from itertools import pairwise
 
 from sim.diagnosis.edits.profiles import set_depth
 from sim.diagnosis.edits.replies import go_on_in_done_callback
+from sim.diagnosis.edits.shared_data import guards_what_it_changes
 from sim.diagnosis.rule import (
     Explanation,
     Finding,
@@ -76,9 +77,17 @@ class OverlappingCallback(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
-        """A problem where timers or subscriptions, hardly meant to overlap, wait for no lock meanwhile."""
-        meant = entity_of(found, timeline).kind not in (EntityKind.TIMER, EntityKind.SUBSCRIPTION)
-        return Weight.REMARK if meant or _lock_line(found, timeline) is not None else Weight.PROBLEM
+        """A problem where timers or subscriptions, hardly meant to overlap, wait for no lock meanwhile.
+
+        Irrelevant where the source shows a lock around all that matters, for which no call waits.
+        """
+        entity = entity_of(found, timeline)
+        if _lock_line(found, timeline) is not None:
+            return Weight.REMARK
+        if guards_what_it_changes(entity.file, entity.first_line):
+            return None
+        is_meant = entity.kind not in (EntityKind.TIMER, EntityKind.SUBSCRIPTION)
+        return Weight.REMARK if is_meant else Weight.PROBLEM
 
 
 def _lock_line(found: Finding, timeline: Timeline) -> int | None:

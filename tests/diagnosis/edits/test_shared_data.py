@@ -5,7 +5,7 @@ from textwrap import dedent
 
 import pytest
 
-from sim.diagnosis.edits.shared_data import uses_what_is_set
+from sim.diagnosis.edits.shared_data import guards_what_it_changes, uses_what_is_set
 
 LOOK_AND_KEEP = """\
 def look(self): return self.x
@@ -77,3 +77,43 @@ def test_a_list_of_the_module_is_shared(tmp_path: Path) -> None:
 def test_what_the_source_does_not_tell_is_not_known(tmp_path: Path, hear: str, base: str) -> None:
     assert used(tmp_path, hear, "pass", base=base) is None
     assert uses_what_is_set(str(tmp_path / "gone.py"), 1, 2) is None
+
+
+@pytest.mark.parametrize(
+    ("job", "is_guarded"),
+    [
+        ("with self.lock: self.x += 1", True),
+        ("with self.lock: self.keep(1)", False),
+        ("self.x += 1", False),
+        ("if self.x: pass", False),
+        ("self.tell(self.x)", False),
+        ("with self.lock: print(self.x); self.x = 1", True),
+        ("print(self.x); self.guarded()", False),
+        ("self.guarded()", True),
+        ("with self.file: self.x += 1", False),
+    ],
+)
+def test_what_is_changed_is_guarded_where_each_use_of_it_is_inside_a_lock(
+    tmp_path: Path, job: str, *, is_guarded: bool
+) -> None:
+    file = tmp_path / "node.py"
+    file.write_text(
+        dedent(
+            f"""\
+            class Own(Node):
+                def __init__(self):
+                    self.lock = Lock()
+
+                def job(self):
+                    {job}
+
+                def guarded(self):
+                    with self.lock:
+                        self.x += 1
+
+                def keep(self, x):
+                    self.x = x
+            """
+        )
+    )
+    assert guards_what_it_changes(str(file), 5) is is_guarded
