@@ -76,7 +76,7 @@ class OverlappingCallback(Rule):
             line_of(found.subject, Window(found.at, found.until), timeline),
         )
 
-    def weigh(self, found: Finding, timeline: Timeline) -> Weight:
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """A problem where timers or subscriptions, hardly meant to overlap, wait for no lock meanwhile.
 
         Irrelevant where the source shows a lock around all that matters, for which no call waits.
