@@ -7,6 +7,7 @@ import pytest
 from cbtui.runs.headless.headless import run_headless
 from sim.diagnosis import diagnose
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
+from sim.trace.timeline import Timeline
 from tests.support.engine_runs import SECOND, Run, program_setup, run_program, run_to_end
 
 TALKER = """
@@ -71,15 +72,14 @@ def problems(run: Run) -> list[str]:
     return [f"{each.rule.id}: {each.rule.explain(each, timeline).what}" for each in found]
 
 
-def test_a_program_that_ended_neither_waits_nor_loses_messages(tmp_path: Path) -> None:
-    paths = []
-    for name, source in (("talker.py", TALKER), ("listener.py", LISTENER)):
-        path = tmp_path / name
+def run_together(folder: Path, *sources: str) -> Run:
+    """Run programs together, named by their places: ``node0.py``, ``node1.py``."""
+    paths = [folder / f"node{place}.py" for place, _ in enumerate(sources)]
+    for path, source in zip(paths, sources, strict=True):
         path.write_text(source)
-        paths.append(path)
-    run = run_to_end(
+    return run_to_end(
         RunSetup(
-            title="two",
+            title="together",
             programs=tuple(ProgramSetup(str(path)) for path in paths),
             clock="virtual",
             speed=None,
@@ -87,7 +87,24 @@ def test_a_program_that_ended_neither_waits_nor_loses_messages(tmp_path: Path) -
             robot=RobotUse.NEVER,
         )
     )
-    assert problems(run) == []
+
+
+def test_a_program_that_ended_neither_waits_nor_loses_messages(tmp_path: Path) -> None:
+    assert problems(run_together(tmp_path, TALKER, LISTENER)) == []
+
+
+def test_an_exception_that_ends_one_of_two_programs_is_told_once_and_while_the_other_goes_on(
+    tmp_path: Path,
+) -> None:
+    run = run_together(tmp_path, TALKER, "raise KeyError")
+    told = "program-raised: the program raised KeyError"
+    assert problems(run) == [told]
+    before = Timeline()
+    before.extend([each for each in run.events if each.t <= SECOND])
+    (found,) = diagnose(before)
+    assert found.until < SECOND
+    explained = found.rule.explain(found, before)
+    assert (explained.what, str(explained.place)) == (told.partition(": ")[2], "node1.py:1")
 
 
 def test_a_deadlock_is_told_with_the_line_of_its_callback(tmp_path: Path) -> None:

@@ -19,33 +19,33 @@ from sim.trace.timeline import Timeline
 
 
 class ProgramRaised(Rule):
-    """An exception ended the program."""
+    """An exception ended the program, or one of several, which is told while the others go on."""
 
     id = "program-raised"
     summary = "an exception ends the program"
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield the exception, unless another rule finds it."""
-        ended = view.timeline.ended
+        """Yield the exceptions, but for those that another rule finds."""
         clashes = {(clash.file, clash.line) for clash in view.timeline.spin_clashes}
-        if ended is None or not ended.problem or tuple(ended.place) in clashes:
-            return
         last = (span for each in view.entities(EntityKind.SERVICE) for span in view.spans(each.id)[-1:])
-        if any(span.no_response and span.error == ended.error for span in last):
-            return
-        latest = (span for each in view.entities() for span in view.spans(each.id)[-1:])
-        raised = next((span for span in latest if span.error and span.error == ended.error), None)
-        at = ended.t if raised is None or raised.end is None else raised.end  # others may have gone on
-        worker = raised.thread if raised and is_worker(raised.thread, view.timeline) else 0
-        yield Finding(self, at, at, raised.entity if raised else 0, thread=worker)
+        unreturned = {span.error for span in last if span.no_response}
+        latest = [span for each in view.entities() for span in view.spans(each.id)[-1:] if span.error]
+        for ended in _ends_by_exceptions(view.timeline):
+            if tuple(ended.place) in clashes or ended.error in unreturned:
+                continue
+            raised = next((span for span in latest if span.error == ended.error), None)
+            at = ended.t if raised is None or raised.end is None else raised.end  # others may have gone on
+            worker = raised.thread if raised and is_worker(raised.thread, view.timeline) else 0
+            subject = raised.entity if raised else 0
+            yield Finding(self, at, at, subject, about=ended.reason, thread=worker, event=ended)
 
     def kind(self, found: Finding, timeline: Timeline) -> str:
         """Distinguish exceptions on a worker, which may be lost, from those that end the program at once."""
         return self.id if found.thread else "program-failed"
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        ended = timeline.ended
-        assert ended is not None
+        ended = found.event
+        assert isinstance(ended, RunEnded)
         place = line_location(*ended.place)
         has_spun = any(each.executor for each in timeline.threads.values())
         why = "an exception that no except clause takes ends the program"
@@ -77,6 +77,20 @@ class ProgramRaised(Rule):
             place = made_at(entity)
             remedies = by_edit(place, "hand over the function itself", hand_over_function)
         return Explanation(ended.problem, why, ended.advice or cure, place, remedies=remedies)
+
+
+def _ends_by_exceptions(timeline: Timeline) -> Iterator[RunEnded]:
+    """Yield how programs ended by exceptions: each of several that has, or the run's."""
+    told = set()
+    for each in timeline.notices:
+        if each.kind is NoticeKind.PROGRAM_RAISED:
+            told.add((each.problem, tuple(each.place)))
+            error = each.problem.removeprefix("the program raised ")
+            kind = error.partition(":")[0]
+            yield RunEnded(each.t, each.text, True, False, error, each.place, each.problem, each.advice, kind)
+    ended = timeline.ended
+    if ended is not None and ended.problem and (ended.problem, tuple(ended.place)) not in told:
+        yield ended
 
 
 def _used_too_soon(ended: RunEnded) -> str:

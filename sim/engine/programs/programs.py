@@ -13,6 +13,7 @@ from itertools import count
 from types import FrameType
 
 from sim.clock import AutoResetEvent
+from sim.engine.failures.failure import Failure
 from sim.engine.programs.ending import flush_files
 from sim.engine.programs.exit_functions import run_exit_functions
 from sim.engine.programs.program import ProgramOutcome, ProgramSpec, run_program
@@ -21,7 +22,7 @@ from sim.ros.context.context import end_contexts_by_signal
 from sim.ros.context.signals import deliver_sigint, deliver_sigterm
 from sim.ros.middleware.host import Host
 from sim.ros.middleware.process import Process
-from sim.trace.events import AnyEvent, Notice, ProcessAppeared, ProcessEnded, Severity
+from sim.trace.events import AnyEvent, Notice, NoticeKind, ProcessAppeared, ProcessEnded, Severity
 
 # Kept from before a clock replaces it.
 _set_handler = signal.signal
@@ -143,7 +144,7 @@ class ProgramSupervisor:
             if outcome.failed:
                 sentence = f"{running.process.label}: {outcome.sentence}"
                 self.failures.append(replace(outcome, sentence=sentence))
-                self.record(Notice(now, Severity.ERROR, sentence))
+                self.record(_notice(now, sentence, outcome.failure))
         running.on_exit(outcome)
         self.look()
 
@@ -217,3 +218,10 @@ def _at_sigterm(process: Process, number: int, _frame: FrameType | None) -> None
     if not deliver_sigterm(process):
         _set_handler(number, signal.SIG_DFL)
         signal.raise_signal(number)
+
+
+def _notice(now: int, sentence: str, failure: Failure | None) -> Notice:
+    if failure is None:
+        return Notice(now, Severity.ERROR, sentence)
+    kind, place = NoticeKind.PROGRAM_RAISED, (failure.file, failure.line)
+    return Notice(now, Severity.ERROR, sentence, 0, False, kind, failure.what, failure.advice, place)

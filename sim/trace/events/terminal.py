@@ -96,6 +96,8 @@ class NoticeKind(StrEnum):
     """An exception ended a thread that is the program's own; ``problem`` is the exception."""
     PUBLISHERS_KEPT = "publishers kept"
     """Callbacks have made several publishers at one line, and destroyed none."""
+    PROGRAM_RAISED = "program raised"
+    """One of several programs ended by an exception; the others go on."""
     UNMATCHED = "unmatched"
     """The run was asked to change a callback that the program does not have."""
     FORGED = "forged"
@@ -115,7 +117,7 @@ class Notice(TraceEvent, frozen=True, tag="notice"):
     kind: WireOnly[NoticeKind] = NoticeKind.OTHER
     """Its subject."""
     problem: WireOnly[str] = ""
-    """The part of ``text`` that says what is wrong, if a callback waits."""
+    """The part of ``text`` that says what is wrong, if a callback waits or a program raised."""
     advice: WireOnly[str] = ""
     """The part of ``text`` that says what to do about it."""
     place: WireOnly[SourcePlace] = ("", 0)
