@@ -233,7 +233,7 @@ class Engine:
     def _tell_of_error(self, sentence: str, thread_died: str, place: SourcePlace) -> None:
         kind = NoticeKind.THREAD_DIED if thread_died else NoticeKind.OTHER
         self._outbox.record(
-            Notice(self._clock.now(), Severity.ERROR, sentence, kind=kind, problem=thread_died, place=place)
+            Notice(self._clock.now(), Severity.ERROR, sentence, kind=kind, place=place, error=thread_died)
         )
 
     def _look_at_waits(self) -> int | None:

@@ -85,9 +85,10 @@ def _ends_by_exceptions(timeline: Timeline) -> Iterator[RunEnded]:
     for each in timeline.notices:
         if each.kind is NoticeKind.PROGRAM_RAISED:
             told.add((each.problem, tuple(each.place)))
-            error = each.problem.removeprefix("the program raised ")
-            kind = error.partition(":")[0]
-            yield RunEnded(each.t, each.text, True, False, error, each.place, each.problem, each.advice, kind)
+            kind = each.error.partition(":")[0]
+            yield RunEnded(
+                each.t, each.text, True, False, each.error, each.place, each.problem, each.advice, kind
+            )
     ended = timeline.ended
     if ended is not None and ended.problem and (ended.problem, tuple(ended.place)) not in told:
         yield ended
@@ -240,7 +241,7 @@ class ThreadRaised(Rule):
         for notice in view.timeline.notices:
             if notice.kind is NoticeKind.THREAD_DIED and notice.t <= view.end:
                 about = f"{notice.place[0]}:{notice.place[1]}"
-                yield Finding(self, notice.t, notice.t, about=about, event=notice, detail=notice.problem)
+                yield Finding(self, notice.t, notice.t, about=about, event=notice, detail=notice.error)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         notice = found.event

@@ -13,7 +13,6 @@ from itertools import count
 from types import FrameType
 
 from sim.clock import AutoResetEvent
-from sim.engine.failures.failure import Failure
 from sim.engine.programs.ending import flush_files
 from sim.engine.programs.exit_functions import run_exit_functions
 from sim.engine.programs.program import ProgramOutcome, ProgramSpec, run_program
@@ -144,7 +143,7 @@ class ProgramSupervisor:
             if outcome.failed:
                 sentence = f"{running.process.label}: {outcome.sentence}"
                 self.failures.append(replace(outcome, sentence=sentence))
-                self.record(_notice(now, sentence, outcome.failure))
+                self.record(_notice(now, sentence, outcome))
         running.on_exit(outcome)
         self.look()
 
@@ -220,8 +219,17 @@ def _at_sigterm(process: Process, number: int, _frame: FrameType | None) -> None
         signal.raise_signal(number)
 
 
-def _notice(now: int, sentence: str, failure: Failure | None) -> Notice:
+def _notice(now: int, sentence: str, outcome: ProgramOutcome) -> Notice:
+    failure = outcome.failure
     if failure is None:
         return Notice(now, Severity.ERROR, sentence)
-    kind, place = NoticeKind.PROGRAM_RAISED, (failure.file, failure.line)
-    return Notice(now, Severity.ERROR, sentence, 0, False, kind, failure.what, failure.advice, place)
+    return Notice(
+        now,
+        Severity.ERROR,
+        sentence,
+        kind=NoticeKind.PROGRAM_RAISED,
+        problem=failure.what,
+        advice=failure.advice,
+        place=(failure.file, failure.line),
+        error=outcome.error,
+    )

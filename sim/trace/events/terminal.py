@@ -93,7 +93,7 @@ class NoticeKind(StrEnum):
     REFUSAL_OVERLOOKED = "refusal overlooked"
     """A parameter is refused, and the program makes nothing of the answer that says so."""
     THREAD_DIED = "thread died"
-    """An exception ended a thread that is the program's own; ``problem`` is the exception."""
+    """An exception ended a thread that is the program's own."""
     PUBLISHERS_KEPT = "publishers kept"
     """Callbacks have made several publishers at one line, and destroyed none."""
     PROGRAM_RAISED = "program raised"
@@ -122,6 +122,8 @@ class Notice(TraceEvent, frozen=True, tag="notice"):
     """The part of ``text`` that says what to do about it."""
     place: WireOnly[SourcePlace] = ("", 0)
     """The program's own line that it is about, if it is about one."""
+    error: WireOnly[str] = ""
+    """The exception that ended a thread or a program of several, as ``ValueError: no scan``."""
 
 
 class KeyboardAsked(TraceEvent, frozen=True, tag="keyboard"):
