@@ -105,7 +105,7 @@ def test_a_program_in_order_has_one_outcome_and_ends_with_0(file: Path) -> None:
     assert explored.returncode == 0
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_a_changed_set_up_is_what_is_explored_and_shown_again(file: Path) -> None:
     file.write_text(IN_ONE_GROUP)
     words = ("--group", "ann=reentrant", "--group", "/seats:bob=reentrant", "--group", "eve=own")
@@ -126,7 +126,7 @@ def test_a_solution_passes_its_checks_in_every_order() -> None:
     assert explored.returncode == 0
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_checks_that_fail_are_named_with_what_was_seen() -> None:
     explored = cbtui("explore", "overlapping-timer", "--schedules", "2")
     assert "check failed: every call of inspect is counted\n      expected " in explored.stdout

@@ -68,7 +68,7 @@ def test_an_order_that_real_ros_2_took_is_found_where_one_place_of_some_hundred_
     assert Search(Result(case, Outcome.ORDER, (real,)), JAZZY).finds(240)
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_an_order_that_real_ros_2_took_is_found_where_a_goal_is_aborted_while_others_go_on() -> None:
     # Jazzy 7.1.5, 10 runs of 16: the goal that was sent first is executed first, and aborted last.
     (case,) = decided([("1720-35", drawn("1720-35"))], JAZZY)
@@ -84,7 +84,7 @@ def test_an_order_that_real_ros_2_took_is_found_where_a_goal_is_aborted_while_ot
     assert Search(Result(case, Outcome.ORDER, (real,)), JAZZY).finds(48)
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_an_order_that_real_ros_2_took_is_found_where_a_wait_ends_with_what_came_first() -> None:
     # Jazzy 7.1.5: the executor's wait is over when the second goal is accepted, before what that one sends.
     (case,) = decided([("1717-176", drawn("1717-176"))], JAZZY)
@@ -95,7 +95,7 @@ def test_an_order_that_real_ros_2_took_is_found_where_a_wait_ends_with_what_came
     assert Search(Result(case, Outcome.ORDER, (real,)), JAZZY).finds(48)
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_an_order_that_real_ros_2_took_is_found_where_an_executor_goes_ahead_of_its_workers() -> None:
     # Kilted 9.1.2, 3 runs of 10, with the last two the other way round 2 more.
     (case,) = decided([("1718-17", drawn("1718-17"))], "kilted@9.1.2")

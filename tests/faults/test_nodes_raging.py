@@ -73,7 +73,7 @@ def begun(live: LiveRun) -> bool:
 @pytest.mark.parametrize(
     "name",
     [
-        pytest.param(name, marks=pytest.mark.bulk if place % 2 else pytest.mark.slow)
+        pytest.param(name, marks=pytest.mark.bulk if place % 4 else pytest.mark.slow)
         for place, name in enumerate(FAULTS)
     ],
 )
@@ -91,7 +91,7 @@ async def test_the_console_answers_while_a_node_rages_and_runs_it_again(folder: 
     assert read(path).damage is None
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_a_hundred_megabytes_are_all_in_the_log(folder: Path) -> None:
     with provoked(node_with(folder, HUNDRED_MB)) as run:
         run.until(still_here)

@@ -123,7 +123,7 @@ def test_of_a_node_that_does_not_run_it_is_told_why(folder: Path) -> None:
     assert "expected ':'" in said
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_a_solution_that_does_not_run_is_said_to_be_so(folder: Path) -> None:
     change(folder / "solution.py", "class Blinker(Node):", "class Blinker(Node)")
     faults = list(faults_of(folder))
@@ -131,7 +131,7 @@ def test_a_solution_that_does_not_run_is_said_to_be_so(folder: Path) -> None:
     assert "expected ':'" in faults[0]
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_a_starter_that_does_not_run_is_something_to_mend(folder: Path) -> None:
     change(folder / "starter.py", "class Blinker(Node):", "class Blinker(Node)")
     change(folder / "lesson.toml", 'starter = ["group-starvation"]', "starter = []")
@@ -145,7 +145,7 @@ def test_a_rule_that_does_not_exist_is_named_once(folder: Path) -> None:
     ]
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_a_node_that_ends_its_process_is_told_once(folder: Path) -> None:
     node = folder / "node.py"
     node.write_text("import os\nos._exit(3)\n" + node.read_text())

@@ -114,7 +114,7 @@ def test_all_repeats_are_equal(project: Path, times: int) -> None:
     assert len(set(digests)) == 1
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_what_cannot_be_run_is_told_in_a_sentence(project: Path) -> None:
     (project / "test_line.py").write_text(
         "import pytest\n"
@@ -199,7 +199,7 @@ def test_a_lost_update_is_told_with_its_accesses(project: Path) -> None:
     assert re.search(r"conflict: count: counter\.py:\d+ \(\w+\) reads it, then ", run.stdout)
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_a_package_of_the_project_that_hides_one_of_cbtuis_is_named(project: Path) -> None:
     (project / "sim").mkdir()
     (project / "sim" / "__init__.py").touch()
@@ -239,7 +239,7 @@ def test_a_lesson_and_a_file_in_its_place_are_judged_by_its_checks(project: Path
     assert "not so: " in run.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_a_program_has_the_environment_that_its_test_sets(project: Path) -> None:
     (project / "test_line.py").write_text(
         "def test_environment(cbtui, monkeypatch):\n"

@@ -119,7 +119,7 @@ def test_submissions_are_graded_on_real_ros_and_liars_are_found(
 
 
 @needs_ros
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_a_lesson_is_compared_with_itself_on_real_ros(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["reentrant-2-threads"] * 2 + ["--text", "--on-b", "ros2", "--to", "4.9", "--call", "1.2"]
     assert cli.main(["compare", *words]) == 0

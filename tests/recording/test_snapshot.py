@@ -33,7 +33,7 @@ def test_from_its_beginning_on_every_moment_is_that_of_the_run(events: list[AnyE
     assert_same_from(events, min(cut, len(events)))
 
 
-@pytest.mark.parametrize("step", first_slow(2011, 311))
+@pytest.mark.parametrize("step", first_slow(5011, 311))
 def test_lessons_can_be_recorded_from_any_event_on(step: int) -> None:
     for run in (shared_group_run(), dummy_server_run()):
         for cut in range(0, len(run.events), step):

@@ -8,7 +8,6 @@ from sim.quantities.nanoseconds import SECOND
 from sim.robot.arena import ARENA, Arena, Circle, Segment
 from sim.robot.physics import PhysicsChoice
 from sim.robot.world import World
-from tests.support.daily import first_daily
 
 OPEN_FLOOR = Arena((Segment(100.0, -3.0, 100.0, 3.0),), Circle(0.0, -50.0, 0.1))
 WALL = Arena((Segment(0.5, -3.0, 0.5, 3.0),), Circle(0.0, -50.0, 0.1))
@@ -46,7 +45,14 @@ def apart(arena: Arena, commands: list[Command], until: float) -> tuple[float, f
     return place, heading
 
 
-@pytest.mark.parametrize("drive", first_daily(*MINUTES))
+@pytest.mark.parametrize(
+    "drive",
+    [
+        "ahead",
+        pytest.param("a lesson", marks=pytest.mark.slow),
+        pytest.param("every which way", marks=pytest.mark.bulk),
+    ],
+)
 def test_after_a_minute_of_driving_the_two_robots_are_within_five_millimetres(drive: str) -> None:
     place, heading = apart(OPEN_FLOOR, MINUTES[drive], 60.0)
     assert place < 0.005

@@ -243,7 +243,7 @@ async def test_a_file_that_passes_is_noted_and_the_next_lesson_named() -> None:
         assert app.exercise.steps[-1].text == "Exercise ✓"
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 async def test_where_only_the_exercise_was_left_the_banner_names_the_next_lesson() -> None:
     progress = Progress()
     progress.see(LESSON.id)
@@ -328,7 +328,7 @@ async def test_saving_runs_it_again_and_the_run_before_can_be_compared(here: Pat
         assert f"{FILE}, run 1" in text_of(app)
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 async def test_saving_while_it_runs_ends_that_run(here: Path) -> None:
     engines = Engines([])
     app = ExerciseConsole(engines)
@@ -340,7 +340,7 @@ async def test_saving_while_it_runs_ends_that_run(here: Path) -> None:
         assert [session.stopped for session in engines.sessions] == [True, True, False]
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 async def test_saving_the_same_again_changes_nothing(here: Path) -> None:
     async with console(failing()) as (_, engines, pilot):
         (here / FILE).write_bytes(STARTER.read_bytes())
@@ -360,7 +360,7 @@ async def test_a_file_that_is_gone_is_told_of_and_goes_on_when_it_is_back(here: 
         assert "is gone" not in text_of(app)
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 async def test_no_watch_is_left_behind() -> None:
     async with console(failing()) as (app, _, pilot):
         assert watching(app)
@@ -384,7 +384,7 @@ async def test_a_run_that_takes_too_much_is_ended_and_told_of() -> None:
         assert not app.exercise.runs.run.alive
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 async def test_a_paused_run_may_stand_as_long_as_it_likes() -> None:
     engines = Engines([])
     app = ExerciseConsole(engines)

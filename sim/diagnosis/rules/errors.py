@@ -26,11 +26,14 @@ class ProgramRaised(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield the exceptions, but for those that another rule finds."""
+        ends = list(_ends_by_exceptions(view.timeline))
+        if not ends:
+            return
         clashes = {(clash.file, clash.line) for clash in view.timeline.spin_clashes}
         last = (span for each in view.entities(EntityKind.SERVICE) for span in view.spans(each.id)[-1:])
         unreturned = {span.error for span in last if span.no_response}
         latest = [span for each in view.entities() for span in view.spans(each.id)[-1:] if span.error]
-        for ended in _ends_by_exceptions(view.timeline):
+        for ended in ends:
             if tuple(ended.place) in clashes or ended.error in unreturned:
                 continue
             raised = next((span for span in latest if span.error == ended.error), None)

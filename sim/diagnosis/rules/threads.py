@@ -79,11 +79,9 @@ class GroupsChangeNothing(Rule):
                 place_of(found.subject, timeline),
             )
         goals = _groups_of_goals(timeline)
-        groups = [
-            each
-            for each in timeline.groups.values()
-            if each.node == subject.node and each.id not in goals and _callbacks(timeline, each)
-        ]
+        of_node = (each for each in timeline.groups.values() if each.node == subject.node)
+        own = (each for each in of_node if each.id not in goals and _callbacks(timeline, each))
+        groups = list(islice(own, _MOST_LETTERS + 1))
         plural = len(groups) > 1
         named = listed(_abbreviated([each.letter for each in groups]))
         return Explanation(
@@ -101,11 +99,8 @@ _GROUPS = "groups"
 
 
 def _abbreviated(letters: list[str]) -> list[str]:
-    """Return the first letters, and the number of the others."""
-    if len(letters) <= _MOST_LETTERS:
-        return letters
-    shown = letters[: _MOST_LETTERS - 1]
-    return [*shown, f"{len(letters) - len(shown)} more"]
+    """Return the first letters, and that there are others."""
+    return letters if len(letters) <= _MOST_LETTERS else [*letters[: _MOST_LETTERS - 1], "others"]
 
 
 def _groups_of_goals(timeline: Timeline) -> set[GroupId]:

@@ -65,7 +65,8 @@ MOMENTS = {
 # No two runs on the real clock are alike.
 PICTURED = [lesson.id for lesson in lessons() if lesson.setup.clock == "virtual"]
 
-SIZES = (NARROW, (100, 30), WIDE)
+SIZES = (NARROW, WIDE)
+MORE_SIZES = (NARROW, (100, 30), WIDE)
 IN_EVERY_LOOK = ("shared-group", "call-in-a-callback", "lost-exceptions")
 """Callbacks that wait and messages that are lost, a deadlock, a program that died: all that has a colour."""
 
@@ -81,11 +82,13 @@ def moment_of(lesson: str) -> float:
     return MOMENTS.get(lesson, find(lesson).run.seconds / 2)
 
 
-async def drawn(app: RecordedConsole, looks: Mapping[str, str]) -> dict[str, str]:
+async def drawn(
+    app: RecordedConsole, looks: Mapping[str, str], sizes: Sequence[tuple[int, int]] = MORE_SIZES
+) -> dict[str, str]:
     """Return the pictures of a console in every size and in the theme of each look, by name."""
     pictures = {}
-    async with app.run_test(size=SIZES[0]) as pilot:
-        for columns, rows in SIZES:
+    async with app.run_test(size=sizes[0]) as pilot:
+        for columns, rows in sizes:
             await pilot.resize_terminal(columns, rows)
             for look, app.theme in looks.items():
                 await settle(pilot)
@@ -106,7 +109,7 @@ def files(lesson: str, pictures: Mapping[str, str]) -> dict[str, str]:
 @pytest.mark.slow
 @pytest.mark.parametrize("lesson", PICTURED)
 async def test_a_lesson_looks_as_it_did(lesson: str, pytestconfig: pytest.Config) -> None:
-    hold(files(lesson, await drawn(console_on(lesson)(), {"dark": "dark"})), SCREENS, pytestconfig)
+    hold(files(lesson, await drawn(console_on(lesson)(), {"dark": "dark"}, SIZES)), SCREENS, pytestconfig)
 
 
 @pytest.mark.parametrize("lesson", first_slow(*IN_EVERY_LOOK))
@@ -125,7 +128,7 @@ async def test_a_lesson_looks_as_it_did_in_light_in_ascii_and_without_colours(
 async def test_a_console_that_grew_and_changed_its_theme_looks_as_one_that_begins_so() -> None:
     recorded = partial(RecordedConsole, "no-groups-at-all", events_of("no-groups-at-all"), 12.2)
     grown = await drawn(recorded(), {"dark": "dark", "light": "light"})
-    for columns, rows in SIZES:
+    for columns, rows in MORE_SIZES:
         for look in ("dark", "light"):
             app = recorded(theme=look)
             async with app.run_test(size=(columns, rows)) as pilot:
