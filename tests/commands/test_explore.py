@@ -66,6 +66,7 @@ def test_an_order_that_fails_is_found_and_the_simplest_that_does_is_told_and_run
     assert "AssertionError: 1" in again.stdout + again.stderr
 
 
+@pytest.mark.slow
 def test_only_a_busy_machine_shows_what_is_done_just_in_time(file: Path) -> None:
     file.write_text(JUST_IN_TIME)
     words = ("explore", str(file), "--schedules", "12", "--for", "0.4")

@@ -86,7 +86,7 @@ def test_every_learner_has_a_row_whatever_the_one_before_did(
     assert eve["problem"] == "eve.py does not tell by its name which exercise it is for"
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_with_a_lesson_named_a_file_may_be_called_anything(
     school: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:

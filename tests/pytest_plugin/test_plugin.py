@@ -212,7 +212,7 @@ def test_a_package_of_the_project_that_hides_one_of_cbtuis_is_named(project: Pat
     assert f"cbtui's own package sim is hidden by {project / 'sim' / '__init__.py'}; rename" in run.stdout
 
 
-@pytest.mark.parametrize("workers", ["0", pytest.param("2", marks=pytest.mark.bulk)])
+@pytest.mark.parametrize("workers", first_slow("0", "2"))
 def test_a_package_of_cbtuis_that_hides_one_of_the_project_is_named(project: Path, workers: str) -> None:
     (project / "test_line.py").write_text("import sim.conveyor\ndef test_own(): pass\n")
     (project / "test_late.py").write_text("def test_late():\n    from lessons import mine\n")

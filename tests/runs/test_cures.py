@@ -280,6 +280,7 @@ def test_to_end_an_exception_helps_whatever_the_program_does_wrong_then() -> Non
     assert not judged(crash, before, replace(after, is_whole=False, end=1)).helps
 
 
+@pytest.mark.slow
 def test_a_loop_without_a_wait_is_recognised_in_a_trial_of_a_run_on_the_real_clock(tmp_path: Path) -> None:
     text = (PROGRAMS / "while_sleeping.py").read_text().replace("            time.sleep(0.1)\n", "")
     program = tmp_path / "wanderer.py"

@@ -77,7 +77,7 @@ async def test_drawing_goes_on_when_the_terminal_is_large_enough_again() -> None
         assert "odom_callback waits 9.1 s" in lines_of(app)[-2]
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 async def test_a_screen_that_grows_looks_as_if_it_had_always_been_so_large() -> None:
     pictures = []
     for first in (NARROW, WIDE, (60, 20)):
