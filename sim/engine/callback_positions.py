@@ -56,7 +56,11 @@ class CallbackPositions:
             if self._latest.get(ident) != (callback, position):
                 self._latest[ident] = callback, position
                 until = now + timeout if timeout else 0
-                self._record(CallbackAt(now, callback.entity, callback.thread, *position, until))
+                doing, call, frames, loop, holder, keeper = position
+                at = CallbackAt(
+                    now, callback.entity, callback.thread, doing, call, frames, loop, holder, until, keeper
+                )
+                self._record(at)
 
     def callback_on(self, ident: int) -> EntityId:
         """Take a sample, and return the callback that runs on a thread (0: none)."""

@@ -53,6 +53,14 @@ def test_a_recording_without_these_fields_is_told_in_the_words_of_its_notice() -
     ]
 
 
+def test_what_a_recording_from_before_keepers_tells_of_a_lock_is_where_it_was() -> None:
+    frames = [["node.py", "callback", 60]]
+    old = [["callback_at", 9, 1, 2, Doing.WAITS.value, "Lock.acquire", frames, ["", 0], 3, 40]]
+    (event,) = decode(msgspec.msgpack.encode(old))
+    assert isinstance(event, CallbackAt)
+    assert (event.holder, event.until, event.keeper) == (3, 40, 0)
+
+
 def _at_a_lock(t: int, entity: int, thread: int, line: int, holder: int = 0) -> CallbackAt:
     frames = (("node.py", "callback", line),)
     return CallbackAt(t, entity, thread, Doing.WAITS, "Lock.acquire", frames, holder=holder)

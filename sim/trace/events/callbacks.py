@@ -154,11 +154,11 @@ class CallbackAt(TraceEvent, frozen=True, tag="callback_at"):
     """The ``while`` around the innermost of them that has one."""
     holder: LockHolderId = 0
     """Name of the thread whose callback has the lock that it waits for, or for whose end it waits."""
-    keeper: LockKeeperId = 0
-    """Entity whose callback took that lock in a call that is suspended or over."""
     until: Maybe[Nanoseconds] = 0
     """When the timeout of its wait is over, of the first of several at one line; none if it waits without
     one, or sleeps."""
+    keeper: LockKeeperId = 0
+    """Entity whose callback took the lock that it waits for, in a call that is suspended or over."""
 
 
 class ProgramAt(TraceEvent, frozen=True, tag="program_at"):
