@@ -64,10 +64,13 @@ class KeyTurns:
 
 
 def _apart(key: Key) -> Iterable[Key]:
-    """Return escape and a letter that came at once as two keys.
+    """Return escape and a letter that came at once as two keys, and enter for a line feed.
 
-    Terminals send the same for the letter with the Alt key, which no key here has.
+    Terminals send the same for the letter with the Alt key, which no key here has. Enter is a line feed if it
+    was typed while the terminal was still the shell's.
     """
+    if key.key == "ctrl+j":
+        return [Key("enter", "\r")]
     if not key.key.startswith("alt+") or key.character is None:
         return [key]
     return [Key("escape", None), Key(key.character, key.character)]

@@ -75,3 +75,17 @@ def test_that_something_is_opened_is_said_before_the_console_draws_and_leaves_no
         console.press("q")
         assert console.ended() == 0, console.said()
         assert b"\x1b[K" in console.drawn.rpartition(b"\x1b[?1049l")[2]
+
+
+@pytest.mark.slow
+def test_an_enter_typed_before_the_console_draws_opens_the_chosen_lesson(tmp_path: Path) -> None:
+    with opened(80, 24, tmp_path) as console:
+        console.until("opening ...")
+        console.press("\r")
+        console.until("What do you expect?")
+        console.press(_ESCAPE)
+        console.until("LIVE")
+        console.press("q")
+        console.until("Unit 5")
+        console.press("q")
+        assert console.ended() == 0, console.said()
