@@ -19,10 +19,6 @@ class FollowingView(InkedView):
         self._widest = 0
         self._fitting = False
 
-    def beside(self) -> int:
-        """Columns of every line beside its text."""
-        return 0
-
     def below(self) -> int:
         """Rows that follow the last line."""
         return 0
@@ -54,7 +50,7 @@ class FollowingView(InkedView):
 
     def _fit_size(self) -> None:
         self._fitting = True
-        size = Size(self._widest + self.beside(), self._count + self.below())
+        size = Size(self._widest, self._count + self.below())
         if size != self.virtual_size:
             resize_content(self, size)
         if self.follows:

@@ -29,7 +29,7 @@ from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
 COLUMNS_FROM = 64
-"""The narrowest log that shows thread and group of each line."""
+"""The narrowest log that shows thread and group of each line that leaves them room."""
 
 _SEARCH_BATCH = 2000
 """Lines that are searched between two turns of screen and keys; they take some milliseconds."""
@@ -246,10 +246,6 @@ class LogLines(FollowingView):
 
     # drawing
 
-    def beside(self) -> int:
-        """Columns for thread and group, where there is room."""
-        return _COLUMNS if self.scrollable_content_region.width >= COLUMNS_FROM else 0
-
     def below(self) -> int:
         """A row with the number of later lines, if there are any."""
         return 1 if self._later else 0
@@ -266,7 +262,7 @@ class LogLines(FollowingView):
         place = self._search.places[row]
         event = self._search.timeline.logs[place]
         text = Strip([Segment(line_of(event), self._text_style(event))])
-        parts = self._parts(text, event, width, whole=place == self.picked)
+        parts = self._parts(text, event, width)
         if not (ground := self._ground(place, row)):
             return Strip(parts, width)
         bold = Style(bold=place == self.picked or None)
@@ -274,17 +270,16 @@ class LogLines(FollowingView):
             [Segment(part, style and self.on_ground(style, ground) + bold) for part, style, _ in parts], width
         )
 
-    def _parts(self, text: Strip, event: LogEvent, width: int, whole: bool) -> list[Segment]:
-        """Return text, thread and group; a ``whole`` text that is long has the room of those as well."""
-        left, beside = self.scroll_offset.x, self.beside()
-        if whole and text.cell_length - left > width - beside:
-            beside = 0
-        room = width - beside
+    def _parts(self, text: Strip, event: LogEvent, width: int) -> list[Segment]:
+        """Return text, thread and group; a text that is long has the room of those as well."""
+        left = self.scroll_offset.x
+        has_columns = width >= COLUMNS_FROM and text.cell_length - left <= width - _COLUMNS
+        room = width - _COLUMNS if has_columns else width
         shown = text.crop(left, left + room).adjust_cell_length(room, self.in_class(""))
         if text.cell_length > left + room:
             cut = GLYPHS[Charset.BRAILLE].ellipsis
             shown = Strip([*shown.crop(0, room - 1), Segment(cut, self.in_ink(Ink(Role.FAINT)))])
-        return [*shown, *(self._columns(event) if beside else [])]
+        return [*shown, *(self._columns(event) if has_columns else [])]
 
     def _ground(self, place: int, row: int) -> str:
         """Return the component class of the picked line, of the last before the cursor, or ""."""

@@ -283,22 +283,22 @@ async def test_the_line_of_the_moment_is_set_off_while_looking_back() -> None:
         assert {colour.name for colour in ground if colour} == {"#ff0000"}
 
 
-async def test_a_long_line_is_cut_off_and_shown_as_far_as_can_be_when_it_is_picked() -> None:
+async def test_a_long_line_takes_the_room_of_thread_and_group_and_is_cut_off_at_the_edge() -> None:
     run = Run()
     thread = run.thread("MainThread")
     timer = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
-    run.log("a line of the log that has more columns than there are", 1.0, thread, timer)
+    for text in ("short", "x" * 50, "x" * 80):
+        run.log(text, 1.0, thread, timer)
     timeline = Timeline()
     timeline.extend(run.events)
     app = PaneOnly()
-    async with app.run_test(size=(80, 4)) as pilot:
+    async with app.run_test(size=(80, 5)) as pilot:
         await showing(pilot, timeline)
-        head = shown(app)[0].partition("a line of ")[0]
-        text = f"{head}a line of the log that has more columns than there are"
-        assert shown(app)[0] == f"{text[:63]}… MainThread  A"
-        await pilot.press("up")
-        await pilot.pause()
-        assert shown(app)[0] == (text if len(text) <= 80 else f"{text[:79]}…")
+        short, long, longest, *_ = shown(app)
+        head = short.partition("short")[0]
+        assert short == f"{head}short".ljust(65) + "MainThread  A"
+        assert long == f"{head}{'x' * 50}"
+        assert longest == f"{head}{'x' * 80}"[:79] + "…"
 
 
 async def test_the_pane_is_as_wide_as_the_widest_line_that_was_in_view_and_measures_no_other(
