@@ -21,6 +21,7 @@ from cbtui.screens.menu import MenuScreen
 from cbtui.screens.windows.help import HelpScreen
 from cbtui.screens.windows.moment import MomentScreen
 from cbtui.widgets.comparison import ComparisonTable
+from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes, start_of
 from sim.quantities.durations import timestamp
 from sim.trace.events import AnyEvent, RobotMoved, RunEnded
@@ -273,6 +274,18 @@ async def test_a_narrow_screen_names_the_key_that_lets_all_lanes_be_seen() -> No
         assert not app.comparison.query_one("#lanes0").display
         await press(app, pilot, "z")
         assert "+3 lanes Z" in text_of(app)
+
+
+async def test_lanes_alone_have_what_a_long_verdict_leaves_of_a_narrow_screen() -> None:
+    async with compared(*sides(), size=NARROW) as (app, pilot):
+        verdict = app.comparison.query_one("#verdict", Static)
+        await press(app, pilot, "Z")
+        verdict.update("a long verdict " * 15)
+        await pilot.pause()
+        assert verdict.size.height == 3
+        first, second = lanes(app)
+        assert min(first.size.height, second.size.height) >= 8
+        assert second.region.bottom == app.comparison.query_one(KeyBar).region.y == NARROW[1] - 1
 
 
 async def test_a_wide_screen_has_room_for_everything() -> None:
