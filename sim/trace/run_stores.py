@@ -65,6 +65,7 @@ class RunStores:
         self.calls = ServiceCalls(spill)
         self.sendings = Sendings(spill)
         self.marks: History[AxisMark] = History(attrgetter("at"), AxisMark, spill)
+        self.given: History[ev.CommandGiven] = History(attrgetter("t"), ev.CommandGiven, spill)
         self.logs: History[ev.Logged | ev.Printed] = History(attrgetter("t"), ev.Logged | ev.Printed, spill)
         self.asked: History[ev.KeyboardAsked] = History(attrgetter("t"), ev.KeyboardAsked, spill)
         self.shell: History[ShellEvent] = History(attrgetter("t"), ShellEvent, spill)
@@ -261,6 +262,8 @@ class RunStores:
 
     def _command_given(self, event: ev.CommandGiven) -> None:
         self.marks.add(AxisMark(event.t, AxisMarkKind.COMMAND, event.text))
+        if event.kind in (ev.CommandKind.CALL, ev.CommandKind.OTHER):
+            self.given.add(event)
 
     def _times_kept(self, event: ev.TimesKept) -> None:
         self.times_kept[event.node] = event

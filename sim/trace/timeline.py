@@ -76,14 +76,13 @@ class Timeline:
         """
         self.services_called: Collection[str] = run.calls.services
         """The services that were called, in order of their first calls."""
+        self.given: Sequence[ev.CommandGiven] = run.given
+        """The calls of services and resets by the person, in order; ``ros2`` lines are not among them."""
         self.logs: Sequence[ev.Logged | ev.Printed] = run.logs
         """Log lines and printed lines, in order."""
         self.shell: Sequence[ShellEvent] = run.shell
-        """The contents of the shell and the programs' terminal, in order.
-
-        These are the ``ros2`` lines with their output and ends; text typed for programs, and text printed
-        meanwhile.
-        """
+        """The shell's ``ros2`` lines with their output and ends, text typed for programs, and text printed
+        meanwhile, in order."""
         self.notices: Sequence[ev.Notice] = run.notices
         """The engine's notices, in order."""
         self.choices: Sequence[ev.ThreadChosen] = run.choices

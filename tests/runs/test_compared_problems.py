@@ -104,3 +104,12 @@ def test_nothing_is_said_of_a_run_that_has_not_come_to_the_problem() -> None:
     for stuck in (run_of("call_in_timer"), run_of("held_group")):
         assert told(stuck, early) == ""
         assert told(early, stuck) == ""
+
+
+def test_of_runs_that_were_not_given_the_same_commands_nothing_is_gone_or_new() -> None:
+    called = run_lesson("exclusive-2-threads", 12.0, 2.0, 3.0, threads=1).timeline
+    uncalled = run_lesson("exclusive-2-threads", 12.0, threads=1).timeline
+    again = run_lesson("exclusive-2-threads", 12.0, 2.0, 3.0).timeline
+    assert told(called, uncalled) == ""
+    assert not ComparedProblems(called, uncalled).is_cured()
+    assert told(called, again) == "Gone in run B: no free thread."

@@ -24,7 +24,7 @@ from cbtui.widgets.comparison import ComparisonTable
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes, start_of
 from sim.quantities.durations import timestamp
-from sim.trace.events import AnyEvent, RobotMoved, RunEnded
+from sim.trace.events import AnyEvent, CommandGiven, CommandKind, RobotMoved, RunEnded
 from sim.trace.figures.comparison import compare as figures_of
 from sim.trace.figures.comparison_rows import verdict
 from sim.trace.model import Window
@@ -37,8 +37,9 @@ from tests.support.runs import shared_group_run, split_groups_run
 
 
 def timeline_of(events: list[AnyEvent], end: float) -> Timeline:
+    """The run up to an end; its calls are those of a node, for none of the person's are compared here."""
     timeline = Timeline()
-    timeline.extend([event for event in events if event.t <= ns(end)])
+    timeline.extend([each for each in events if each.t <= ns(end) and not isinstance(each, CommandGiven)])
     return timeline
 
 
@@ -258,6 +259,18 @@ async def test_a_narrow_screen_scrolls_the_table_and_z_lets_it_fill_the_screen()
         assert table.size.height > before + 6
         await press(app, pilot, "z")
         assert table.size.height == before
+
+
+async def test_of_runs_in_which_the_service_was_not_called_alike_none_is_called_better() -> None:
+    first, second = sides()
+    second.timeline.extend([CommandGiven(ns(9.4), "call /motor_power true", CommandKind.CALL)])
+    async with compared(first, second) as (app, _):
+        assert "run B is better" in verdict_of(app)
+    first, second = sides()
+    second.timeline.extend([CommandGiven(ns(7.0), "call /motor_power true", CommandKind.CALL)])
+    async with compared(first, second) as (app, _):
+        assert "run A has no 'call /motor_power true', run B has 1: only with as many" in verdict_of(app)
+        assert "Gone" not in verdict_of(app)
 
 
 async def test_a_narrow_screen_names_the_key_that_lets_all_lanes_be_seen() -> None:

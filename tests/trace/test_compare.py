@@ -6,6 +6,8 @@ from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
     CallbackStarted,
+    CommandGiven,
+    CommandKind,
     EntityAppeared,
     EntityKind,
     GroupAppeared,
@@ -28,6 +30,7 @@ from sim.trace.figures.comparison_rows import (
     ComparisonRow,
     ended_early,
     extent,
+    is_tie,
     sections,
     verdict,
 )
@@ -284,6 +287,30 @@ def test_a_verdict_says_which_run_is_better_and_by_what() -> None:
     assert better == f"run B is better: losses of {ODOM} 0 instead of 2, and in 2 more ways"
     assert worse == f"run B is worse: losses of {ODOM} 2 instead of 0, and in 2 more ways"
     assert verdict(compare(healthy(), healthy(), window)).startswith("Neither run is better")
+
+
+def test_of_runs_that_were_not_given_the_same_commands_neither_is_better() -> None:
+    asked, paused = (
+        [CommandGiven(ns(at), text, kind) for at in times]
+        for text, kind, times in (
+            ("call /turn true", CommandKind.CALL, (0.5, 1.0, 1.5)),
+            ("pause", CommandKind.PAUSE, (0.6,)),
+        )
+    )
+    unasked, thrice, once = (
+        run([ODOM, TIMER], [*given, *called(1, 3.0, 3.1, age=1.0)]) for given in (paused, asked, asked[:1])
+    )
+    after = run([ODOM, TIMER], called(1, 3.0, 3.1))
+
+    def compared(first: Timeline, second: Timeline, end: float = 4.0) -> str:
+        return verdict(compare(first, second, Window(0, ns(end))))
+
+    only = "only with as many in both can one be better"
+    assert compared(thrice, after) == f"run A has 3 'call /turn true', run B has none: {only}"
+    assert compared(after, thrice) == f"run A has no 'call /turn true', run B has 3: {only}"
+    assert compared(once, thrice, end=1.0).startswith("Neither")
+    assert compared(unasked, after).startswith("run B is better")
+    assert not is_tie(compare(thrice, after, Window(0, ns(4.0))))
 
 
 def test_lower_figures_of_far_fewer_calls_speak_for_no_run() -> None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from cbtui.runs.judged.cures import Problem, name_of, problem_of
 from sim.diagnosis import Diagnoses, Weight, sentence
 from sim.quantities.nanoseconds import SECOND
+from sim.trace.figures.comparison import unlike_commands
 from sim.trace.figures.comparison_rows import RUNS
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -35,7 +36,8 @@ class _Problems:
 class ComparedProblems:
     """Tells of the problems of two runs, which may go on meanwhile. Not thread-safe, like their timelines.
 
-    What was only an effect of another problem in the other run is nothing new or gone.
+    What was only an effect of another problem in the other run is nothing new or gone. Of runs that were not
+    given the same commands, nothing is.
     """
 
     first: Timeline
@@ -47,14 +49,22 @@ class ComparedProblems:
 
         Nothing is said of a problem which the other run has not come to.
         """
+        if self._are_unlike:
+            return ""
         first, second = self._found()
         return " ".join(filter(None, (self._hangs(first, second), *self._others(first, second))))
 
     def is_cured(self) -> bool:
         """Return whether problems of the first run are gone in the second one, and none is new there."""
+        if self._are_unlike:
+            return False
         first, second = self._found()
         gone, new = _only_in(first, second), _only_in(second, first)
         return bool(gone) and not new and _has_come_to(self.second, *gone)
+
+    @property
+    def _are_unlike(self) -> bool:
+        return bool(unlike_commands(self.first, self.second, min(self.first.end, self.second.end)))
 
     def _found(self) -> tuple[_Problems, _Problems]:
         first, second = self._diagnoses

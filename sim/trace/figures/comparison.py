@@ -85,12 +85,21 @@ class RunFigures:
     fails: bool = False
 
 
+class CommandPair(NamedTuple):
+    """A service call or a reset by the person, and how many times it was given in each run."""
+
+    text: str
+    first: int
+    second: int
+
+
 @dataclass(frozen=True, slots=True)
 class Comparison:
     """The same window of two runs.
 
     Callbacks are in order of appearance, the first run's first, without those that are idle in both.
     ``is_real`` is of runs on the real clock, of which what differs little is no difference.
+    ``unlike_commands`` were not given as often in both runs by the window's end.
     """
 
     window: Window
@@ -98,6 +107,7 @@ class Comparison:
     second: RunFigures
     callbacks: tuple[CallbackPair, ...]
     is_real: bool = False
+    unlike_commands: tuple[CommandPair, ...] = ()
 
     @property
     def unlike(self) -> tuple[frozenset[EntityId], frozenset[EntityId]]:
@@ -141,6 +151,15 @@ def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> 
             for key, one, other in used
         ),
         first.is_real or second.is_real,
+        unlike_commands(first, second, window.end),
+    )
+
+
+def unlike_commands(first: Timeline, second: Timeline, end: Nanoseconds) -> tuple[CommandPair, ...]:
+    """Return what the person did before ``end`` in one of the runs more often than in the other."""
+    one, other = (Counter(each.text for each in run.given if each.t < end) for run in (first, second))
+    return tuple(
+        CommandPair(text, one[text], other[text]) for text in one | other if one[text] != other[text]
     )
 
 

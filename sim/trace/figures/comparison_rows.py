@@ -80,8 +80,8 @@ def sections(comparison: Comparison) -> tuple[Section, ...]:
 
 
 def is_tie(comparison: Comparison) -> bool:
-    """Whether neither run is better."""
-    return next(_differences(comparison), None) is None
+    """Whether neither run is better, though both were given the same commands."""
+    return not comparison.unlike_commands and next(_differences(comparison), None) is None
 
 
 def ended_early(comparison: Comparison) -> str:
@@ -105,8 +105,13 @@ def verdict(comparison: Comparison, *, is_cured: bool = False) -> str:
     """Return which run is better and by what, in one sentence that also names what is worse.
 
     Errors weigh most, then subscriptions that do not match, losses, collisions, waits, lateness, and the age
-    of data; a problem that is gone in the second run (``is_cured``) weighs more than all of them.
+    of data; a problem that is gone in the second run (``is_cured``) weighs more than all of them. Of runs
+    that were not given the same commands, as calls of a service, it says that.
     """
+    if comparison.unlike_commands:
+        text, one, other = comparison.unlike_commands[0]
+        given = f"{RUNS[0]} has {one or 'no'} '{text}', {RUNS[1]} has {other or 'none'}"
+        return f"{given}: only with as many in both can one be better"
     better: list[_FigureDifference] = []
     worse: list[_FigureDifference] = []
     for each in _differences(comparison):
