@@ -66,8 +66,7 @@ class CompareScreen(SizedScreen[None]):
 
     Both share the window of time and the cursor, which is clamped to the end of each run. The playhead
     follows the end of a live run, else that of the longer one. ``bounds`` is the window of the table when it
-    is not about the window on screen; None stands for all that both runs cover. Timelines are read on the UI
-    thread.
+    is not about the window on screen; None: all that both cover. The UI thread reads the timelines.
     """
 
     SCOPE = Scope.COMPARE
@@ -309,8 +308,6 @@ class CompareScreen(SizedScreen[None]):
     def _lanes(self, number: int) -> Lanes:
         return self.query_one(f"#lanes{number}", Lanes)
 
-    # actions
-
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the actions that are available now."""
         match action:
@@ -351,6 +348,14 @@ class CompareScreen(SizedScreen[None]):
     def action_scroll_table_down(self) -> None:
         """Scroll the table down."""
         self.query_one(ComparisonTable).scroll_relative(y=_ROWS_A_KEY, animate=False)
+
+    def action_page_up(self) -> None:
+        """Scroll the table up by a page."""
+        self.query_one(ComparisonTable).scroll_page_up(animate=False)
+
+    def action_page_down(self) -> None:
+        """Scroll the table down by a page."""
+        self.query_one(ComparisonTable).scroll_page_down(animate=False)
 
     def action_maximise(self) -> None:
         """Let the table fill the screen, or undo that."""

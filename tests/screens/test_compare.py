@@ -254,6 +254,11 @@ async def test_a_narrow_screen_scrolls_the_table_and_z_lets_it_fill_the_screen()
         assert table.scroll_offset.y > 0
         assert "heading" in text_of(app)
         before = table.size.height
+        down = table.scroll_offset.y
+        await press(app, pilot, "pageup")
+        assert table.scroll_offset.y == max(0, down - before)
+        await press(app, pilot, "pagedown")
+        assert table.scroll_offset.y == min(table.max_scroll_y, max(0, down - before) + before)
         await press(app, pilot, *["up"] * 12, "z")
         assert table.scroll_offset.y == 0
         assert table.size.height > before + 6
