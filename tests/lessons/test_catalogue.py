@@ -36,7 +36,7 @@ def test_the_lessons_of_a_unit_stand_together() -> None:
     ("problem", "lesson"),
     [
         ("self-made-deadlock", "call-in-a-callback"),
-        ("deadlock-over-a-lock", "lock-or-group"),
+        ("threads-wait-for-lock", "lock-or-group"),
         ("deadlock-over-a-rate", "rate-sleep-in-a-callback"),
         ("deadlock-over-the-clock", "sim-time-in-a-callback"),
         ("lookup-keeps-transform", "lookup-in-a-callback"),

@@ -47,7 +47,7 @@ class SelfMadeDeadlock(Rule):
     """
 
     id = "self-made-deadlock"
-    summary = "a callback waits for a reply that it keeps from coming"
+    summary = "callbacks wait for each other, or one for a reply that it keeps from coming"
     hangs_from = 0
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
@@ -161,7 +161,7 @@ _KINDS = {
     WaitedFor.RATE: "deadlock-over-a-rate",
     WaitedFor.CLOCK: "deadlock-over-the-clock",
 }
-_WHY_REPLY = "the reply is brought by the executor, and needs a group that lets it in and a thread"
+_WHY_REPLY = "the executor brings request and reply, and each needs a group that lets it in and a thread"
 _OWN_LOCK = "its own lock"
 _LEFT_LOCK = "a lock that was left"
 _LOCK_AND_CALL = "a lock and a reply"
