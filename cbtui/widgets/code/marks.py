@@ -4,6 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
+from operator import attrgetter
 from typing import TypeAlias
 
 from cbtui.looks.theme import GLYPHS, Charset
@@ -73,21 +74,19 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
     """Return the lines at which callbacks are at a moment, or the program waits, and the calls to there.
 
     Sleeps that follow each other at one line are one position, so the text tells how long it has been there,
-    and whether that may be more than one sleep.
+    and whether that may be more than one sleep. Of several threads at one line it tells of the first.
     """
     found: defaultdict[SourceFile, LineMarks] = defaultdict(dict)
     groups, running = list(timeline.groups), timeline.moment(at).running
-    positions = [timeline.position_on(thread, at) for thread in running]
+    positions = [each for thread in running if (each := timeline.position_on(thread, at)) is not None]
     for thread in timeline.threads:
         positions += timeline.program_waits_on(thread, Window(at, at + 1))
-    for position in positions:
-        if position is None:
-            continue
+    for position in sorted(positions, key=attrgetter("start"), reverse=True):
         number = groups.index(timeline.entities[position.entity].group) if position.entity else -1
         *calls, here = position.frames
         for frame in (*calls, here):
             file = files.of(frame.file)
-            if file is not None:
+            if file is not None and (frame is here or frame.line not in found[file]):
                 texts = tuple(_at_line(position, timeline, at, file)) if frame is here else ()
                 found[file][frame.line] = LineMark(texts, number)
     return dict(found)
@@ -156,12 +155,13 @@ def _marked(entity: EntityInfo, timeline: Timeline, moment: Moment) -> CallbackM
 def _doing(
     entity: EntityInfo, timeline: Timeline, moment: Moment
 ) -> tuple[CallbackActivity, tuple[str, ...], Nanoseconds]:
-    running = list(_running(entity.id, moment))
-    if running:
-        threads = _threads(running, timeline)
-        lasted = duration(moment.at - running[0].start)
-        texts = (f"▶ {threads} {lasted}", f"▶ {lasted}")
-        return CallbackActivity.RUNS, (*_blocked_text(running, moment, lasted), *texts), running[0].start
+    running = (span for span in moment.running.values() if span.entity == entity.id)
+    if calls := sorted(running, key=attrgetter("start")):
+        times = [duration(moment.at - call.start) for call in calls]
+        each = ", ".join(f"{_thread(call, timeline)} {took}" for call, took in zip(calls, times, strict=True))
+        several = [f"▶ {len(calls)} calls, longest {times[0]}"] if calls[1:] else []
+        texts = (*_blocked_text(calls, moment), f"▶ {each}", *several, f"▶ {times[0]}")
+        return CallbackActivity.RUNS, texts, calls[0].start
     wait = moment.waiting.get(entity.id)
     since = moment.at if wait is None else waits_since(wait, moment.queues[entity.id])
     if wait is not None and moment.at - since >= WORTH_TELLING:
@@ -171,25 +171,21 @@ def _doing(
         return CallbackActivity.WAITS, whys, since
     recent = timeline.spans_of(entity.id, Window(moment.at - JUST_NOW, moment.at + 1))
     if recent:
-        return CallbackActivity.RAN, (f"· {_threads(recent[-1:], timeline)}",), recent[-1].start
+        return CallbackActivity.RAN, (f"· {_thread(recent[-1], timeline)}",), recent[-1].start
     return CallbackActivity.IDLE, ("",), 0
 
 
-def _running(entity: EntityId, moment: Moment) -> Iterator[Span]:
-    return (span for span in moment.running.values() if span.entity == entity)
-
-
-def _blocked_text(running: Sequence[Span], moment: Moment, lasted: str) -> Iterator[str]:
+def _blocked_text(calls: Sequence[Span], moment: Moment) -> Iterator[str]:
     """Yield the text of a callback that is blocked in ``Client.call``."""
-    for span in running:
-        blocked = moment.blocked.get(span.thread)
-        if blocked is not None and blocked.entity == span.entity:
-            yield f"▶ {lasted}: blocked in the call of {blocked.service}"
+    for call in calls:
+        blocked = moment.blocked.get(call.thread)
+        if blocked is not None and blocked.entity == call.entity:
+            yield f"▶ {duration(moment.at - call.start)}: blocked in the call of {blocked.service}"
             return
 
 
-def _threads(spans: Sequence[Span], timeline: Timeline) -> str:
-    return " ".join(short_thread(timeline.threads[span.thread].name) for span in spans)
+def _thread(span: Span, timeline: Timeline) -> str:
+    return short_thread(timeline.threads[span.thread].name)
 
 
 def changed_lines(before: Sequence[CallbackMark], after: Sequence[CallbackMark]) -> Iterator[tuple[int, int]]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import product
+from operator import attrgetter
 from typing import NamedTuple
 
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
@@ -114,7 +115,8 @@ def _state(entity: EntityInfo, timeline: Timeline, moment: Moment) -> _State:
     at = moment.at
     lost = len(timeline.losses_of(entity.id, Window(max(0, at - _LATELY), at + 1)))
     losses = f"lost {counted(lost, 'message')} in a second" if lost else ""
-    running = next((span for span in moment.running.values() if span.entity == entity.id), None)
+    calls = (span for span in moment.running.values() if span.entity == entity.id)
+    running = min(calls, key=attrgetter("start"), default=None)  # of several the longest
     if running is not None:
         elapsed = at - running.start
         blocked = moment.blocked.get(running.thread)

@@ -148,6 +148,35 @@ def test_a_file_is_known_behind_a_link(tmp_path: Path, path: Path) -> None:
     assert len(marked(link, sleeper(str(path))[1], 6.0)) == 2
 
 
+def several_calls(file: str, line: int = 36) -> Timeline:
+    """Two calls of one callback (lines 30 to 33): on Pool-0_0 since 2 s, on Pool-0_1 since 1 s.
+
+    Each came to a helper's ``line`` half a second later.
+    """
+    run = Run()
+    threads = run.thread("Pool-0_0"), run.thread("Pool-0_1")
+    work = run.subscription(run.reentrant(run.node("/n")), "/work", "work", file=file, lines=(30, 33))
+    for thread, at in zip(threads, (2.0, 1.0), strict=True):
+        run.message(work, at)
+        run.callback(work, thread, at)
+        frames = ((file, "work", 31), (file, "helper", line))
+        run.add(CallbackAt(ns(at + 0.5), work, thread, Doing.SLEEPS, "", frames))
+    run.log("still there", 8.0)
+    timeline = Timeline()
+    timeline.extend(sorted(run.events, key=lambda event: event.t))
+    return timeline
+
+
+def test_of_several_calls_of_a_callback_each_is_told_with_its_own_time_or_the_longest(path: Path) -> None:
+    timeline = several_calls(str(path))
+    (mark,) = marked(path, timeline, 3.0)
+    assert mark.texts == ("▶ Pool-0_1 2.0 s, Pool-0_0 1.0 s", "▶ 2 calls, longest 2.0 s", "▶ 2.0 s")
+    files = SourceFiles(path)
+    lines = lines_at(timeline, ns(3.0), files)[files.main]
+    assert lines[36].texts[0] == "▶ sleeps, here for 1.5 s"
+    assert lines[31].texts == ()
+
+
 class CodeOnly(App[None]):
     def __init__(self, path: Path) -> None:
         super().__init__()

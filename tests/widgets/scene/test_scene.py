@@ -13,7 +13,7 @@ from lessons.catalogue import lessons
 from lessons.description import Actor
 from lessons.lesson import Lesson
 from sim.trace.timeline import Timeline
-from tests.support.builder import ns
+from tests.support.builder import Run, ns
 from tests.support.console import WIDE, RecordedConsole, settle
 from tests.support.pictures import text_of
 from tests.support.runs import shared_group_run
@@ -123,3 +123,13 @@ async def test_c_goes_from_the_scene_to_the_map_and_on_to_the_scene_again() -> N
         async with asyncio.timeout(30):
             while "decide is not there yet" not in text_of(app):
                 await pilot.pause(0.02)
+
+
+def test_of_several_calls_of_a_callback_the_longest_is_told() -> None:
+    run = Run()
+    work = run.subscription(run.reentrant(run.node("/n")), "/work", "work")
+    for thread, at in ((run.thread("Pool-0_0"), 2.0), (run.thread("Pool-0_1"), 1.0)):
+        run.callback(work, thread, at)
+    run.stop(4.0)
+    rows = paint_scene([Actor(figure="belt", follows="work")], told(run), ns(3.0), 60, 2, Charset.BRAILLE)
+    assert plain(rows).splitlines()[0].rstrip().endswith("work runs 2.0 s")
