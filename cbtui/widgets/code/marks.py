@@ -96,7 +96,7 @@ def _at_line(position: Position, timeline: Timeline, at: Nanoseconds, file: Sour
     """Yield the texts of the innermost line; how long it has been there only if that is known."""
     lasted, doing = at - position.start, f"▶ {doing_of(position)}"
     if timeline.is_real and lasted < _SAMPLED:
-        yield from (doing, "▶", "")
+        yield from (doing, "▶")
         return
     if position.doing is not Doing.SLEEPS:
         full = f"{doing}, {duration(lasted)}"
@@ -104,7 +104,7 @@ def _at_line(position: Position, timeline: Timeline, at: Nanoseconds, file: Sour
         full = f"{doing} in a loop, {duration(lasted)} so far"
     else:
         full = f"{doing}, here for {duration(lasted)}"
-    yield from (full, f"▶ {duration(lasted)}", "")
+    yield from (full, f"▶ {duration(lasted)}", "▶")
 
 
 def fault_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, LineMarks]:

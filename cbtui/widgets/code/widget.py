@@ -361,13 +361,13 @@ class CodeView(InkedView):
         here = self._here.get(line)
         if here is not None and here.fault:
             return [number, Segment("✗ ", self.in_ink(_ink_of(here)))]
-        if marked is None:
-            return [number, Segment("  ", self.in_class(""))]
-        if marked.first_line == line:
+        if marked is not None and marked.first_line == line:
             letter = fit(marked.letter, _GUTTER - 5, Charset.BRAILLE)
             return [number, Segment(letter, self.in_ink(Ink(Role.LETTER, marked.number)))]
         if here is not None:
             return [number, Segment("▶ " if here.texts else "▸ ", self.in_ink(Ink(Role.BAR, here.number)))]
+        if marked is None:
+            return [number, Segment("  ", self.in_class(""))]
         glyph, role = _EDGES.get(marked.doing, (" ", Role.FAINT))
         return [number, Segment(f"{glyph} ", self.in_ink(Ink(role, marked.number)))]
 

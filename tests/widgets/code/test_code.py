@@ -226,3 +226,16 @@ async def test_a_narrow_view_says_it_in_fewer_words(path: Path) -> None:
         app.view.scroll_to(y=18, animate=False, immediate=True)
         await pilot.pause()
         assert lines_of(app)[1].rstrip().endswith("waits 400 ms")
+
+
+@pytest.mark.parametrize(("columns", "beside"), [(30, " ▶ 1.5 s "), (39, " ▶ "), (53, "")])
+async def test_beside_long_code_the_mark_of_where_a_thread_is_shrinks_and_its_sign_in_front_stays(
+    path: Path, columns: int, beside: str
+) -> None:
+    path.write_text("\n".join("x" * columns if line == 36 else "" for line in range(40)))
+    app = CodeOnly(path)
+    async with app.run_test(size=(50, 42)) as pilot:
+        app.view.show(several_calls(str(path), 37), ns(3.0))
+        await pilot.pause()
+        line = lines_of(app)[36]
+        assert line == f"  37 ▶ {'x' * columns}"[: 50 - len(beside)].ljust(50 - len(beside)) + beside
