@@ -190,6 +190,12 @@ def assert_short_waits_count_nowhere(timeline: Timeline, at: int, files: SourceF
     }
     in_code = [mark for marks in marks_at(timeline, at, files).values() for mark in marks]
     assert not any("waits" in mark.texts[0] for mark in in_code if mark.entity in short)
+    belts = [belt for area in scene_of(timeline, at, ns(0.1)).areas for belt in area.belts]
+    assert not any(wait_texts(belt, timeline, at) for belt in belts if belt.entity.id in short)
+    callbacks = {timeline.entities[each].callback for each in short}
+    callbacks -= {"", *(each.callback for each in timeline.entities.values() if each.id not in short)}
+    actors = [Actor(figure="hand", follows=each) for each in callbacks]
+    assert " waits " not in plain(paint_scene(actors, timeline, at, 120, 2, Charset.BRAILLE))
     status = LaneStatus(timeline, Window(0, at + 1), moment, LatestCalls(timeline), Charset.BRAILLE, 25)
     for lane in all_lanes(timeline, ""):
         if isinstance(lane, MemberLane | SoleLane) and lane.entity.id in short:
@@ -201,10 +207,13 @@ def assert_short_waits_count_nowhere(timeline: Timeline, at: int, files: SourceF
 
 
 def assert_headline_agrees(scene: FactoryScene) -> None:
-    """Compare the factory's headline with what its belts say."""
+    """Compare the factory's headline with what its belts and areas say."""
     belts = [wait_texts(belt, scene.timeline, scene.now) for area in scene.areas for belt in area.belts]
     waits = [texts[0] for texts in belts if texts]
-    told = re.search(r"(\d+) callbacks? waits? for a worker", headlines(scene)[0].trouble)
+    trouble = headlines(scene)[0].trouble
+    told = re.search(r"(\d+) callbacks? waits? for a worker", trouble)
     assert (int(told[1]) if told else 0) == sum("no free worker" in text for text in waits)
+    counts = re.findall(r"(\d+) callbacks? waits?", trouble)
+    assert sum(map(int, counts)) == sum(area.waiting for area in scene.areas)
     if "no callback waits" in headlines(scene)[0].text:
         assert all("its last call" in text for text in waits)

@@ -13,7 +13,7 @@ from cbtui.widgets.lanes.names import short_thread
 from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.events import Doing, EntityId
-from sim.trace.figures.waiting import WORTH_TELLING, waits_since
+from sim.trace.figures.waiting import wait_told, waits_since
 from sim.trace.model import EntityInfo, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
@@ -162,9 +162,9 @@ def _doing(
         several = [f"▶ {len(calls)} calls, longest {times[0]}"] if calls[1:] else []
         texts = (*_blocked_text(calls, moment), f"▶ {each}", *several, f"▶ {times[0]}")
         return CallbackActivity.RUNS, texts, calls[0].start
-    wait = moment.waiting.get(entity.id)
-    since = moment.at if wait is None else waits_since(wait, moment.queues[entity.id])
-    if wait is not None and moment.at - since >= WORTH_TELLING:
+    wait = wait_told(entity.id, moment)
+    if wait is not None:
+        since = waits_since(wait, moment.queues[entity.id])
         hatch, lasted = GLYPHS[Charset.BRAILLE].hatch[wait.reason], duration(moment.at - since)
         waited = f"{hatch} waits {lasted}"
         whys = (f"{waited}: {why_waiting(wait, timeline)}", waited, f"{hatch} {lasted}")

@@ -18,7 +18,7 @@ from cbtui.widgets.lanes.rows import (
 )
 from sim.diagnosis.words import thread_count
 from sim.trace.events import EntityKind, GroupKind, Reason, ThreadId
-from sim.trace.figures.waiting import waits_for_others
+from sim.trace.figures.waiting import wait_told
 from sim.trace.model import Blocked, EntityInfo, GroupInfo, Moment, Nanoseconds, Queue, Span, Wait, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
@@ -74,9 +74,13 @@ class Belt:
     entity: EntityInfo
     queue: Queue
     wait: Wait | None
+    """Only if it is worth telling."""
     tick: TimerTick | None
-    waits_for_others: bool = False
-    """Whether something other than its own last call keeps the callback waiting."""
+
+    @property
+    def waits_for_others(self) -> bool:
+        """Whether something other than its own last call keeps the callback waiting."""
+        return self.wait is not None and not self.wait.is_for_own_call
 
     @property
     def full(self) -> bool:
@@ -136,8 +140,7 @@ class FactoryScene:
 
     def waits(self) -> Iterator[Wait]:
         """Every wait for others."""
-        for area in self.areas:
-            yield from (belt.wait for belt in area.belts if belt.wait and belt.waits_for_others)
+        return (wait for wait in self.every_wait() if not wait.is_for_own_call)
 
     def every_wait(self) -> Iterator[Wait]:
         """Every wait that a belt tells, those for a callback's own last call included."""
@@ -160,7 +163,6 @@ class _SceneBuilder:
         self._now = now
         self._glance = glance
         self._moment: Moment = timeline.moment(now)
-        self._waiting = {wait.entity for wait in waits_for_others(self._moment)}
         self._numbers = {group: place for place, group in enumerate(timeline.groups)}
 
     def scene(self) -> FactoryScene:
@@ -261,10 +263,10 @@ class _SceneBuilder:
         return Area(group, self._numbers[group.id], belts, visitors, kept, more, crew)
 
     def _belt(self, entity: EntityInfo) -> Belt:
-        wait = self._moment.waiting.get(entity.id)
+        wait = wait_told(entity.id, self._moment)
         tick = self._tick(entity) if entity.kind is EntityKind.TIMER else None
         queue = self._moment.queues.get(entity.id, _NO_QUEUE)
-        return Belt(entity, queue, wait, tick, waits_for_others=entity.id in self._waiting)
+        return Belt(entity, queue, wait, tick)
 
     def _tick(self, timer: EntityInfo) -> TimerTick:
         """Compute a timer's next due time from its last call, as rcl does: missed ticks are dropped."""

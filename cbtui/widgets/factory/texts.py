@@ -74,11 +74,7 @@ def _places(scene: FactoryScene) -> str:
 
 def _trouble(scene: FactoryScene, *, is_brief: bool = False) -> str:
     """Say how many callbacks wait for what, but for those whose group is held by their own last call."""
-    waits = Counter(
-        wait.reason
-        for wait in scene.every_wait()
-        if wait.reason is not Reason.GROUP_HELD or wait.holder != wait.entity
-    )
+    waits = Counter(wait.reason for wait in scene.waits())
     objects = {
         Reason.GROUP_HELD: f" for {'it' if len(scene.areas) == 1 else 'a seat'}",
         Reason.NO_FREE_WORKER: " for a worker",

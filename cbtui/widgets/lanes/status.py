@@ -17,7 +17,7 @@ from cbtui.widgets.lanes.rows import (
 from cbtui.widgets.lanes.service_calls import LatestCalls
 from sim.quantities.durations import duration
 from sim.trace.events import EntityKind, GroupKind
-from sim.trace.figures.waiting import WORTH_TELLING, waits_for_others
+from sim.trace.figures.waiting import wait_told, waits_for_others
 from sim.trace.model import EntityInfo, GroupInfo, Moment, Span, ThreadInfo, Window
 from sim.trace.timeline import Timeline
 
@@ -106,8 +106,8 @@ class LaneStatus:
                 return TextRun("", PLAIN)
 
     def _timer(self, timer: EntityInfo, latest: Span | None) -> TextRun:
-        wait = self.moment.waiting.get(timer.id)
-        if wait is not None and self.moment.at - wait.since >= WORTH_TELLING:
+        wait = wait_told(timer.id, self.moment)
+        if wait is not None:
             return TextRun(f"late {duration(self.moment.at - wait.since)}", WARN)
         if latest is None:
             return TextRun("", PLAIN)

@@ -13,7 +13,7 @@ from lessons.description import Actor
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.descriptions import doing_of, why_waiting
-from sim.trace.figures.waiting import waits_since
+from sim.trace.figures.waiting import wait_told, waits_since
 from sim.trace.model import EntityInfo, Moment, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -126,7 +126,7 @@ def _state(entity: EntityInfo, timeline: Timeline, moment: Moment) -> _State:
         else:
             doing = "" if position is None or position.entity != entity.id else doing_of(position)
         return _State(elapsed / (elapsed + _HALF_WAY), f"runs {duration(elapsed)}", doing, bool(blocked))
-    wait = moment.waiting.get(entity.id)
+    wait = wait_told(entity.id, moment)
     if wait is not None:
         reasons = filter(None, (why_waiting(wait, timeline), losses))
         waited = duration(at - waits_since(wait, moment.queues[entity.id]))

@@ -32,7 +32,15 @@ def waits_for_others(moment: Moment) -> list[Wait]:
     """
     waits = (wait for wait in moment.waiting.values() if not wait.is_for_own_call)
     ordered = sorted((waits_since(wait, moment.queues[wait.entity]), wait.entity) for wait in waits)
-    return [moment.waiting[entity] for since, entity in ordered if moment.at - since >= WORTH_TELLING]
+    return [wait for _, entity in ordered if (wait := wait_told(entity, moment)) is not None]
+
+
+def wait_told(entity: EntityId, moment: Moment) -> Wait | None:
+    """Return the wait of a callback at a moment, its own last call's included, if it is worth telling."""
+    wait = moment.waiting.get(entity)
+    if wait is None or moment.at - waits_since(wait, moment.queues[entity]) < WORTH_TELLING:
+        return None
+    return wait
 
 
 def next_in_turn(moment: Moment, timeline: Timeline) -> dict[EntityId, Nanoseconds]:
