@@ -114,18 +114,13 @@ def thread_count(timeline: Timeline) -> int:
     return sum(
         executor.threads
         for executor in timeline.executors.values()
-        if executor.threads > 1 or not _is_any_running(timeline, executor.since)
+        if executor.threads > 1 or not executor.is_nested
     )
 
 
 def only_thread(timeline: Timeline) -> str:
     """What the one thread of a callback's executor is called; other executors may have threads too."""
     return "its only thread" if thread_count(timeline) > 1 else "the only thread"
-
-
-def _is_any_running(timeline: Timeline, at: Nanoseconds) -> bool:
-    window = Window(at, at + 1)
-    return any(timeline.spans_on(thread, window) for thread in timeline.threads)
 
 
 def threads_for(entities: Iterable[EntityId], at: Nanoseconds, timeline: Timeline) -> int:

@@ -196,6 +196,11 @@ class Execution:
 
     # queries
 
+    @property
+    def is_running(self) -> bool:
+        """Whether a callback runs on any thread after the last event."""
+        return any(thread.stack for thread in self._threads.values())
+
     def has_nested(self, thread: ThreadId) -> bool:
         """Whether a span on a thread ever began inside another one."""
         return len(self._threads[thread].layers) > 1

@@ -57,7 +57,8 @@ class ExecutorInfo:
     id: ExecutorId
     kind: str
     threads: int
-    since: Nanoseconds
+    is_nested: bool
+    """Whether a callback made it, such as a nested ``rclpy.spin_until_future_complete``."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,9 +58,9 @@ class Participants:
         name = event.name if label is None else f"{label} {event.name}"
         self.threads[event.thread] = ThreadInfo(event.thread, name, event.t, event.process, event.executor)
 
-    def add_executor(self, event: ExecutorAppeared) -> None:
+    def add_executor(self, event: ExecutorAppeared, *, is_nested: bool) -> None:
         """Add an executor."""
-        self.executors[event.executor] = ExecutorInfo(event.executor, event.kind, event.threads, event.t)
+        self.executors[event.executor] = ExecutorInfo(event.executor, event.kind, event.threads, is_nested)
 
     def add_node(self, event: NodeAppeared) -> None:
         """Add a node."""

@@ -128,7 +128,7 @@ class RunStores:
             ev.ProcessAppeared: self.participants.add_process,
             ev.ProcessEnded: self.participants.end_process,
             ev.ThreadAppeared: self.participants.add_thread,
-            ev.ExecutorAppeared: self.participants.add_executor,
+            ev.ExecutorAppeared: self._executor_appeared,
             ev.NodeAppeared: self.participants.add_node,
             ev.GroupAppeared: self.participants.add_group,
             ev.EntityAppeared: self._entity_appeared,
@@ -203,6 +203,9 @@ class RunStores:
     def _wait_ended(self, event: ev.WaitEnded) -> None:
         self.waiting.finish(event.entity, event.t)
         self.active.note(event.entity, event.t)
+
+    def _executor_appeared(self, event: ev.ExecutorAppeared) -> None:
+        self.participants.add_executor(event, is_nested=self.execution.is_running)
 
     def _callback_started(self, event: ev.CallbackStarted) -> None:
         self.active.note(event.entity, event.t)

@@ -153,6 +153,22 @@ def test_where_nothing_waits_the_threads_that_were_needed_are_told() -> None:
     assert said(shared_group_run(), 3.0).text == "nothing waits; one thread does all the work"
 
 
+def test_executors_made_at_the_instant_of_the_first_callback_have_a_thread_each() -> None:
+    run = Run()
+    for _ in range(2):
+        run.executor("SingleThreadedExecutor", 1)
+    run.callback(run.timer(run.exclusive(run.node("/n")), "tick", 1.0), run.thread("MainThread"), 0.0, 0.1)
+    assert said(run, 0.9).text == "nothing waits; so far 1 of 2 threads was needed at once"
+
+
+def test_an_executor_that_a_callback_made_adds_no_thread() -> None:
+    run = Run()
+    run.executor("SingleThreadedExecutor", 1)
+    run.callback(run.timer(run.exclusive(run.node("/n")), "tick", 1.0), run.thread("MainThread"), 0.0, 0.1)
+    run.executor("SingleThreadedExecutor", 1, at=0.0)
+    assert said(run, 0.9).text == "nothing waits; one thread does all the work"
+
+
 def test_a_pool_of_one_thread_has_a_number_too() -> None:
     timeline = Timeline()
     timeline.extend(run_lesson("how-many-threads", 3.0, threads=1).events)
