@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from difflib import get_close_matches
 from typing import Any, NoReturn, TypeAlias
 
 from sim.packages import Packages
@@ -32,7 +33,7 @@ class HelpAsked(Exception):  # noqa: N818 -- not an error
 
 
 class UsageError(Exception):
-    """The words are not a valid line; the text is argparse's message."""
+    """The words are not a valid line; the text is a sentence."""
 
 
 class LineParser(argparse.ArgumentParser):
@@ -62,8 +63,18 @@ class LineParser(argparse.ArgumentParser):
         raise HelpAsked(self.format_help())
 
     def error(self, message: str) -> NoReturn:
-        """Raise UsageError."""
-        raise UsageError(f"{self.format_usage()}{self.prog}: error: {message}")
+        """Raise UsageError, without the usage, which would hide the reason in a small pane."""
+        raise UsageError(f"{self.prog}: error: {message} (see {self.prog} -h)")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuse a word that is none of the choices, with the nearest of them."""
+        if action.choices is None or value in action.choices:
+            return
+        choices = [str(each) for each in action.choices]
+        near = get_close_matches(str(value), choices, 1)
+        advice = f"; did you mean {near[0]}?" if near else f" (choose from {', '.join(choices)})"
+        about = None if isinstance(action, argparse._SubParsersAction) else action
+        raise argparse.ArgumentError(about, f"invalid choice: {value!r}{advice}")
 
 
 class _Formatter(argparse.HelpFormatter):

@@ -119,8 +119,7 @@ def test_a_wrong_line_says_what_is_wrong(line: str, complaint: str, status: int)
     assert (result.out, result.err, result.status) == ("", complaint, status)
 
 
-def test_a_rate_that_is_none_is_refused_by_usage() -> None:
+def test_a_rate_that_is_none_is_refused() -> None:
     result = carry_out("topic pub -r 0 /t std_msgs/msg/Int32")
-    assert result.err.startswith("usage: ros2 topic pub [-h]")
-    assert result.err.endswith("ros2 topic pub: error: argument -r/--rate: value must be positive\n")
+    assert result.err.startswith("ros2 topic pub: error: argument -r/--rate: value must be positive (see ")
     assert result.status == 2
