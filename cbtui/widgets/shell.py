@@ -151,6 +151,8 @@ class Prompt(Input):
         super().__init__(compact=True, select_on_focus=False)
         self._history: list[str] = []
         self._place = 0
+        self._asked_at = ("", 0)
+        """The line and the cursor for which completions were wanted last."""
 
     def on_mount(self) -> None:
         """Show the hint for a prompt without the focus."""
@@ -192,7 +194,13 @@ class Prompt(Input):
 
     def action_complete(self) -> None:
         """Ask for completions at the cursor."""
-        self.post_message(self.CompletionWanted(self.value, self.cursor_position))
+        self._asked_at = self.value, self.cursor_position
+        self.post_message(self.CompletionWanted(*self._asked_at))
+
+    @property
+    def is_as_asked(self) -> bool:
+        """Whether the line and the cursor are still those for which completions were wanted."""
+        return self._asked_at == (self.value, self.cursor_position)
 
     def action_interrupt(self) -> None:
         """Interrupt the running line."""
@@ -286,7 +294,8 @@ class ShellView(Vertical):
         completed = timeline.completed
         if completed is not None and completed.line != self._completed:
             self._completed = completed.line
-            self._offer(completed.start, completed.words)
+            if self.query_one(Prompt).is_as_asked:
+                self._offer(completed.start, completed.words)
 
     def ask(self, asked: KeyboardAsked | None, keymap: Keymap, charset: Charset) -> None:
         """Show the keyboard request of a program; None if no program reads."""

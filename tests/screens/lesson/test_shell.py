@@ -136,11 +136,21 @@ async def test_tab_asks_and_the_answer_fills_in_what_is_common() -> None:
         assert not any("/robot/odom  /robot/scan" in line for line in lines_of(app))
 
 
+async def test_a_completion_that_comes_after_enter_is_dropped() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "colon")
+        await type_text(pilot, "topic l")
+        await press(pilot, "tab", "enter")
+        await deliver(app, pilot, [LineCompleted(ns(5.0), 1, 6, ("list",))])
+        assert prompt(app).value == ""
+
+
 @pytest.mark.slow
 async def test_no_completion_leaves_the_line_alone() -> None:
     async with console() as (app, pilot):
         await press(pilot, "colon")
         await type_text(pilot, "ros2 xyz")
+        await press(pilot, "tab")
         await deliver(app, pilot, [LineCompleted(ns(5.0), 1, 5, ())])
         assert prompt(app).value == "ros2 xyz"
 
