@@ -76,14 +76,14 @@ class Predictions(ScreenPart):
             self.ask(go_on)
 
     def check_whether_watched(self) -> None:
-        """Unlock the explanation once enough of the run was watched."""
+        """Unlock the explanation once enough of the run was watched, and no window is open for it to cover."""
         learning = self.learning
         if learning.state is None:
             return
         if learning.was_called != self._was_called():
             learning.was_called = not learning.was_called
             self.screen.run_worker(learning.update_page(), group="page")
-        if learning.state.progress.seen or not self._was_watched():
+        if learning.state.progress.seen or not self.screen.is_active or not self._was_watched():
             return
         learning.store.see(self.learning.lesson.id)
         self._find_out()

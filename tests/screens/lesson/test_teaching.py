@@ -17,6 +17,7 @@ from cbtui.runs.judged.checking import ObservedRun, observe
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
+from cbtui.screens.windows.diagnoses import DiagnosesScreen
 from cbtui.screens.windows.prediction import PredictionScreen
 from cbtui.screens.windows.solution import ConfirmSolutionScreen, SolutionScreen
 from cbtui.widgets.guide import Guide
@@ -303,6 +304,22 @@ async def test_enough_of_a_run_unlocks_what_it_showed() -> None:
         await settle(pilot)
         await until_shown(pilot, app, "You got 2 of 2")
         assert app.kept().seen
+
+
+@pytest.mark.slow
+async def test_what_is_unlocked_is_told_once_no_window_is_open() -> None:
+    async with console(29.0, LESSON.id, the_lessons_own_run(), "1", "enter", "2", "enter", "d") as (
+        app,
+        pilot,
+    ):
+        assert top(app) is DiagnosesScreen
+        app.engines.latest.play(ns(30.1))
+        await settle(pilot)
+        assert not any("what happened, and why" in each.message for each in app._notifications)
+        await press(pilot, "escape")
+        await until(
+            pilot, lambda: any("what happened, and why" in each.message for each in app._notifications)
+        )
 
 
 @pytest.mark.slow
