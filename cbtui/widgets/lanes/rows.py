@@ -171,7 +171,7 @@ class _LanePriority:
 
     def _thread(self, thread: ThreadInfo) -> int:
         busy = self.timeline.busy(thread.id, self.window)
-        return 9 if busy >= 0.5 else 7 if busy > 0 else 2
+        return 9 if busy >= 0.5 else 7 if self.timeline.spans_on(thread.id, self.window) else 2
 
     def _group_waits(self, group: GroupId) -> bool:
         return any(self._waits_long(member.id) for member in self.timeline.group_members(group)[:MOST_LANES])

@@ -1,7 +1,7 @@
 import pytest
 
 from cbtui.widgets.lanes.names import group_name, more_lanes, service_name, shortened, thread_name, told_apart
-from cbtui.widgets.lanes.rows import ThreadLane, all_lanes, choose_lanes
+from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ThreadLane, all_lanes, choose_lanes
 from sim.trace.events import EntityAppeared, EntityKind, GroupKind
 from sim.trace.model import GroupInfo, ThreadInfo, Window
 from sim.trace.timeline import Timeline
@@ -119,6 +119,17 @@ def test_the_servers_of_an_action_in_two_nodes_are_named_after_these() -> None:
     timeline = run_timeline(run)
     names = [told_apart(each, timeline, "◂") for each in timeline.entities.values()]
     assert names == ["robot fetch_it server", "dispatcher fetch_it server"]
+
+
+def test_a_thread_whose_callbacks_take_no_time_stays_before_a_service_that_nobody_called() -> None:
+    run = Run()
+    thread = run.thread("MainThread")
+    group = run.exclusive(run.node("/n"))
+    for name in ("one", "two"):
+        run.callback(run.timer(group, name, 1.0), thread, 1.0, 0.0)
+    timeline = run_timeline(run)
+    lanes = choose_lanes(all_lanes(timeline, "/call"), 4, timeline, Window(0, ns(2.0)))
+    assert [type(lane) for lane in lanes] == [ThreadLane, GroupLane, MemberLane, MemberLane]
 
 
 def test_where_lanes_are_few_threads_leave_room_for_callbacks_that_run() -> None:
