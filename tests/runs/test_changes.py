@@ -65,6 +65,7 @@ ABOUT = ChangeableSetup(
     "jazzy@7.1.12",
 )
 SERVER = find("exclusive-2-threads")
+LOCK = find("overlapping-timer")
 
 
 def timeline_of(run: Run) -> Timeline:
@@ -331,6 +332,11 @@ def test_a_run_without_a_robot_has_no_sensors() -> None:
     setup = msgspec.structs.replace(setup_for(SERVER), robot=RobotUse.NEVER)
     found = changeable(of_lesson(SERVER, lessons()), setup, Timeline())
     assert not [row for row in rows_of(found) if row.aspect == "rate"]
+
+
+def test_a_lesson_with_a_scene_in_place_of_the_robot_has_no_sensors() -> None:
+    about = changeable(of_lesson(LOCK, lessons()), setup_for(LOCK), Timeline())
+    assert about.sensor_rate is None
 
 
 def test_a_program_that_uses_no_robot_has_no_sensors_and_a_release_from_the_start() -> None:

@@ -59,7 +59,7 @@ class ChangeableSetup:
     """Everything that can be changed.
 
     ``executor`` is the program's own, ``executor_now`` the run's. ``threads_argument`` is the argument for
-    the number of threads, if the program has one. ``sensor_rate`` is in Hz, None without a robot.
+    the number of threads, if the program has one. ``sensor_rate`` is in Hz, None where no robot is seen.
     ``release`` is the rclpy that the model is like, None on real ROS 2.
     """
 
@@ -75,7 +75,7 @@ class ChangeableSetup:
 def changeable(subject: ShownProgram, setup: RunSetup, timeline: Timeline) -> ChangeableSetup:
     """Return what can be changed about a run, as far as its trace shows."""
     lesson, started = subject.lesson, timeline.started
-    has_robot = setup.robot is RobotUse.ALWAYS or timeline.arena is not None
+    has_robot = (setup.robot is RobotUse.ALWAYS or timeline.arena is not None) and not subject.scene
     words = setup.programs[0].arguments if setup.programs else ()
     arguments = [
         ChangeableArgument(each.argument, Quantity(each.name, each.unit, each.least, each.most), number)
