@@ -15,7 +15,7 @@ _OTHERS = {"A": "LESSON|FILE", "B": "LESSON|FILE"}
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
-    parser.add_argument("shell", choices=_SHELLS, help="the shell to print it for")
+    parser.add_argument("shell", metavar="|".join(_SHELLS), choices=_SHELLS, help="the shell to print it for")
 
 
 def completion(whole: Callable[[], argparse.ArgumentParser], options: argparse.Namespace) -> int:

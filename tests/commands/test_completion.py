@@ -65,6 +65,7 @@ def test_the_manual_has_every_command(capsys: pytest.CaptureFixture[str]) -> Non
     ("words", "near"),
     [
         (["opne"], "did you mean open?"),
+        (["completion"], "the following arguments are required: bash|zsh|fish"),
         (["my_node.py"], "my_node.py is not a command; cbtui open my_node.py opens it"),
         (["split-groups", "--threads", "2"], "cbtui run split-groups runs it"),
         (
