@@ -42,7 +42,7 @@ def name_of(entity: EntityId, timeline: Timeline | Participants) -> str:
 def waiting_name(entity: EntityId, during: Window, timeline: Timeline) -> str:
     """The name of what waits, in a sentence; of an action's server with what it is asked by the end.
 
-    A request that came later than the wait began is told with its own time.
+    A request that came later than the wait began is told with the time between.
     """
     known, name = timeline.entities.get(entity), name_of(entity, timeline)
     action, _, end = ("" if known is None else known.name).partition(" ")
@@ -51,7 +51,10 @@ def waiting_name(entity: EntityId, during: Window, timeline: Timeline) -> str:
         for call in pending:
             if call.service == f"{action}/_action/{part}":
                 own = duration(during.end - call.sent)
-                return f"{name} ({words}{'' if own == duration(during.length) else f' for {own}'})"
+                after = (
+                    "" if own == duration(during.length) else f" after {duration(call.sent - during.start)}"
+                )
+                return f"{name} ({words}{after})"
     return name
 
 

@@ -46,7 +46,7 @@ FOR_EVER = (
     "deadlock: tick waits in spin_until_future_complete() for ever; "
     "all callbacks of its node are in group A, which tick holds"
 )
-TAKEN = "{}() in tick moved node /caller to another executor; the first one no longer serves it"
+TAKEN = "node /caller left its executor for that of {}() in tick; the first one no longer serves it"
 
 
 REPLY_HELD = (

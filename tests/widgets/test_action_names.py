@@ -26,7 +26,7 @@ def test_the_server_of_an_action_is_told_from_its_client(cancelled: Timeline) ->
     ("at", "told"),
     [
         (3.0, "/fetch_it server (asked for the result) waits 500 ms"),
-        (5.0, "/fetch_it server (asked to cancel for 1.0 s) waits 2.5 s"),
+        (5.0, "/fetch_it server (asked to cancel after 1.5 s) waits 2.5 s"),
     ],
 )
 def test_what_the_server_of_an_action_is_asked_has_a_time_of_its_own(
@@ -36,8 +36,8 @@ def test_what_the_server_of_an_action_is_asked_has_a_time_of_its_own(
     assert line == f"{told}: its only thread runs execute_callback"
 
 
-def test_a_diagnosis_tells_for_how_long_of_its_wait_a_server_was_asked_to_cancel(cancelled: Timeline) -> None:
+def test_a_diagnosis_tells_when_in_its_wait_a_server_was_asked_to_cancel(cancelled: Timeline) -> None:
     (found,) = (each for each in diagnose(cancelled) if each.rule.id == "no-free-worker")
     told = found.rule.explain(found, cancelled).what
-    server = "/fetch_it server (asked to cancel for 3.5 s) waited 5.0 s"
+    server = "/fetch_it server (asked to cancel after 1.5 s) waited 5.0 s"
     assert told == f"{server}: its only thread ran execute_callback"

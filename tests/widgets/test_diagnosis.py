@@ -434,6 +434,7 @@ _FOUR_CALLS = (2.55, 10.55, 10.6, 10.65)
     [
         ("reentrant-2-threads", _FOUR_CALLS, "timer waited 4.6 s: 2 calls of SetBool kept a thread each"),
         ("no-groups-at-all", _FOUR_CALLS, "timer waited 4.5 s: group A was held by SetBool (node.py:97)"),
+        ("cancel-never-served", (1.0,), "/fetch_it server waited 5.0 s: its only thread ran execute"),
         ("three-cures", (), "ask_and_await took 1.5 s with a period of 1.0 s (node.py:71)"),
     ],
 )
@@ -447,6 +448,23 @@ def test_in_80_columns_no_lesson_s_problem_is_cut_within_a_clause(
     told = with_worst_problem(Diagnosis("", DiagnosisLevel.FINE), monitor.findings)
     row = line(told, 80, problems="1 problem · d")
     assert row.startswith(f" ! {shown}  ")
+
+
+@pytest.mark.parametrize(
+    ("lesson", "shown"),
+    [
+        ("spin-inside-a-callback", "line 63: node /asker left its executor for that of spin_unti…"),
+        ("qos-never-matches", "line 51: RELIABILITY does not match: temperature_callback he…"),
+        ("synchroniser-never-fires", "line 67: the stamps are at least 20 ms apart: the synchronis…"),
+        ("clock-set-back", "done_at was kept when sim time was set back by 950 ms"),
+    ],
+)
+def test_in_80_columns_a_long_sentence_has_its_reason_first(lesson: str, shown: str) -> None:
+    timeline = run_lesson(lesson, 3.0, 1.0).timeline
+    monitor = FindingsMonitor(timeline)
+    monitor.update()
+    told = with_worst_problem(Diagnosis("", DiagnosisLevel.FINE), monitor.findings)
+    assert line(told, 80, problems="1 problem · d").startswith(f" ! {shown}  ")
 
 
 def test_a_sentence_that_does_not_fit_ends_with_a_clause() -> None:

@@ -104,7 +104,7 @@ class TimesKept(Rule):
         is_one = len(event.attributes) == 1
         was, lies, it = ("was", "lies", "it") if is_one else ("were", "lie", "them")
         return Explanation(
-            f"{names} {was} kept when the simulated clock was set back by {duration(event.length)}",
+            f"{names} {was} kept when sim time was set back by {duration(event.length)}",
             f"rclpy tells timers of a jump, but not what a node remembers: {names} {lies} in the future "
             "until the clock comes there again",
             f"set {it} back, or forget {it}, in a jump callback: get_clock().create_jump_callback()",

@@ -282,7 +282,7 @@ class QosMismatch(Rule):
             also = unmatched_beside(publisher.file, found.detail, *lines)
         same, differs = "QoSProfile", f"{listed([found.detail, *also])} do{'' if also else 'es'} not match"
         if found.detail == _TYPE:
-            same, differs = "message type", "their message types differ"
+            same, differs = "message type", "message types differ"
         cure = f"give both ends of {found.about} the same {same}"
         cure += f": {' and '.join(ends)}" if ends else ""
         if len(ends) == 1:
@@ -295,7 +295,7 @@ class QosMismatch(Rule):
         other = next((each for each in (publisher, subscription) if each and edited and each != edited), None)
         seen = other.first_line if other and edited and other.file == edited.file else 0
         return Explanation(
-            f"{subject} hears nothing from a publisher of {found.about}{outside}: {differs}",
+            f"{differs}: {subject} hears nothing from a publisher of {found.about}{outside}",
             _POLICY_RULES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
             cure,
             place or place_of(found.subject, timeline),

@@ -49,7 +49,7 @@ class NeverSynchronised(Rule):
         if missing := _missing(event):
             topics = listed(map(_named, missing))
             return Explanation(
-                f"{nothing}: no message of {topics} came, and {came}",
+                f"no message of {topics} came: {nothing} of {came}",
                 "a set has one message of each topic",
                 f"publish on {topics}, or give it the name that its publisher has",
                 place,
@@ -57,7 +57,7 @@ class NeverSynchronised(Rule):
         if unset := _of_stamp_zero(event):
             topics = listed(map(_named, unset))
             return Explanation(
-                f"{nothing}: the stamps of {topics} are 0{_sent_by(unset, timeline)}, in {came}",
+                f"the stamps of {topics} are 0{_sent_by(unset, timeline)}: {nothing} of {came}",
                 f"{takes}; a header's stamp is 0 until it is set",
                 "set header.stamp before the message is published, by get_clock().now().to_msg()",
                 place,
@@ -78,14 +78,14 @@ class NeverSynchronised(Rule):
                 for topic, stamp in zip(event.topics, event.stamps, strict=True)
             )
             return Explanation(
-                f"{nothing}: the stamps are far apart, {newest} at last",
+                f"the stamps are far apart, {newest} at last: {nothing}",
                 f"{takes}; these seem to come from different clocks, such as a simulated one and the wall's",
                 "stamp them all by one clock, by use_sim_time in all nodes or in none",
                 place,
             )
         more = f"a slop of {slop}" if event.slop else f"an ApproximateTimeSynchronizer with slop={slop}"
         return Explanation(
-            f"{nothing}: the stamps are at least {duration(event.apart)} apart, in {came}",
+            f"the stamps are at least {duration(event.apart)} apart: {nothing} of {came}",
             f"{takes}; it keeps the last messages of each topic until their partners come, and says nothing",
             f"take {more}, which most of these messages are within",
             place,
