@@ -11,7 +11,7 @@ import threading
 import time
 from collections.abc import Callable
 from threading import get_ident
-from types import TracebackType
+from types import CodeType, FrameType, TracebackType
 from typing import Any
 
 from sim.clock.paced import PacedClock
@@ -23,6 +23,7 @@ _allocate_lock = threading.Lock
 _RLock: Any = type(threading.RLock())
 _thread_join = threading.Thread.join
 _LIBRARY = {threading.__file__, queue.__file__}
+_PASSED = {*_LIBRARY, __file__}
 
 _SLICE = 0.02
 """Real seconds between two checks of a timeout: the pace may have changed."""
@@ -46,7 +47,16 @@ class PacedLock:
     """``threading.Lock`` whose timeout is seconds of a paced clock."""
 
     _clock: PacedClock
-    __slots__ = ("__weakref__", "_lock", "holder_ident", "locked", "release", "taken_during")
+    __slots__ = (
+        "__weakref__",
+        "_lock",
+        "holder_ident",
+        "locked",
+        "release",
+        "taken_at",
+        "taken_by",
+        "taken_during",
+    )
 
     def __init__(self) -> None:
         lock = _allocate_lock()
@@ -55,6 +65,8 @@ class PacedLock:
         self.release = lock.release
         self.holder_ident = 0
         """The identifier of the thread that took the lock to guard something; 0 if it may be a signal."""
+        self.taken_at: tuple[CodeType, int] | None = None
+        self.taken_by: threading.Thread | None = None
         self.taken_during: object = None
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
@@ -66,14 +78,14 @@ class PacedLock:
         if taken:
             taker = sys._getframe(1)
             guards = taker.f_code.co_filename not in _LIBRARY and takes_to_guard(taker)
-            self.holder_ident = get_ident() if guards else 0  # else another thread may release it
-            self.taken_during = self._clock.activity()
+            _note_taking(self, taker, self._clock)
+            if not guards:
+                self.holder_ident = 0  # another thread may release it
         return taken
 
     def __enter__(self) -> bool:
         self._lock.acquire()
-        self.holder_ident = get_ident()
-        self.taken_during = self._clock.activity()
+        _note_taking(self, sys._getframe(1), self._clock)
         return True
 
     def __exit__(
@@ -92,16 +104,20 @@ class PacedRLock(_RLock):  # type: ignore[misc]
     _clock: PacedClock
     holder_ident = 0
     """The identifier of the thread that last took the lock."""
+    taken_at: tuple[CodeType, int] | None = None
+    taken_by: threading.Thread | None = None
+    taken_during: object = None
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock once more; False if it is not available at once (or within ``timeout`` seconds)."""
         take: Callable[..., bool] = super().acquire
+        again = self._is_owned()
         if timeout <= 0 or not blocking:
             taken = take(blocking, timeout)
         else:
             taken = _within(timeout, self._clock, lambda seconds: take(timeout=seconds))
-        if taken:
-            self.holder_ident = get_ident()
+        if taken and not again:
+            _note_taking(self, sys._getframe(1), self._clock)
         return taken
 
     def __enter__(self) -> bool:
@@ -109,7 +125,18 @@ class PacedRLock(_RLock):  # type: ignore[misc]
 
     def _acquire_restore(self, state: object) -> None:
         super()._acquire_restore(state)
-        self.holder_ident = get_ident()
+        _note_taking(self, sys._getframe(1), self._clock)
+
+
+def _note_taking(lock: PacedLock | PacedRLock, frame: FrameType, clock: PacedClock) -> None:
+    """Record which thread took a lock, during what, and where: the first frame outside the library."""
+    lock.holder_ident = ident = get_ident()
+    active: Any = threading
+    lock.taken_by = active._active.get(ident)
+    lock.taken_during = clock.activity()
+    while frame.f_code.co_filename in _PASSED and frame.f_back is not None:
+        frame = frame.f_back
+    lock.taken_at = frame.f_code, frame.f_lasti
 
 
 @waits_for_time

@@ -34,6 +34,7 @@ _allocate_lock = threading.Lock
 _thread_start = threading.Thread.start
 _thread_join = threading.Thread.join
 _thread_is_alive = threading.Thread.is_alive
+_active_threads: dict[int, threading.Thread] = threading._active  # type: ignore[attr-defined]
 _RLock: Any = threading._PyRLock  # type: ignore[attr-defined]
 _RLOCK_TAKES = _RLock.acquire.__code__
 _RLOCK_TAKES_AGAIN = _RLock._acquire_restore.__code__
@@ -57,6 +58,7 @@ class VirtualLock:
         self.holder: VirtualThread | None = None
         self.guards = False
         self.taken_at: tuple[CodeType, int] | None = None
+        self.taken_by: threading.Thread | None = None
         self.taken_during: object = None
         self._clock.record_use(self)
 
@@ -153,6 +155,7 @@ class VirtualLock:
         """Record which thread took the lock, and where: the first frame outside the library."""
         self._clock.record_use(self)
         self.holder = self._clock.current
+        self.taken_by = _active_threads.get(self.holder.ident)
         self.taken_during = self._clock.activity()
         code = frame.f_code
         self.guards = code is _ENTERS or code is _RLOCK_TAKES or code is _RLOCK_TAKES_AGAIN

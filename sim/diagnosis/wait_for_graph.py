@@ -21,7 +21,7 @@ from sim.diagnosis.rule import WaitedFor, is_models
 from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import pool_of
 from sim.diagnosis.waiters import Obstacle, OnThread, StuckCallback, Suspended, Waiter, thread_name
-from sim.diagnosis.words import group_of, listed, threads_for, who
+from sim.diagnosis.words import awaited_lock, group_of, listed, threads_for, who
 from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, NoticeKind, Reason, ThreadId
 from sim.trace.model import Call, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.timeline import Timeline
@@ -185,22 +185,19 @@ class WaitForGraph:
 
     def _held_obstacle(self, position: Position) -> Obstacle:
         """A thread that is to end, or a lock: what a call that is over left locked is waited for in a row."""
-        me, keeper = self._name(OnThread(position.thread)), position.keeper
+        me, keeper, more = self._name(OnThread(position.thread)), position.keeper, ""
         holder: Waiter = OnThread(position.holder)
         if not position.waits_for_lock:
             text = f"{me} waits for {thread_name(holder, self._timeline)} to end"
             return Obstacle(WaitedFor.THREAD, text, (holder,))
         if keeper in self._suspended():
-            whose, holder = f"{who(keeper, self._timeline)} keeps while it awaits", Suspended(keeper)
+            more, holder = " and keeps while it awaits", Suspended(keeper)
         elif keeper:
             stands = (self._timeline.position_on(thread, self._at) for thread in self._moment.running)
             waits = [each for each in stands if each is not None and each.keeper == keeper]
             holder = OnThread(min(waits, key=attrgetter("start")).thread)
-            by = "an earlier call" if keeper == position.entity else who(keeper, self._timeline)
-            whose = f"{by} took and did not release"
-        else:
-            whose = "it keeps itself" if position.holder == position.thread else f"{self._name(holder)} keeps"
-        return Obstacle(WaitedFor.LOCK, f"{me} wants the lock that {whose}", (holder,))
+        text = f"{me} wants {awaited_lock(position, self._timeline, more)}"
+        return Obstacle(WaitedFor.LOCK, text, (holder,), name=position.lock)
 
     def _busy_obstacle(self, call: Call, span: Span) -> Obstacle | None:
         """A loop that computes keeps a reply from its client, even one that is not there yet."""

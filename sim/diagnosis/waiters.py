@@ -32,7 +32,8 @@ class Obstacle:
     """What a callback waits for, with a clause; it ends if one of ``by`` continues.
 
     ``wanted`` is the service, or a ``WaitedFor``; ``needs_worker``: whether a thread is missing; ``group`` is
-    the group that has to admit it, "" for none.
+    the group that has to admit it, "" for none; ``name`` is the name of what is wanted, if it has one of its
+    own.
     """
 
     wanted: str
@@ -40,6 +41,7 @@ class Obstacle:
     by: tuple[Waiter, ...]
     needs_worker: bool = False
     group: str = ""
+    name: str = ""
 
     @property
     def kind(self) -> WaitedFor:
@@ -49,7 +51,8 @@ class Obstacle:
     @property
     def steps(self) -> tuple[str, ...]:
         """The steps from the callback to the one that blocks it: ``/add``, ``group A``."""
-        return tuple(filter(None, (self.wanted, "a thread" if self.needs_worker else self.group)))
+        by = "a thread" if self.needs_worker else self.group
+        return tuple(filter(None, (self.name or self.wanted, by)))
 
 
 @dataclass(frozen=True, slots=True)

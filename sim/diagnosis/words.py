@@ -1,12 +1,13 @@
 """Names of callbacks, groups and executors for the sentences of rules."""
 
 from collections.abc import Iterable
+from pathlib import Path
 
 from sim.quantities.durations import timestamp
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import name_of, waiting_name
 from sim.trace.events import EntityId, EntityKind
-from sim.trace.model import Blocked, EntityInfo, Moment, Nanoseconds, ThreadInfo, Window
+from sim.trace.model import Blocked, EntityInfo, Moment, Nanoseconds, Position, ThreadInfo, Window
 from sim.trace.timeline import Timeline
 
 SPIN_ALWAYS = "do one step of the loop in a timer's callback, and call rclpy.spin(node)"
@@ -43,6 +44,31 @@ def who_waits(entity: EntityId, during: Window, timeline: Timeline) -> str:
     known = timeline.entities.get(entity)
     is_action = known is not None and known.kind is EntityKind.WAITABLE
     return waiting_name(entity, during, timeline) if is_action else who(entity, timeline)
+
+
+def awaited_lock(position: Position, timeline: Timeline, more: str = "") -> str:
+    """Return the lock for which a callback waits, who took it, and where, as far as that is known.
+
+    ``more`` is what has become of it: `` and keeps while it awaits``.
+    """
+    taker, itself = lock_taker(position, timeline), ""
+    if position.is_left:
+        more = " and did not release before it ended"
+    elif position.keeper:
+        more = more or " and did not release"
+        taker = "an earlier call" if position.keeper == position.entity else taker
+    elif position.holder == position.thread:
+        taker, itself = "it", " itself"
+    file, line = position.taken_at
+    where = f" at {Path(file).name}:{line}" if file else ""
+    return f"{position.lock or 'a lock'}{f', which {taker} took{itself}{where}{more}' if taker else ''}"
+
+
+def lock_taker(position: Position, timeline: Timeline) -> str:
+    """Return the callback that took the lock for which another one waits, else the thread; "" if unknown."""
+    spans = timeline.spans_on(position.holder, Window(position.start, position.start + 1))
+    keeper = position.keeper or (spans[-1].entity if spans else 0)
+    return who(keeper, timeline) if keeper else position.taken_by
 
 
 def must_answer(entity: EntityId, timeline: Timeline) -> bool:

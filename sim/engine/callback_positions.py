@@ -7,10 +7,11 @@ import threading
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from itertools import takewhile
-from types import FrameType
+from types import FrameType, MappingProxyType
 from typing import TypeAlias
 
 from sim.clock import RunClock
+from sim.engine.waited_lock import WaitedLock, decorated, first_line, waited_lock
 from sim.interpreter.function_marks import calls_the_program, waits_for_keyboard
 from sim.probes.own_code import is_library, is_own, outwards
 from sim.probes.probe import Probe, RunningCallback
@@ -29,7 +30,7 @@ _TIMEOUTS = ("timeout_sec", "timeout", "time_to_wait")
 _LONGEST = 1_000_000_000
 """Seconds of the longest timeout that is recorded."""
 
-PositionFields: TypeAlias = tuple[Doing, str, tuple[tuple[str, str, int], ...], SourcePlace, int, EntityId]
+PositionFields: TypeAlias = tuple[Doing, str, tuple[tuple[str, str, int], ...], SourcePlace, WaitedLock]
 
 
 class CallbackPositions:
@@ -56,11 +57,9 @@ class CallbackPositions:
             if self._latest.get(ident) != (callback, position):
                 self._latest[ident] = callback, position
                 until = now + timeout if timeout else 0
-                doing, call, frames, loop, holder, keeper = position
-                at = CallbackAt(
-                    now, callback.entity, callback.thread, doing, call, frames, loop, holder, until, keeper
-                )
-                self._record(at)
+                doing, call, frames, loop, lock = position
+                where = doing, call, frames, loop, lock.holder, until
+                self._record(CallbackAt(now, callback.entity, callback.thread, *where, *lock[1:]))
 
     def callback_on(self, ident: int) -> EntityId:
         """Take a sample, and return the callback that runs on a thread (0: none)."""
@@ -70,7 +69,9 @@ class CallbackPositions:
 
 
 def position_of(
-    top: FrameType | None, running: Mapping[int, RunningCallback], threads: Mapping[int, ThreadId]
+    top: FrameType | None,
+    running: Mapping[int, RunningCallback] = MappingProxyType({}),
+    threads: Mapping[int, ThreadId] = MappingProxyType({}),
 ) -> tuple[PositionFields, int] | None:
     """Return where a thread is, inside its callback if it runs one, and the timeout of its wait.
 
@@ -83,19 +84,21 @@ def position_of(
         return None
     inside = stack[: own[0]]
     doing, call = _activity(inside)
-    thread, keeper = _lock_holder(inside, running) if call == LOCK else (0, 0)
+    lock = waited_lock(stack[own[0]], inside, running) if call == LOCK else WaitedLock()
     lines = [(stack[place].f_code, stack[place].f_lineno) for place in reversed(own)]
     loops = (loop_around(code.co_filename, line) for code, line in reversed(lines))
     frames = tuple((code.co_filename, code.co_name, line) for code, line in lines)
+    if call == LOCK and (function := decorated(stack[own[0]])) is not None:
+        frames = *frames, first_line(function)
     timeout = _timeout(inside[-1]) if inside and doing is not Doing.SLEEPS else 0
     joined = _joined(inside[-1]) if call == _JOIN else None
     if joined is not None and joined.ident is not None:
-        thread = threads.get(joined.ident, 0)
+        lock = WaitedLock(threads.get(joined.ident, 0))
         there = list(
             takewhile(lambda frame: not is_own(frame), outwards(sys._current_frames().get(joined.ident)))
         )
         timeout = timeout or (_timeout(there[-1]) if there else 0)
-    return (doing, call, frames, next(filter(None, loops), ("", 0)), thread, keeper), timeout
+    return (doing, call, frames, next(filter(None, loops), ("", 0)), lock), timeout
 
 
 def _is_written(frame: FrameType) -> bool:
@@ -137,23 +140,6 @@ def _joined(function: FrameType) -> threading.Thread | None:
     """Return the thread for whose end a function waits."""
     values = (function.f_locals.get(name) for name in ("self", "thread"))
     return next((each for each in values if isinstance(each, threading.Thread)), None)
-
-
-def _lock_holder(
-    inside: list[FrameType], running: Mapping[int, RunningCallback]
-) -> tuple[ThreadId, EntityId]:
-    """Return the thread that holds the lock for which these frames wait; 0 if unknown.
-
-    With it comes the callback that took the lock, if its call does not run there any more.
-    """
-    for frame in inside:
-        lock = frame.f_locals.get("self")
-        ident = getattr(lock, "holder_ident", 0)
-        if ident:
-            now, then = running.get(ident), getattr(lock, "taken_during", None)
-            keeper = then.entity if isinstance(then, RunningCallback) and then != now else 0
-            return 0 if now is None else now.thread, keeper
-    return 0, 0
 
 
 def loop_around(file: str, line: int) -> SourcePlace | None:

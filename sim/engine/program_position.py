@@ -44,7 +44,7 @@ class ProgramPosition:
         ident = self._main.ident
         if ident is None or ident in self._probe.running():
             return None
-        found = position_of(sys._current_frames().get(ident), {}, {})
+        found = position_of(sys._current_frames().get(ident))
         if found is None:
             return None
         (doing, call, frames, loop, *_), timeout = found

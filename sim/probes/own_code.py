@@ -41,9 +41,12 @@ def own_frame(frame: FrameType | None) -> FrameType | None:
 def place_of(frame: FrameType | None) -> str:
     """The line of the innermost frame of the learner's own, as ``node.py:12, in tick``; "" for none."""
     own = own_frame(frame)
-    return (
-        "" if own is None else f"{Path(own.f_code.co_filename).name}:{own.f_lineno}, in {own.f_code.co_name}"
-    )
+    return "" if own is None else place_text(own.f_code.co_filename, own.f_code.co_name, own.f_lineno)
+
+
+def place_text(file: str, function: str, line: int) -> str:
+    """The line of a function, as ``node.py:12, in tick``."""
+    return f"{Path(file).name}:{line}, in {function}"
 
 
 def call_into_ros() -> tuple[str, str, int]:

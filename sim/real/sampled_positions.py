@@ -5,6 +5,7 @@ import linecache
 from functools import lru_cache
 
 from sim.engine.callback_positions import LOCK, loop_around
+from sim.engine.waited_lock import expressions_of_locks, lock_name, source_text
 from sim.real.wire import At
 from sim.trace.events import CallbackAt, Doing, ProgramAt
 
@@ -27,7 +28,8 @@ def position_of(seen: At, t: int) -> CallbackAt | ProgramAt:
     position = doing, call, seen.frames, next(filter(None, loops), ("", 0))
     until = t + seen.until - seen.t if seen.until and doing is not Doing.SLEEPS else 0
     if seen.entity:
-        return CallbackAt(t, seen.entity, seen.thread, *position, until=until)
+        lock = _lock(seen) if call == LOCK else ""
+        return CallbackAt(t, seen.entity, seen.thread, *position, until=until, lock=lock)
     return ProgramAt(t, *position, until)
 
 
@@ -47,7 +49,7 @@ def _built_in(seen: At) -> tuple[Doing, str]:
     if not seen.frames:
         return _COMPUTES
     file, _, line = seen.frames[-1]
-    text = _source(file, seen.instruction)
+    text = source_text(file, seen.instruction)
     try:
         does = ast.parse(f"({text})", mode="eval").body
     except (SyntaxError, ValueError):
@@ -58,15 +60,10 @@ def _built_in(seen: At) -> tuple[Doing, str]:
     return (Doing.WAITS, LOCK) if is_entered else _COMPUTES
 
 
-def _source(file: str, place: tuple[int, int, int, int]) -> str:
-    """The text of an instruction; "" if it is not known."""
-    first, last, start, end = place
-    lines = [line.encode() for line in linecache.getlines(file)[first - 1 : last]] if first else []
-    if not lines:
-        return ""
-    lines[-1] = lines[-1][:end]
-    lines[0] = lines[0][start:]
-    return b"".join(lines).decode(errors="replace")
+def _lock(seen: At) -> str:
+    """The name of the lock for which a callback waits; "" if it takes one of several by one ``with``."""
+    taken = expressions_of_locks(source_text(seen.frames[-1][0], seen.instruction))
+    return lock_name(taken[0]) if len(taken) == 1 else ""
 
 
 def _is_with(text: str) -> bool:

@@ -20,7 +20,7 @@ def why_waiting(wait: Wait, timeline: Timeline | Participants) -> str:
 
 
 def doing_of(position: Position) -> str:
-    """What a callback does at its line: ``sleeps``, ``waits for a lock``, ``waits in Client.call()``."""
+    """What a callback does at its line: ``sleeps``, ``waits for self.lock``, ``waits in Client.call()``."""
     match position.doing:
         case Doing.WAITS if position.call == AWAIT:
             return "awaits"
@@ -29,7 +29,7 @@ def doing_of(position: Position) -> str:
         case Doing.READS:
             return "waits for the keyboard"
         case Doing.WAITS if position.waits_for_lock:
-            return "waits for a lock"
+            return f"waits for {position.lock or 'a lock'}"
     return f"{'waits ' if position.doing is Doing.WAITS else ''}in {position.call}()"
 
 

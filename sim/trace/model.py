@@ -216,6 +216,14 @@ class Position(Lasting):
     """The thread whose callback has the lock that it waits for, or for whose end it waits; 0 for none."""
     keeper: EntityId = 0
     """The callback that took that lock in a call that is suspended or over; 0 for none."""
+    lock: str = ""
+    """The name by which its line knows that lock, such as ``self.lock``; "" if it is not known."""
+    taken_at: tuple[str, int] = ("", 0)
+    """File and line where that lock was taken; ("", 0) if it is not known."""
+    taken_by: str = ""
+    """The thread that took it, if no callback is known to; "" for none."""
+    is_left: bool = False
+    """Whether that thread has ended without a release."""
     until: Nanoseconds = 0
     """When the timeout of its wait is over; 0 if it has none, or does not wait."""
 

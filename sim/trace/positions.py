@@ -10,7 +10,11 @@ from sim.trace.model import AWAIT, Frame, Nanoseconds, Position, Span, Window
 from sim.trace.storage.intervals import IntervalLane, Intervals, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 
-_PositionCells: TypeAlias = tuple[Doing, str, tuple[Frame, ...], tuple[str, int], ThreadId, EntityId]
+_PositionCells: TypeAlias = tuple[
+    Doing, str, tuple[Frame, ...], tuple[str, int], ThreadId, EntityId, str, tuple[str, int], str, bool
+]
+"""The fields of a position from ``doing`` on; ``until`` is not among them."""
+_NO_LOCK = 0, 0, "", ("", 0), "", False
 
 
 class Positions(Intervals):
@@ -35,7 +39,8 @@ class Positions(Intervals):
             return
         self.finish(event.thread, event.t)
         frames = tuple(Frame(*each) for each in event.frames)
-        place = (event.doing, event.call, frames, event.loop, event.holder, event.keeper)
+        lock = event.holder, event.keeper, event.lock, event.taken_at, event.taken_by, event.is_left
+        place = event.doing, event.call, frames, event.loop, *lock
         row = self.open(event.t, event.thread, event.entity, event.until, self._number(place))
         self._by_thread[event.thread].add(row)
         self.threads.add(event.thread)
@@ -54,9 +59,8 @@ class Positions(Intervals):
         """Start the interval of a suspended call, which is on no thread."""
         if event.frames:
             frames = tuple(Frame(*each) for each in event.frames)
-            row = self.open(
-                event.t, 0, event.entity, 0, self._number((Doing.WAITS, AWAIT, frames, ("", 0), 0, 0))
-            )
+            place = Doing.WAITS, AWAIT, frames, ("", 0), *_NO_LOCK
+            row = self.open(event.t, 0, event.entity, 0, self._number(place))
             self._by_entity[event.entity].add(row)
             self._awaiting[event.entity].append(row)
 

@@ -141,6 +141,8 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("locks_by_acquire", "self-made-deadlock", ".acquire()", "in the same order"),
         ("locks_in_methods", "self-made-deadlock", "with self.l", "in the same order"),
         ("locks_in_helpers", "self-made-deadlock", "with self.", "in the same order"),
+        ("lock_by_decorator", "self-made-deadlock", "@locked", "threading.RLock"),
+        ("lock_of_ended_thread", "endless-wait", "with self.lock", "take locks by with"),
         ("lock_not_released", "self-made-deadlock", "self.lock.acquire()", "take the lock by with"),
         ("lock_left_by_another", "self-made-deadlock", "self.lock.acquire()", "take the lock by with"),
         ("thread_raises", "thread-raised", "10.0 / (3 - self.n)", "catch the exception in the thread"),
@@ -225,6 +227,30 @@ def test_the_services_of_the_robot_are_known_without_the_robot(tmp_path: Path) -
     timeline = run_to_end(program_setup(path, 2.0)).timeline
     told = diagnose(timeline)[0].rule.explain(diagnose(timeline)[0], timeline)
     assert told.cure.startswith("call /motor_power, which the robot offers; ")
+
+
+@pytest.mark.parametrize(
+    ("program", "wants"),
+    [
+        (
+            "lock_across_callbacks",
+            "(lock_across_callbacks.py:31) wants self.arm, which move took at lock_across_callbacks.py:23",
+        ),
+        (
+            "lock_by_decorator",
+            "(lock_by_decorator.py:34) wants self.lock, which it took itself at lock_by_decorator.py:29",
+        ),
+        (
+            "lock_of_ended_thread",
+            "waits for self.lock, which Thread-1 (poll) took at lock_of_ended_thread.py:18, in poll and did "
+            "not release before it ended",
+        ),
+    ],
+)
+def test_a_lock_has_its_name_with_who_took_it_and_where(program: str, wants: str) -> None:
+    timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 3.0)).timeline
+    told = diagnose(timeline)[0].rule.explain(diagnose(timeline)[0], timeline)
+    assert wants in told.what
 
 
 def test_it_is_told_who_sets_the_event_that_a_callback_waits_for() -> None:

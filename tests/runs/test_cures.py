@@ -131,6 +131,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("lock_during_call", ["let go of the lock during the call (diff)"]),
         ("lock_during_reentrant_call", ["let go of the lock during the call (diff)"]),
         ("lock_taken_twice", ["make the lock a threading.RLock (diff)"]),
+        ("lock_by_decorator", ["make the lock a threading.RLock (diff)"]),
         ("locks_by_acquire", ["take both locks in the order of earn (diff)", ONE]),
         ("locks_by_try", ["take both locks by one with, in the order of spend (diff)", ONE]),
         ("locks_in_methods", [EARLY.format("sell"), ONE]),

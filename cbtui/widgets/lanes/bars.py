@@ -100,7 +100,8 @@ class BarPainter:
         """Draw where a call waits for a lock, beside the name on its bar, or the program itself waits."""
         for stretch in stretches(columns):
             at = stretch.top
-            texts = ("waits for a lock", "for a lock", "lock") if at.entity else _texts_at(at)
+            lock = at.lock or "a lock"
+            texts = (doing_of(at), f"for {lock}", lock) if at.entity else _texts_at(at)
             self._stands(row, stretch, texts)
 
     def _stands(

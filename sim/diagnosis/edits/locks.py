@@ -248,11 +248,14 @@ def _made(source: SourceEditor, lock: str) -> list[ast.expr]:
     return [each.value for each in assigned if ast.unparse(each.targets[0]) == lock]
 
 
-def make_reentrant(source: SourceEditor, line: int) -> None:
+def make_reentrant(source: SourceEditor, line: int, before: int = 0) -> None:
     """Replace the lock that is taken at a line by an ``RLock``, which its holder may take again.
 
-    Where it is taken by ``acquire``, only if another function takes it, too: else it was never released.
+    Where it is taken by ``acquire``, only if another function takes it, too: else it was never released. At
+    a line with a decorator, that takes it, at the line ``before``.
     """
+    functions = source.nodes(ast.FunctionDef)
+    line = before if any(each.lineno == line for one in functions for each in one.decorator_list) else line
     lock, here = _taken_at(source, line), list(ast.walk(source.function_at(line)))
     taken = [each for each in source.nodes(ast.Expr) if _method_of(each, "acquire", lock)]
     if taken and all(each in here for each in taken):

@@ -203,7 +203,8 @@ def _lock_remedies(place: CodeLocation | None, found: Finding, timeline: Timelin
             lines = range(taker.first_line, taker.last_line + 1)
             places = (CodeLocation(taker.file, line, line) for line in lines)
             return tuple(each for there in places for each in by_edit(there, words, take_by_with))
-        reentrant = by_edit(place, "make the lock a threading.RLock", make_reentrant)
+        before = stands[-1].frames[-2:][0].line if stands else 0
+        reentrant = by_edit(place, "make the lock a threading.RLock", make_reentrant, before)
         return *reentrant, *by_edit(place, words, take_by_with)
     other = _line_of(found.culprit, found, timeline)
     if place is None or other is None:
@@ -252,13 +253,13 @@ def _lines_of(entities: Sequence[EntityId], found: Finding, timeline: Timeline) 
 def _explanation(
     found: Finding, why: str, cure: str, remedies: tuple[Remedy, ...], timeline: Timeline
 ) -> Explanation:
-    subject, lasts = who(found.subject, timeline), found.until >= timeline.end
+    subject, wanted, lasts = who(found.subject, timeline), found.ring[1], found.until >= timeline.end
     if not lasts:
-        waits = f"{subject} waited in vain for {found.about}"
+        waits = f"{subject} waited in vain for {wanted}"
     elif found.ends:
-        waits = f"{subject} waits in vain for {found.about}{until_when(found.ends, timeline)}"
+        waits = f"{subject} waits in vain for {wanted}{until_when(found.ends, timeline)}"
     else:
-        waits = f"deadlock: {subject} waits for {found.about} for ever"
+        waits = f"deadlock: {subject} waits for {wanted} for ever"
     return Explanation(
         f"{waits}; {found.detail}{often(found.count)}",
         why,

@@ -10,7 +10,7 @@ from sim.diagnosis.rules.edits import beside_others, edits_for_reply, edits_for_
 from sim.diagnosis.rules.overlooked import KINDS as OVERLOOKED
 from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import listed, must_answer, often, who
+from sim.diagnosis.words import awaited_lock, listed, must_answer, often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import doing_of
@@ -20,6 +20,10 @@ from sim.trace.timeline import Timeline
 
 _ADVICE = "wait with a timeout, and make sure that something ends the wait"
 """For notices without advice, as of waits on the real clock, and in old recordings."""
+_WAITS = "a thread that waits serves nothing else, and without a timeout it may do so for ever"
+_LEFT = "a lock stays taken when the thread ends that took it, until somebody releases it"
+_RELEASE = "take the lock by with, which releases it on every way out"
+_LET_GO = "let go of the lock before anything that takes long"
 _KEPT = (
     "while {0} runs, no other callback of its group or thread does: if it waits for what one of them brings, "
     "that never comes"
@@ -60,15 +64,18 @@ class EndlessWait(Rule):
         how = "is in a deadlock" if _is_deadlock(notice) else "stands still"
         what = f" {how}: {notice.problem}" if notice.problem else f": {notice.text}"
         if notice.kind is NoticeKind.NO_PROGRESS and at:
-            what = f" {doing_of(at[-1])} and {_how_long(found, timeline)}"
+            doing = f"waits for {awaited_lock(at[-1], timeline)}," if at[-1].lock else doing_of(at[-1])
+            what = f" {doing} and {_how_long(found, timeline)}"
         cure, kept = notice.advice or _ADVICE, _kept_waiting(found, timeline)
+        if at and at[-1].taken_by and not notice.advice:
+            cure = _RELEASE if at[-1].is_left else f"let {at[-1].taken_by} {_LET_GO}"
         room = remedy_for_waits(kept, found.subject, Window(found.at, found.until + 1), timeline)
         if room.words(timeline):
             what += f"; {listed(who(each, timeline) for each in kept)} can run only when it is over"
             cure = f"{cure}: {room.words(timeline)}"
         return Explanation(
             f"{who(found.subject, timeline)}{what}{often(found.count)}",
-            "a thread that waits serves nothing else, and without a timeout it may do so for ever",
+            _LEFT if at and at[-1].is_left else _WAITS,
             cure,
             line_of(found.subject, _moment(found), timeline),
             for_ever=found.until >= timeline.end,

@@ -13,17 +13,18 @@ from sim.diagnosis.rule import (
     Weight,
     by_edit,
     entity_of,
+    line_location,
     line_of,
     made_at,
     place_of,
 )
 from sim.diagnosis.rules.edits import edits_for_rounds
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import often, threads_for, who, with_threads
+from sim.diagnosis.words import awaited_lock, lock_taker, often, threads_for, who, with_threads
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import EntityId, EntityKind, GroupKind
-from sim.trace.model import AWAIT, EntityInfo, Position, Span, Window
+from sim.trace.events import EntityKind, GroupKind
+from sim.trace.model import AWAIT, EntityInfo, Span, Window
 from sim.trace.timeline import Timeline
 
 _HABIT = 3
@@ -140,12 +141,12 @@ class OverrunTimer(Rule):
             cure += ", which call_async() returns" if "Client.call" in waits else ""
             remedies = by_edit(place, "go on in a done-callback of the future", go_on_in_done_callback)
         if found.lasted / 2 < (waited := sum(each.end_at(found.until) - each.start for each in locks)):
-            keeper = _keeper(max(locks, key=lambda each: each.end_at(found.until) - each.start), timeline)
-            whose = f", which {who(keeper, timeline)} kept" if keeper else ""
-            why = f"{duration(waited)} of that it waited for a lock{whose}; {why}"
-            whom = f"let {who(keeper, timeline)}" if keeper else "find who keeps the lock, and"
-            cure = f"{whom} let go of {'the lock' if keeper else 'it'} before anything that takes long"
-            place, remedies = line_of(keeper, during, timeline) or place, ()
+            longest = max(locks, key=lambda each: each.end_at(found.until) - each.start)
+            taker = lock_taker(longest, timeline)
+            why = f"{duration(waited)} of that it waited for {awaited_lock(longest, timeline)}; {why}"
+            whom = f"let {taker}" if taker else "find who keeps the lock, and"
+            cure = f"{whom} let go of {'the lock' if taker else 'it'} before anything that takes long"
+            place, remedies = line_location(*longest.taken_at) or place, ()
         return Explanation(
             f"{subject} took {duration(found.lasted)} with a period of {duration(entity.period)}; "
             f"{ticks} missed or late{often(found.count, 'overruns in all')}",
@@ -168,12 +169,6 @@ class OverrunTimer(Rule):
         if calls < 2:
             return None
         return Weight.PROBLEM if found.count >= _HABIT and 2 * found.count >= calls else Weight.REMARK
-
-
-def _keeper(position: Position, timeline: Timeline) -> EntityId:
-    """Return the callback that has the lock for which another one waits; 0 if that is unknown."""
-    spans = timeline.spans_on(position.holder, Window(position.start, position.start + 1))
-    return position.keeper or (spans[-1].entity if spans else 0)
 
 
 def _waits_for_reply(found: Finding, timeline: Timeline) -> set[str]:

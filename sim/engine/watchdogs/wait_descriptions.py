@@ -5,10 +5,12 @@ import threading
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import takewhile
+from types import FrameType
 
-from sim.clock.virtual_threads import VirtualThread
-from sim.engine.watchdogs.thread_positions import place_in, place_of
-from sim.probes.own_code import is_own, outwards
+from sim.clock.virtual_threads import HeldResource, VirtualThread
+from sim.engine.waited_lock import decorated, first_line, name_at, taking
+from sim.engine.watchdogs.thread_positions import place_of
+from sim.probes.own_code import is_own, outwards, own_frame, place_text
 from sim.quantities.durations import timestamp
 from sim.trace.events import EntityId, Notice, NoticeKind, Severity
 
@@ -40,6 +42,8 @@ def deadlock_of_cycle(cycle: Sequence[VirtualThread]) -> WaitProblem:
         advice = "let go of locks before you wait for a thread to end"
     elif len(cycle) > 1:
         advice = "take locks in the same order everywhere"
+    elif _is_left(cycle[0].wants):
+        advice = "let go of it on every way out, by with, and before an await"
     else:
         advice = "take it once, let go of it before (by with, and before an await), or use threading.RLock"
     return WaitProblem(chain, advice, is_deadlock=True)
@@ -58,7 +62,10 @@ def long_wait(thread: VirtualThread, since: int) -> WaitProblem:
 
 def waits(thread: VirtualThread) -> str:
     """Return a clause on where a thread is, and for which lock or thread it waits."""
-    return f"{thread.name} ({place_of(thread)}) {_what(thread)}"
+    own = own_frame(sys._current_frames().get(thread.ident))
+    function = None if own is None else decorated(own)
+    place = place_of(thread) if function is None else place_text(*first_line(function))
+    return f"{thread.name} ({place}) {_what(thread)}"
 
 
 def _what(thread: VirtualThread) -> str:
@@ -70,21 +77,40 @@ def _what(thread: VirtualThread) -> str:
         return "waits for a lock"
     if lock.taken_at is None:
         return f"waits for {lock.holder.name} to end"
+    own = own_frame(sys._current_frames().get(thread.ident))
+    name = "" if own is None else name_at(own, [frame.f_locals.get("self") for frame in _library(thread)])
     who = "it took itself" if lock.holder is thread else f"{lock.holder.name} took"
-    return f"waits for the lock that {who} at {place_in(*lock.taken_at)}"
+    more = " and did not release" if _is_left(lock) else ""
+    return (
+        f"waits for {name or 'a lock'}, which {who} at {place_text(*taking(lock, own))}{more}{_ended(lock)}"
+    )
+
+
+def _is_left(lock: HeldResource | None) -> bool:
+    """Whether the function that took a lock has returned, or awaits."""
+    if lock is None or lock.holder is None or lock.taken_at is None:
+        return False
+    stack = outwards(sys._current_frames().get(lock.holder.ident))
+    return all(frame.f_code is not lock.taken_at[0] for frame in stack)
+
+
+def _ended(lock: HeldResource) -> str:
+    taker: threading.Thread | None = getattr(lock, "taken_by", None)
+    return "" if taker is None or taker.is_alive() else " before it ended"
 
 
 def _signal(thread: VirtualThread) -> str:
     """Return the library function in which a thread waits for another: ``Event.wait``; "" for a lock."""
     if thread.wants is None or thread.wants.holder is not thread:
         return ""
-    library = [
-        frame.f_code
-        for frame in takewhile(
-            lambda frame: not is_own(frame), outwards(sys._current_frames().get(thread.ident))
-        )
-    ]
+    library = [frame.f_code for frame in _library(thread)]
     return library[-1].co_qualname if _AWAITS in library else ""
+
+
+def _library(thread: VirtualThread) -> list[FrameType]:
+    """Return the frames that a thread's innermost frame of the program's own has called."""
+    frames = outwards(sys._current_frames().get(thread.ident))
+    return list(takewhile(lambda frame: not is_own(frame), frames))
 
 
 def _cure(thread: VirtualThread) -> str:
@@ -92,10 +118,9 @@ def _cure(thread: VirtualThread) -> str:
         return "wait with a timeout, and let a callback of another group, on another thread, end it"
     if _waits_for_end(thread):
         return "make sure that the thread ends, or join it with a timeout"
-    holder = None if thread.wants is None else thread.wants.holder
-    if holder is not None and holder is not thread and holder.wants is not None:
-        return "let go of a lock before you wait for anything else"
-    return "take locks by with, which lets go of them whatever happens"
+    if thread.wants is None or _is_left(thread.wants):
+        return "take locks by with, which lets go of them whatever happens"
+    return "let go of a lock before you wait for anything else"
 
 
 def _waits_for_end(thread: VirtualThread) -> bool:

@@ -159,6 +159,14 @@ class CallbackAt(TraceEvent, frozen=True, tag="callback_at"):
     one, or sleeps."""
     keeper: LockKeeperId = 0
     """Entity whose callback took the lock that it waits for, in a call that is suspended or over."""
+    lock: Maybe[str] = ""
+    """The name by which the line knows the lock that it waits for, such as ``self.lock``."""
+    taken_at: Maybe[SourcePlace] = ("", 0)
+    """Where that lock was taken."""
+    taken_by: Maybe[str] = ""
+    """Name of the thread that took it, if no callback of which the executor knows did."""
+    is_left: WireOnly[bool] = False
+    """Whether that thread has ended without a release."""
 
 
 class ProgramAt(TraceEvent, frozen=True, tag="program_at"):

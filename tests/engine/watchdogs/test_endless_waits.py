@@ -218,7 +218,7 @@ def test_a_lock_taken_twice_and_an_event_that_nobody_sets_are_told_with_their_pl
     (twice, once), (waits, long) = told(run)
     assert (twice, waits) == (Severity.ERROR, Severity.WARN)
     assert once.startswith("deadlock: ThreadPoolExecutor-0_")
-    assert "(node.py:20, in again) waits for the lock that it took itself at node.py:16, in twice; " in once
+    assert "(node.py:20, in again) waits for self.lock, which it took itself at node.py:16, in tw" in once
     assert "(node.py:31, in wait) waits in Event.wait(), since 0.100 s; " in long
     assert [what.partition(": ")[0] for what in found(run)] == ["wait stands still"]
 
@@ -233,9 +233,8 @@ def test_a_thread_that_waits_when_no_other_is_left_is_in_a_deadlock(tmp_path: Pa
     run = run_node(tmp_path, "leave", "wake", spins="rclpy.spin(executor.get_nodes()[0])")
     ((severity, text),) = told(run)
     assert severity is Severity.ERROR
-    assert (
-        "(node.py:28, in leave) waits for the lock that it took itself at node.py:28, in leave, and " in text
-    )
+    took = "self.lock, which it took itself at node.py:28, in leave and did not release"
+    assert f"(node.py:28, in leave) waits for {took}, and " in text
     assert "no thread of the program is left that could end that" in text
     (notice,) = (each for each in run.events if isinstance(each, Notice))
     assert 0.2 * SECOND <= notice.t < 0.3 * SECOND
