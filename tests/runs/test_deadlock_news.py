@@ -8,9 +8,10 @@ import pytest
 
 from cbtui.runs.headless.deadlock_news import DeadlockNews
 from cbtui.runs.headless.headless import run_headless
+from sim.diagnosis.diagnoses import diagnose
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.trace.events import AnyEvent
+from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
 from sim.trace.timeline import Timeline
 from tests.diagnosis.findings import SetBool, diagnosed, once, serve_outside, spin
 from tests.support.builder import ns
@@ -92,3 +93,18 @@ def test_a_run_on_the_real_clock_writes_it_to_standard_error(
     said = capsys.readouterr()
     assert said.err.count("cbtui: deadlock: <lambda> waits for /outside for ever") == times
     assert said.out.count("deadlock: ") == 1
+
+
+def test_a_callback_of_which_a_deadlock_is_told_is_not_told_to_hang_as_well() -> None:
+    timeline = Timeline()
+    news, events = DeadlockNews(timeline), stuck_at_three()
+    timeline.extend([each for each in events if each.t < ns(4.2)])
+    entity = next(each.subject for each in diagnose(timeline) if each.ring)
+    hangs = [
+        Notice(ns(4.2), Severity.WARN, "has not come back", each, kind=NoticeKind.NO_PROGRESS)
+        for each in (entity, entity + 1)
+    ]
+    news.news()
+    timeline.extend(hangs)
+    assert len(news.news(hangs)) <= 1
+    assert news.without_told([*hangs]) == hangs[1:]

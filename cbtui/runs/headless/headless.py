@@ -148,11 +148,12 @@ class _Headless:
             for events in self._run:
                 with deferred_interrupt():
                     self._keep(events)
-                self._log.print(events)
+                sentences = () if self._deadlocks is None else self._deadlocks.news(events)
+                self._log.print(events if self._deadlocks is None else self._deadlocks.without_told(events))
                 if self._input is not None:
                     self._input.follow(events)
                 self._warn_of_full_disk()
-                for sentence in () if self._deadlocks is None else self._deadlocks.news():
+                for sentence in sentences:
                     complain(sentence)
         except EngineLostError as error:
             return str(error)

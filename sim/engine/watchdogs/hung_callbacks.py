@@ -7,9 +7,11 @@ from collections.abc import Callable
 from types import FrameType
 
 from sim.clock import RunClock
+from sim.engine.callback_positions import LOCK, position_of
+from sim.engine.waited_lock import decorated
 from sim.interpreter.function_marks import calls_the_program, waits_for_keyboard, waits_for_time
 from sim.probes.own_code import is_own, outwards, place_of
-from sim.trace.events import AnyEvent, EntityId, Notice, NoticeKind, Severity
+from sim.trace.events import AnyEvent, Doing, EntityId, Notice, NoticeKind, Severity
 
 # Kept from before a clock replaces them.
 _Thread = threading.Thread
@@ -79,7 +81,13 @@ def _hung_call(top: FrameType) -> FrameType | None:
 
 
 def _sentence(call: FrameType, top: FrameType) -> str:
-    return (
-        f"{call.f_code.co_name} {_PROBLEM} ({place_of(top)}): it computes, or waits for something that does "
-        "not come; its thread serves nothing else meanwhile"
+    what, function, found = (
+        "computes, or waits for something that does not come",
+        decorated(call),
+        position_of(top),
     )
+    if found is not None and found[0][0] is Doing.WAITS:
+        _, inside, _, _, lock = found[0]
+        what = f"waits for {lock.lock or 'a lock'}" if inside == LOCK else f"waits in {inside}()"
+    name = call.f_code.co_name if function is None else function.__name__
+    return f"{name} {_PROBLEM} ({place_of(top)}): it {what}; its thread serves nothing else meanwhile"
