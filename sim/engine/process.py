@@ -106,7 +106,6 @@ class Engine:
         self._probe = Probe(clock, control.record, self._contents)
         clock.activity = self._probe.running_here
         self._positions = CallbackPositions(self._probe, clock, record)
-        self._program_position = ProgramPosition(self._probe, clock, record)
         self._periods = 0
         profile = profile_of(setup, lambda text: record(Notice(0, Severity.ERROR, text)))
         self._host = Host(
@@ -115,6 +114,7 @@ class Engine:
         self._endless = None if virtual is None else EndlessWaits(virtual, self._host, record)
         self._descriptors = Descriptors(lambda text, error: record(Printed(clock.now(), text, error)))
         self._programs = ProgramSupervisor(self._host, record)
+        self._program_position = ProgramPosition(self._probe, clock, record, self._programs.main_threads)
         self._starter = ProgramStarter(self._programs, setup, _launch)
         self._lines = Ros2Lines(self._host, record, self._starter, self._programs.look)
         self._terminal = Terminal(clock, record, setup.keyboard, len(setup.typed))

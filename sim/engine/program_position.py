@@ -1,13 +1,12 @@
-"""Records where a program is that does not reach ``spin()``, or that spins inside a node's constructor."""
+"""Records where programs are that do not reach ``spin()``, or that spin inside a node's constructor."""
 
 import sys
-import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from sim.clock import RunClock
 from sim.engine.callback_positions import position_of
 from sim.probes.probe import Probe
-from sim.ros.middleware.process import process_of
+from sim.ros.middleware.process import Process
 from sim.trace.events import AnyEvent, ProgramAt
 
 _EVERY = 250_000_000
@@ -15,18 +14,24 @@ _EVERY = 250_000_000
 
 
 class ProgramPosition:
-    """Samples the main thread of a run's only program, and records its position if that has changed.
+    """Samples the main thread of each program, and records its position if that has changed.
 
-    A run of several programs is not sampled: each has threads of its own.
+    ``programs`` returns the running programs, each with the identifier of its main thread.
     """
 
-    def __init__(self, probe: Probe, clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
+    def __init__(
+        self,
+        probe: Probe,
+        clock: RunClock,
+        record: Callable[[AnyEvent], None],
+        programs: Callable[[], Iterable[tuple[int, Process]]],
+    ) -> None:
         self._probe = probe
         self._clock = clock
         self._record = record
+        self._programs = programs
         self._due = 0
-        self._main = threading.main_thread()
-        self._latest: tuple[object, ...] = ()
+        self._latest: dict[int, tuple[object, ...]] = {}
 
     def look(self) -> None:
         """Take a sample if one is due; one thread at a time may call this."""
@@ -34,22 +39,22 @@ class ProgramPosition:
         if now < self._due:
             return
         self._due = now + _EVERY
-        found = self._position()
-        if found is not None and found.frames != self._latest:
-            self._latest = found.frames
-            self._record(found)
+        for ident, process in self._programs():
+            found = self._position(ident, process)
+            if found is not None and found.frames != self._latest.get(process.number, ()):
+                self._latest[process.number] = found.frames
+                self._record(found)
 
-    def _position(self) -> ProgramAt | None:
-        """Return where the program is; without frames if it spins, None if it is unknown."""
-        ident = self._main.ident
-        if ident is None or ident in self._probe.running():
+    def _position(self, ident: int, process: Process) -> ProgramAt | None:
+        """Return where a program is; without frames if it spins, None if it is unknown."""
+        if ident in self._probe.running():
             return None
         found = position_of(sys._current_frames().get(ident))
         if found is None:
             return None
         (doing, call, frames, loop, *_), timeout = found
         in_constructor = any(function == "__init__" for _, function, _ in frames)
-        if process_of(self._main).spinning and not in_constructor:
+        if process.spinning and not in_constructor:
             frames = ()
         now = self._clock.now()
-        return ProgramAt(now, doing, call, frames, loop, now + timeout if timeout else 0)
+        return ProgramAt(now, doing, call, frames, loop, now + timeout if timeout else 0, process.number)

@@ -75,7 +75,9 @@ class RunStores:
         self.times_kept: dict[ev.NodeId, ev.TimesKept] = {}
         self.spin_clashes: History[ev.SpinClashed] = History(attrgetter("t"), ev.SpinClashed, spill)
         self.surfaced: History[ev.ExceptionSurfaced] = History(attrgetter("t"), ev.ExceptionSurfaced, spill)
-        self.program_positions: History[ev.ProgramAt] = History(attrgetter("t"), ev.ProgramAt, spill)
+        self.program_positions: defaultdict[ev.ProcessId, History[ev.ProgramAt]] = defaultdict(
+            lambda: History(attrgetter("t"), ev.ProgramAt, spill)
+        )
         self.robot: History[ev.RobotMoved] = History(attrgetter("t"), ev.RobotMoved, spill)
         self.velocities: History[ev.VelocityCommanded] = History(attrgetter("t"), ev.VelocityCommanded, spill)
         self.scans = Scans(spill)
@@ -145,7 +147,7 @@ class RunStores:
             ev.CallbackResumed: self._callback_resumed,
             ev.SpinClashed: self.spin_clashes.add,
             ev.TimesKept: self._times_kept,
-            ev.ProgramAt: self.program_positions.add,
+            ev.ProgramAt: lambda event: self.program_positions[event.process].add(event),
             ev.CallbackFailed: self._callback_failed,
             ev.ExceptionSurfaced: self.surfaced.add,
             ev.Published: self._published,

@@ -101,9 +101,14 @@ class Timeline:
         """The exceptions of callbacks that pools raised out of ``spin()``, in order."""
 
     def program_at(self, at: Nanoseconds) -> ev.ProgramAt | None:
-        """Where the program is at ``at`` outside callbacks; None if it spins as it should, or is unknown."""
-        found = self._run.program_positions.latest(at)
-        return found if found is not None and found.frames else None
+        """Where the only program is at ``at`` outside callbacks, None if it spins, or is unknown."""
+        return next((each for each in self.programs_at(at) if not each.process), None)
+
+    def programs_at(self, at: Nanoseconds) -> list[ev.ProgramAt]:
+        """Where programs are at ``at`` outside callbacks, but for those that spin or have ended."""
+        latest = (each.latest(at) for each in self._run.program_positions.values())
+        found = (each for each in latest if each is not None and each.frames)
+        return [each for each in found if self.processes_ended.get(each.process, at) >= at]
 
     def program_waits_on(self, thread: ThreadId, window: Window) -> Sequence[Position]:
         """Where the program itself waited on its main thread before anything spun, in order of start.
@@ -113,7 +118,7 @@ class Timeline:
         known = self.threads.get(thread)
         if known is None or known.name != "MainThread":
             return ()
-        every, found = self._run.program_positions, list[Position]()
+        every, found = self._run.program_positions[0], list[Position]()
         for place in range(max(0, every.until(window.start) - 1), every.before(window.end)):
             at, following = every[place], every[place + 1 : place + 2]
             if not at.frames or at.doing not in _WAITS or at.call == "Client.call":

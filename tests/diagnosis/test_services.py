@@ -1,14 +1,19 @@
 """Service calls that are never answered."""
 
 from collections.abc import Callable
+from pathlib import Path
 
+import msgspec
 import pytest
 
 import sim.ros.rclpy as rclpy
 from lessons.catalogue import lesson_on
+from sim.diagnosis.diagnoses import diagnose
+from sim.engine.setup import ProgramSetup
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, spin
+from tests.support.engine_runs import program_setup, run_to_end
 from tests.support.simulation import Simulation
 
 
@@ -161,3 +166,23 @@ def test_a_call_that_blocks_on_a_service_nobody_offers_is_told_as_that_and_not_a
         spin(node, 2)
 
     assert diagnosed(program).problems() == {("nobody-offers", "caller")}
+
+
+def test_each_of_several_programs_is_told_where_it_waits_before_it_spins(tmp_path: Path) -> None:
+    text = (
+        "import rclpy\nfrom rclpy.node import Node\nfrom std_srvs.srv import Trigger\n\n\n"
+        "rclpy.init()\nnode = Node('{}')\nclient = node.create_client(Trigger, '{}')\n"
+        "node.create_service(Trigger, '/here', lambda request, response: response)\n"
+        "client.wait_for_service()\nrclpy.spin(node)\n"
+    )
+    programs = [tmp_path / "well.py", tmp_path / "waits.py"]
+    for path, service in zip(programs, ("/here", "/nowhere"), strict=True):
+        path.write_text(text.format(path.stem, service))
+    setup = msgspec.structs.replace(
+        program_setup(programs[0], 3.0), programs=tuple(ProgramSetup(str(each)) for each in programs)
+    )
+    timeline = run_to_end(setup).timeline
+    (found,) = diagnose(timeline)
+    told = found.rule.explain(found, timeline)
+    assert told.what.startswith("the program waits-2 waits in wait_for_service() for /nowhere, ")
+    assert str(told.place) == "waits.py:10"

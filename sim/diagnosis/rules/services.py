@@ -23,7 +23,7 @@ from sim.diagnosis.time_limits import time_limit
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, until_when, who
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import EntityKind
+from sim.trace.events import EntityKind, ProgramAt
 from sim.trace.model import EntityInfo, Span, Window
 from sim.trace.timeline import Timeline
 
@@ -143,6 +143,12 @@ def _unserved(timeline: Timeline) -> list[EntityInfo]:
     return [each for each in clients if (each.name, each.interface_type) not in offered]
 
 
+def _of(program: ProgramAt, timeline: Timeline) -> list[EntityInfo]:
+    """Return such clients of a program: where there are several, those that its files made."""
+    files = {file for file, _, _ in program.frames}
+    return [each for each in _unserved(timeline) if not program.process or each.made_at[0] in files]
+
+
 class ServiceNeverComes(Rule):
     """A callback waits for a service that no node offers, and keeps its thread and its group."""
 
@@ -166,23 +172,25 @@ class ServiceNeverComes(Rule):
 
     def _of_program(self, view: TimelineView) -> Iterator[Finding]:
         """Yield a wait of the program itself, which therefore does not reach ``spin()``."""
-        at = view.timeline.program_at(view.end)
-        if at is None or at.call != "Client.wait_for_service" or view.end - at.t < self.threshold:
-            return
-        missing = [each.name for each in _unserved(view.timeline)]
-        if missing:
-            yield Finding(self, at.t, view.end, about=listed(sorted(missing)), ends=time_limit(at))
+        for at in view.timeline.programs_at(view.end):
+            if at.call != "Client.wait_for_service" or view.end - at.t < self.threshold:
+                continue
+            if missing := [each.name for each in _of(at, view.timeline)]:
+                yield Finding(
+                    self, at.t, view.end, about=listed(sorted(missing)), ends=time_limit(at), event=at
+                )
 
     def _explained_of_program(self, found: Finding, timeline: Timeline) -> Explanation:
-        at = timeline.program_at(found.at)
-        assert at is not None
+        at = found.event
+        assert isinstance(at, ProgramAt)
         file, _, line = at.frames[-1]
-        clients = _unserved(timeline)
+        clients = _of(at, timeline)
+        program = " ".join(filter(None, ("the program", timeline.processes.get(at.process))))
         differs, cure, remedies = offer(clients[0], timeline) if clients else ("", "", ())
         wrong = differs or "which nobody offers"
         until = until_when(found.ends, timeline)
         return Explanation(
-            f"the program waits in wait_for_service(){until} for {found.about}, {wrong}, "
+            f"{program} waits in wait_for_service(){until} for {found.about}, {wrong}, "
             f"and comes to no spin(){' before that' if until else ''}",
             "callbacks run only inside spin()",
             cure or f"check the service's name, and start the node that offers {found.about} before this one",

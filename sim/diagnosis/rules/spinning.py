@@ -29,7 +29,7 @@ from sim.diagnosis.words import (
     with_threads,
 )
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import Doing, EntityKind, GroupKind, SpinClashed
+from sim.trace.events import Doing, EntityKind, GroupKind, ProgramAt, SpinClashed
 from sim.trace.model import EntityInfo, Nanoseconds, Position, Window
 from sim.trace.timeline import Timeline
 
@@ -118,15 +118,14 @@ class SpinInConstructor(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield it once it has lasted."""
-        at = view.timeline.program_at(view.end)
-        if at is None or _SPIN not in at.call or view.end - at.t < self.threshold:
-            return
-        if any(function == "__init__" for _, function, _ in at.frames):
-            yield Finding(self, at.t, view.end, detail=at.call)
+        for at in view.timeline.programs_at(view.end):
+            in_constructor = any(function == "__init__" for _, function, _ in at.frames)
+            if in_constructor and _SPIN in at.call and view.end - at.t >= self.threshold:
+                yield Finding(self, at.t, view.end, detail=at.call, event=at)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        at = timeline.program_at(found.at)
-        assert at is not None
+        at = found.event
+        assert isinstance(at, ProgramAt)
         file, _, line = at.frames[-1]
         place, spin = CodeLocation(file, line, line), found.detail.rpartition(".")[2]
         return Explanation(

@@ -186,6 +186,12 @@ class ProgramSupervisor:
         """Whether a program runs, or a starter of programs that ``hold`` counts."""
         return bool(self._running) or self._held > 0
 
+    def main_threads(self) -> list[tuple[int, Process]]:
+        """Return the running programs, each with the identifier of its main thread."""
+        only = ((threading.main_thread().ident, each) for each in self._only)
+        several = ((each.thread, each.process) for each in tuple(self._running))
+        return [(ident, process) for ident, process in (*only, *several) if ident]
+
     @property
     def processes(self) -> list[Process]:
         """The processes of running programs; a single program's also while it ends."""

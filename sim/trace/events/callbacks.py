@@ -12,6 +12,7 @@ from sim.trace.events.fields import (
     Maybe,
     MessageId,
     Nanoseconds,
+    ProcessId,
     SourcePlace,
     Text,
     ThreadId,
@@ -170,7 +171,7 @@ class CallbackAt(TraceEvent, frozen=True, tag="callback_at"):
 
 
 class ProgramAt(TraceEvent, frozen=True, tag="program_at"):
-    """Where the program's main thread is while it spins nothing, or spins inside ``__init__``.
+    """Where a program's main thread is while it spins nothing, or spins inside ``__init__``.
 
     Another one replaces it. It is looked for a few times a second.
     """
@@ -185,6 +186,8 @@ class ProgramAt(TraceEvent, frozen=True, tag="program_at"):
     """The ``while`` around the innermost of them that has one."""
     until: Maybe[Nanoseconds] = 0
     """As in ``callback_at``."""
+    process: Maybe[ProcessId] = 0
+    """Which of several programs it is."""
 
     @property
     def place(self) -> tuple[str, int]:
