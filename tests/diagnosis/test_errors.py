@@ -219,7 +219,32 @@ def test_what_asyncio_misses_in_a_callback_is_told_with_what_to_await_instead(th
         (
             "AttributeError: property 'speed' of 'Motor' object has no setter",
             "an exception that no except clause takes ends the program",
-            "correct the line, or catch the exception there",
+            "correct the line",
+        ),
+        (
+            "AttributeError: 'NoneType' object has no attribute 'put'",
+            "what stands before .put in this line is None: not set yet, or what a function returned",
+            "give it a value before this line runs, or ask first whether it is None",
+        ),
+        (
+            "InvalidParameterTypeException: Trying to set parameter 'rate' to '10' of type 'INTEGER', "
+            "expecting type 'DOUBLE': rate",
+            "the node declares rate with a value of another type, and no type turns into another by itself",
+            "write rate:=10.0 in place of rate:=10 where the value comes from: the command line, the launch "
+            "file or the file of parameters",
+        ),
+        (
+            "InvalidParameterTypeException: Trying to set parameter 'name' to '10' of type 'INTEGER', "
+            "expecting type 'STRING': name",
+            "the node declares name with a value of another type, and no type turns into another by itself",
+            "give name a value of type STRING where the value comes from: the command line, the launch file "
+            "or the file of parameters",
+        ),
+        (
+            "RuntimeError: dictionary changed size during iteration",
+            "the dictionary was changed while this line went through it, by this loop or by another thread",
+            "go through a copy, such as list(...) of it; and where another thread changes it, hold one lock "
+            "around both places",
         ),
     ],
 )

@@ -53,7 +53,7 @@ class ProgramRaised(Rule):
         has_spun = any(each.executor for each in timeline.threads.values())
         why = "an exception that no except clause takes ends the program"
         why += ", and spin() with it" if has_spun else ""
-        cure = "correct the line, or catch the exception there"
+        cure = "correct the line, or catch the exception there" if timeline.threads else "correct the line"
         if ended.exception in UNREADABLE:
             why, cure = "Python could not read the file, so nothing of it ran", "correct the line"
         for pattern, its_why, its_cure in _KNOWN:
@@ -123,9 +123,27 @@ _NO_FLOAT = re.compile(r"AssertionError: The '(\w+)' field must be of type 'floa
 _NODE_PROPERTIES = (
     "clients|context|default_callback_group|guards|handle|publishers|services|subscriptions|timers|waitables"
 )
+_OTHER_TYPE = r"InvalidParameterTypeException: Trying to set parameter '([^']+)' to '(.*)'"
+_OVERRIDDEN = r"the node declares \1 with a value of another type, and no type turns into another by itself"
+_WHERE = "where the value comes from: the command line, the launch file or the file of parameters"
 _KNOWN = tuple(
     (re.compile(error), why, cure)
     for error, why, cure in (
+        (
+            r"AttributeError: 'NoneType' object has no attribute '(\w+)'",
+            r"what stands before .\1 in this line is None: not set yet, or what a function returned",
+            r"give it a value before this line runs, or ask first whether it is None",
+        ),
+        (
+            rf"{_OTHER_TYPE} of type '\w+', expecting type '(\w+)'.*",
+            _OVERRIDDEN,
+            rf"give \1 a value of type \3 {_WHERE}",
+        ),
+        (
+            rf"{_OTHER_TYPE} of type 'INTEGER', expecting type 'DOUBLE'.*",
+            _OVERRIDDEN,
+            rf"write \1:=\2.0 in place of \1:=\2 {_WHERE}",
+        ),
         (
             r"RuntimeError: no running event loop",
             r"an executor of rclpy resumes coroutines itself, and runs no event loop of asyncio",
@@ -179,6 +197,17 @@ _KNOWN = tuple(
             r"make a \1(), set its fields, and publish that",
         ),
         (
+            r"InvalidNodeNameException: .*",
+            r"the name of a node has only letters, digits and underscores, and does not begin with a digit",
+            r"give the node another name, such as my_node",
+        ),
+        (
+            r"RuntimeError: (dictionary|Set|deque) (?:changed size|mutated) during iteration",
+            r"the \1 was changed while this line went through it, by this loop or by another thread",
+            r"go through a copy, such as list(...) of it; and where another thread changes it, hold one lock "
+            r"around both places",
+        ),
+        (
             r"EOFError: EOF when reading a line",
             r"nobody types into this run, so input() found the end of what there is to read",
             r"run it where somebody can type; in a callback, which keeps its thread so long, read in another "
@@ -186,7 +215,7 @@ _KNOWN = tuple(
         ),
     )
 )
-"""Exceptions that Python words alike in every program, each with the reason and the cure in rclpy's terms."""
+"""Exceptions worded alike in every program, each with the reason and the cure; the last that fits counts."""
 
 
 class SpinRaised(Rule):
