@@ -91,7 +91,8 @@ def _lesson_named_by(file: str) -> str:
     of_lessons = {each.file_name: each.id for each in lessons() if each.exercise is not None}
     lesson = of_lessons.get(file_of(file).name)
     return lesson or refuse(
-        f"{file} is not named after a lesson; name that before it: cbtui check LESSON {file}"
+        f"{file} is not named after a lesson; name that before it: cbtui check LESSON {file}; "
+        f"what goes wrong in a node of your own is told by cbtui run {file}"
     )
 
 

@@ -6,7 +6,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from sim.diagnosis import Weight
+from sim.diagnosis import Explanation, Weight
 from sim.diagnosis.diagnoses import diagnose
 from sim.engine.watchdogs import hung_callbacks, outside_time
 from sim.trace.events import (
@@ -20,6 +20,7 @@ from sim.trace.events import (
     Reason,
     RunStarted,
     Severity,
+    ThreadAppeared,
     TimePassed,
     WaitStarted,
     decode,
@@ -85,6 +86,26 @@ def test_who_waits_for_locks_is_told_with_the_lines_and_nothing_else_is_their_fa
     told = found.rule.explain(found, timeline)
     assert told.what == "odom_callback (node.py:60) has waited for a lock for 3.0 s"
     assert told.cure.startswith("take locks in the same order everywhere")
+
+
+def test_one_lock_that_is_waited_for_is_to_be_released_and_several_to_be_taken_in_one_order() -> None:
+    def told(*locks: str) -> Explanation:
+        timeline = Timeline()
+        timeline.extend([*CAST, RunStarted(0, "t", "real", 0)])
+        for thread, lock in enumerate(locks, 1):
+            timeline.extend([ThreadAppeared(0, thread, f"T{thread}"), CallbackStarted(5, 1, thread, 0, 0, 0)])
+            timeline.extend(
+                [msgspec.structs.replace(_at_a_lock(8 + thread, 1, thread, 59 + thread), lock=lock)]
+            )
+        timeline.extend([TimePassed(ns(3))])
+        [found] = [each for each in diagnose(timeline) if each.rule.id == "waits-for-lock"]
+        return found.rule.explain(found, timeline)
+
+    one, two = told("self.a", "self.a"), told("self.a", "self.b")
+    assert one.what.startswith("odom_callback (node.py:60) has waited for self.a for 3.0 s, and so does ")
+    assert one.cure.startswith("take self.a by with everywhere, which releases it")
+    assert two.what.endswith("and so does odom_callback (node.py:61) for self.b")
+    assert two.cure.startswith("take locks in the same order everywhere")
 
 
 def _in_a_loop(t: float, file: str = "node.py", line: int = 62) -> CallbackAt:

@@ -22,6 +22,13 @@ _ADVICE = "wait with a timeout, and make sure that something ends the wait"
 """For notices without advice, as of waits on the real clock, and in old recordings."""
 _WAITS = "a thread that waits serves nothing else, and without a timeout it may do so for ever"
 _LEFT = "a lock stays taken when the thread ends that took it, until somebody releases it"
+_IN_TURN = (
+    "a thread that waits for a lock keeps the locks it has: if each has what the other wants, neither ever "
+    "goes on",
+    "take locks in the same order everywhere, and let go of one before you take the next",
+)
+_TAKEN = "a lock stays taken until whoever took it releases it, also when the call is over that took it"
+_RELEASES = "which releases it on every way out, and let go of it before anything that takes long"
 _RELEASE = "take the lock by with, which releases it on every way out"
 _LET_GO = "let go of the lock before anything that takes long"
 _KEPT = (
@@ -109,16 +116,22 @@ class WaitsForLock(Rule):
             yield Finding(self, first.start, view.end, first.entity, size=view.end - first.start, stuck=stuck)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        waiting = _at_locks(timeline)
         first, *others = (
             f"{who(each.entity, timeline)} ({Path(each.file).name}:{each.line})"
-            for each in _at_locks(timeline)
+            f"{'' if each.lock in ('', waiting[0].lock) else f' for {each.lock}'}"
+            for each in waiting
         )
         also = f", and so {'does' if len(others) == 1 else 'do'} {listed(others)}" if others else ""
+        locks = {(timeline.entities[each.entity].node, each.lock) for each in waiting if each.entity}
+        why, cure = _IN_TURN
+        if len(locks) == 1 and waiting[0].lock:
+            why, cure = _TAKEN, f"take {waiting[0].lock} by with everywhere, {_RELEASES}"
+        lock = waiting[0].lock or "a lock"
         return Explanation(
-            f"{first} has waited for a lock for {duration(found.lasted)}{also}",
-            "a thread that waits for a lock keeps the locks it has: if each has what the other "
-            "wants, neither ever goes on",
-            "take locks in the same order everywhere, and let go of one before you take the next",
+            f"{first} has waited for {lock} for {duration(found.lasted)}{also}",
+            why,
+            cure,
             line_of(found.subject, _moment(found), timeline),
         )
 
