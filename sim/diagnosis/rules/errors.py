@@ -208,6 +208,11 @@ _KNOWN = tuple(
             r"around both places",
         ),
         (
+            r"TypeError: isinstance\(\) arg 2 must be a type, a tuple of types, or a union",
+            r"publish() asks isinstance() about the class that create_publisher() was given",
+            r"if this line publishes, give create_publisher() the class itself: Int32, not Int32()",
+        ),
+        (
             r"EOFError: EOF when reading a line",
             r"nobody types into this run, so input() found the end of what there is to read",
             r"run it where somebody can type; in a callback, which keeps its thread so long, read in another "

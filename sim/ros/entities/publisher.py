@@ -17,6 +17,7 @@ from sim.ros.entities.qos_timing import (
     publisher_timing,
 )
 from sim.ros.entities.subscription import Subscription
+from sim.ros.entities.type_support import message_class
 from sim.ros.exceptions import InvalidHandle
 from sim.ros.handle import DESTROYED, Handle
 from sim.ros.middleware.delivery import Delivery, ExpiringDelivery
@@ -47,14 +48,15 @@ class Publisher:
     def __init__(
         self,
         node: OwnerNode,
-        msg_type: type[Message],
+        msg_type: type[Message] | Message,
         topic: str,
         qos_profile: QoSProfile,
         event_callbacks: EventCallbacks | None = None,
         callback_group: CallbackGroup | None = None,
     ) -> None:
         self.node = node
-        self.msg_type = msg_type
+        self.msg_type: type[Message] = message_class(msg_type)
+        self._given_type: Any = msg_type
         self.topic = topic
         self.topic_name = node.resolve_topic_name(topic)
         self.qos_profile = qos_profile
@@ -148,7 +150,8 @@ class Publisher:
         return message
 
     def _copy(self, msg: Any) -> Message | bytes:
-        if isinstance(msg, self.msg_type):
+        given: type[Message] = self._given_type
+        if isinstance(msg, given):  # which raises if that is a message, as in rclpy
             return copy_message(msg)
         if isinstance(msg, bytes):
             try:

@@ -24,6 +24,7 @@ from sim.ros.entities.qos_timing import (
     SubscriptionTiming,
     limit,
 )
+from sim.ros.entities.type_support import message_class
 from sim.ros.middleware.delivery import Delivery
 from sim.ros.qos.qos import QoSProfile
 from sim.ros.scheduling.callback_groups import CallbackGroup
@@ -70,8 +71,8 @@ class Subscription(Entity):
         event_callbacks: SubscriptionEventCallbacks | None = None,
     ) -> None:
         super().__init__(node, topic_name, callback_group)
-        self.msg_type = msg_type
-        self.interface_type = type_name(msg_type)
+        self.msg_type = message_class(msg_type)
+        self.interface_type = type_name(self.msg_type)
         self.topic = topic_name if topic is None else topic
         self.raw = raw
         self.callback = callback

@@ -26,7 +26,7 @@ def check_for_type_support(msg_or_srv_type: Any) -> None:
         AttributeError: it is not an interface class.
         NoTypeSupportImportedException: a foreign interface class cannot load its type support.
     """
-    if _is_message(msg_or_srv_type) or isinstance(msg_or_srv_type, ServiceType):
+    if isinstance(msg_or_srv_type, Message | ServiceType) or _is_message(msg_or_srv_type):
         return
     kind = type(msg_or_srv_type)
     if not hasattr(kind, "_TYPE_SUPPORT"):
@@ -42,17 +42,22 @@ def check_for_type_support(msg_or_srv_type: Any) -> None:
 
 
 def check_is_valid_msg_type(msg_type: Any) -> None:
-    """Check that an object is a message class.
+    """Check that an object is a message class, or a message, which rclpy takes for its class.
 
     Raises:
         AttributeError: it is not an interface class.
         RuntimeError: it is a service class.
     """
     check_for_type_support(msg_type)
-    if not _is_message(msg_type):
+    if not _is_message(message_class(msg_type)):
         raise RuntimeError(
             f"The message type provided is not valid ({msg_type}), this might be a service or action"
         )
+
+
+def message_class(msg_type: Any) -> Any:
+    """The class of what ``create_publisher`` or ``create_subscription`` was given: a class, or a message."""
+    return type(msg_type) if isinstance(msg_type, Message) else msg_type
 
 
 def check_is_valid_srv_type(srv_type: Any) -> None:

@@ -1,5 +1,7 @@
 """Topics: what a queue keeps, who hears whom, and what is refused."""
 
+from typing import Any
+
 import pytest
 
 import sim.ros.rclpy as rclpy
@@ -285,3 +287,19 @@ def test_one_publisher_reaches_the_subscriptions_of_every_node_at_once() -> None
         rclpy.spin(first)
 
     assert simulate(program, until=2.5).times("<lambda>") == [1.0, 1.0, 2.0, 2.0]
+
+
+def test_a_message_counts_as_its_class_until_it_is_asked_whether_what_is_published_is_of_it() -> None:
+    heard: list[int] = []
+    instance: Any = Int32()
+
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        node.create_subscription(instance, "t", lambda msg: heard.append(msg.data), 10)
+        node.create_publisher(Int32, "t", 10).publish(Int32(data=5))
+        with pytest.raises(TypeError, match="arg 2 must be a type, a tuple of types, or a union"):
+            node.create_publisher(instance, "t", 10).publish(Int32(data=6))
+        rclpy.spin_once(node)
+
+    simulate(program)
+    assert heard == [5]

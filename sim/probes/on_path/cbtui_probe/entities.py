@@ -34,7 +34,10 @@ _ADVICE = "return the value from a pre-set callback, or refuse what was asked fo
 def _type_of(made: Any) -> str:
     """The type of an entity's topic or service, such as ``std_srvs/srv/SetBool``; "" if it has neither."""
     made_for = getattr(made, "srv_type", None) or getattr(made, "msg_type", None)
-    return "" if made_for is None else "/".join([*made_for.__module__.split(".")[:2], made_for.__name__])
+    if made_for is None:
+        return ""
+    kind = made_for if isinstance(made_for, type) else type(made_for)  # rclpy takes a message for its class
+    return "/".join([*kind.__module__.split(".")[:2], kind.__name__])
 
 
 def _overruled(name: str, frame: FrameType | None) -> str:
