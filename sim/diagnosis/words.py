@@ -5,7 +5,7 @@ from pathlib import Path
 
 from sim.quantities.durations import timestamp
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.descriptions import name_of, waiting_name
+from sim.trace.descriptions import name_of, node_name, waiting_name
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import Blocked, EntityInfo, Moment, Nanoseconds, Position, ThreadInfo, Window
 from sim.trace.timeline import Timeline
@@ -33,7 +33,7 @@ def who(entity: EntityId, timeline: Timeline) -> str:
     name = known.spoken_name
 
     def apart(each: EntityInfo) -> str:
-        return timeline.nodes.get(each.node, "") if each.name in ("", name) else each.name
+        return node_name(each.node, timeline) if each.name in ("", name) else each.name
 
     others = {apart(each) for each in timeline.entities.values() if each.spoken_name == name}
     return f"{name} ({apart(known)})" if len(others) > 1 else name

@@ -1,7 +1,7 @@
 """Entities and waits described in words."""
 
 from sim.quantities.durations import duration
-from sim.trace.events import Doing, EntityId, Reason
+from sim.trace.events import Doing, EntityId, NodeId, Reason
 from sim.trace.model import AWAIT, Position, Wait, Window
 from sim.trace.participants import Participants
 from sim.trace.timeline import Timeline
@@ -37,6 +37,19 @@ def name_of(entity: EntityId, timeline: Timeline | Participants) -> str:
     """The name of an entity in a sentence."""
     known = timeline.entities.get(entity)
     return "another callback" if known is None else known.spoken_name
+
+
+def node_name(node: NodeId, timeline: Timeline) -> str:
+    """The name of a node; of several with one name, which of them in order of appearance."""
+    name = timeline.nodes.get(node, "")
+    alike = [each for each, other in timeline.nodes.items() if other == name]
+    if len(alike) < 2:
+        return name
+    place = alike.index(node)
+    return f"the {_ORDINALS[place] if place < len(_ORDINALS) else f'{place + 1}th'} {name}"
+
+
+_ORDINALS = ("first", "second", "third")
 
 
 def waiting_name(entity: EntityId, during: Window, timeline: Timeline) -> str:

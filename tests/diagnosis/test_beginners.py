@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from sim.diagnosis import Weight, diagnose
-from tests.support.engine_runs import program_setup, run_to_end
+from tests.support.engine_runs import program_setup, run_program, run_to_end
 
 PROGRAMS = Path(__file__).parent / "beginners"
 
@@ -103,6 +103,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "spin-not-reached",
             "rclpy.spin(Listener())",
             "add all nodes to one executor",
+        ),
+        (
+            "node_in_two_executors",
+            "node-never-spins",
+            "other.add_node(talker)",
+            "start the thread of line 39",
         ),
         ("two_executors", "node-never-spins", "viewer_executor.spin()", "add all nodes to one executor"),
         (
@@ -251,6 +257,17 @@ def test_a_lock_has_its_name_with_who_took_it_and_where(program: str, wants: str
     timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 3.0)).timeline
     told = diagnose(timeline)[0].rule.explain(diagnose(timeline)[0], timeline)
     assert wants in told.what
+
+
+def test_two_nodes_of_one_name_are_told_apart(tmp_path: Path) -> None:
+    text = (
+        "import rclpy\n\nrclpy.init()\nnodes = [rclpy.create_node('sensor') for _ in range(2)]\n\n\n"
+        "def measure():\n    pass\n\n\nfor node in nodes:\n    node.create_timer(0.5, measure)\n"
+        "rclpy.spin(nodes[0])\n"
+    )
+    timeline = run_program(tmp_path, text, 3.0).timeline
+    told = diagnose(timeline)[0].rule.explain(diagnose(timeline)[0], timeline)
+    assert told.what.startswith("measure (the second /sensor) has been ready for 2.5 s")
 
 
 def test_it_is_told_who_sets_the_event_that_a_callback_waits_for() -> None:

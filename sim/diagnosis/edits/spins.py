@@ -1,7 +1,8 @@
 """Calls of ``spin()`` that spin less than was meant, and the edits that mend them."""
 
 import ast
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from typing import Any
 
 from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
@@ -42,6 +43,66 @@ def _read(source: SourceEditor) -> tuple[SourceEditor, list[ast.Expr]]:
     """Return a source, and its statements that spin in turn if they are in one place only."""
     found = _spins_in_turn(source)
     return source, found[0] if len(found) == 1 else []
+
+
+@asked_of_file
+def taken_away(source: SourceEditor, line: int) -> tuple[int, str, str, str]:
+    """Return the line of the ``add_node`` that takes a node from the executor that was given it before.
+
+    With the node and both executors, as the source has them; (0, "", "", "") for none. The node is of the
+    class that is around ``line``, if one is.
+    """
+    around = [each.name for each in source.nodes(ast.ClassDef) if line in _lines(each)]
+    makers = {ast.unparse(target): made for target, made in _assigned(source)}
+    for body in _bodies(source):
+        given: dict[str, str] = {}
+        for statement in body:
+            match statement:
+                case ast.Expr(value=ast.Call(func=ast.Attribute(value=by, attr="add_node"), args=[added])):
+                    node, executor = ast.unparse(added), ast.unparse(by)
+                    is_meant = not around or makers.get(node, "") in around
+                    if is_meant and given.setdefault(node, executor) != executor:
+                        return statement.lineno, node, given[node], executor
+                case ast.Expr(value=ast.Call(func=ast.Attribute(attr="remove_node"), args=[removed])):
+                    given.pop(ast.unparse(removed), None)
+    return 0, "", "", ""
+
+
+@asked_of_file
+def started_late(source: SourceEditor) -> tuple[int, int]:
+    """Return the lines of a ``spin()``, and behind it that of the start of a thread that spins; or zeros."""
+    threads = {
+        ast.unparse(each.targets[0])
+        for each in source.nodes(ast.Assign)
+        if isinstance(each.value, ast.Call) and any(_is_spin(part) for part in each.value.keywords)
+    }
+    for body in _bodies(source):
+        spins = [each for each in body if _spins(each, _spinning(source))]
+        for statement in body if spins else ():
+            match statement:
+                case ast.Expr(value=ast.Call(func=ast.Attribute(value=thread, attr="start"))):
+                    if ast.unparse(thread) in threads and statement.lineno > spins[0].lineno:
+                        return spins[0].lineno, statement.lineno
+    return 0, 0
+
+
+def _is_spin(part: ast.keyword) -> bool:
+    return part.arg == "target" and ast.unparse(part.value).rpartition(".")[2] == "spin"
+
+
+def _lines(part: ast.stmt) -> range:
+    return range(part.lineno, (part.end_lineno or 0) + 1)
+
+
+def _assigned(source: SourceEditor) -> Iterator[tuple[ast.expr, str]]:
+    """Yield what calls are assigned to, one by one, with the functions that are called."""
+    for each in source.nodes(ast.Assign):
+        pairs = [(each.targets[0], each.value)]
+        if isinstance(each.targets[0], ast.Tuple) and isinstance(each.value, ast.Tuple):
+            pairs = list(zip(each.targets[0].elts, each.value.elts, strict=False))
+        for target, value in pairs:
+            if isinstance(value, ast.Call):
+                yield target, ast.unparse(value.func)
 
 
 def spin_together(source: SourceEditor, line: int) -> None:
@@ -135,16 +196,23 @@ def spin_executor(source: SourceEditor, line: int, executor: str) -> None:
 
 def _spins_in_turn(source: SourceEditor) -> list[list[ast.Expr]]:
     """Return the statements that spin, if a body has several, for each such body."""
-    makers = ((each, ast.unparse(each.value).partition("(")[0]) for each in source.nodes(ast.Assign))
-    executors = {ast.unparse(each.targets[0]) for each, maker in makers if maker.endswith("Executor")}
-    spinning = {*_SPIN_OF_NODE, *(f"{each}.spin" for each in executors)}
-    bodies = [
-        [each for each in body if _spins(each, spinning)]
-        for statement in source.nodes(ast.AST)
-        for body in (getattr(statement, name, ()) for name in ("body", "orelse", "finalbody"))
-        if isinstance(body, list)
-    ]
-    return [each for each in bodies if len(each) > 1]
+    spinning = _spinning(source)
+    spins = ([each for each in body if _spins(each, spinning)] for body in _bodies(source))
+    return [each for each in spins if len(each) > 1]
+
+
+def _spinning(source: SourceEditor) -> set[str]:
+    """Return the functions that spin: rclpy's, and those of the executors that a source assigns."""
+    executors = (ast.unparse(target) for target, maker in _assigned(source) if maker.endswith("Executor"))
+    return {*_SPIN_OF_NODE, *(f"{each}.spin" for each in executors)}
+
+
+def _bodies(source: SourceEditor) -> Iterator[list[Any]]:
+    """Yield the bodies of a source: statements that follow each other."""
+    for statement in source.nodes(ast.AST):
+        for body in (getattr(statement, name, ()) for name in ("body", "orelse", "finalbody")):
+            if isinstance(body, list):
+                yield body
 
 
 def _spins(statement: ast.stmt, spinning: set[str]) -> bool:

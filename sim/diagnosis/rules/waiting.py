@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
 from sim.diagnosis.edits.flags import event_setters
-from sim.diagnosis.edits.spins import spin_beside, spins_in_turn
+from sim.diagnosis.edits.spins import spin_beside, spins_in_turn, started_late, taken_away
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
@@ -35,6 +35,7 @@ from sim.diagnosis.words import (
 )
 from sim.quantities.durations import duration, timestamp
 from sim.quantities.nanoseconds import SECOND
+from sim.trace.descriptions import node_name
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import AWAIT, EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -238,7 +239,7 @@ class NodeNeverSpins(Rule):
         """Yield for each node the callback that has waited longest."""
         taken = {clash.node for clash in view.timeline.spin_clashes}
         for node, wait in view.unspun.items():
-            name = view.timeline.nodes.get(node, "")
+            name = node_name(node, view.timeline)
             since = wait.parts[-1].start
             is_long = view.end - since >= self.threshold
             if is_long and node not in taken and raised_last(node, view.timeline) is None:
@@ -257,7 +258,7 @@ class NodeNeverSpins(Rule):
             return
         for each in view.few_entities:
             if place_of(each.id, timeline) is not None:
-                yield Finding(self, 0, view.end, each.id, about=timeline.nodes.get(each.node, ""))
+                yield Finding(self, 0, view.end, each.id, about=node_name(each.node, timeline))
                 return
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
@@ -285,6 +286,8 @@ class NodeNeverSpins(Rule):
         if place and spins:
             cure = SPIN_ONCE
             what, place, remedies = not_reached(place.file)
+        elif place and timeline.executors and not ever and at is None:
+            what, cure, place = _taken_or_late(what, cure, place)
         loop, how = loop_beside_spin(found.until, timeline)
         if at is not None and not ever:
             place = CodeLocation(*at.place, at.place[1])
@@ -303,13 +306,33 @@ class NodeNeverSpins(Rule):
         ready = (
             f"has been ready for {duration(found.lasted)} and does not run" if found.size else "cannot run"
         )
+        if found.about not in subject:
+            subject = f"{subject} of {found.about}"
         return Explanation(
-            f"{subject} of {found.about} {ready}: {what}",
+            f"{subject} {ready}: {what}",
             why,
             cure,
             place,
             remedies=remedies,
         )
+
+
+def _taken_or_late(what: str, cure: str, place: CodeLocation) -> tuple[str, str, CodeLocation]:
+    """Tell of a node that a second executor took away, or that only a thread spins which starts too late."""
+    line, node, first, second = taken_away(place.file, place.first_line)
+    spin, start = started_late(place.file)
+    earlier = f"start the thread of line {start} before the spin() of line {spin}, which does not return"
+    if line:
+        what = f"{second}.add_node({node}) of line {line} took the node away from {first}"
+        cure = (
+            f"leave that line out: a node is in one executor at a time{f'; and {earlier}' if start else ''}"
+        )
+    elif start:
+        what, cure = (
+            f"the spin() of line {spin} has not returned, so that line {start} was not reached",
+            earlier,
+        )
+    return what, cure, CodeLocation(place.file, line or start, line or start) if line or start else place
 
 
 def _long_for(entity: EntityInfo) -> Nanoseconds:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 
-from sim.trace.descriptions import why_waiting
+from sim.trace.descriptions import node_name, why_waiting
 from sim.trace.events import EntityId, RobotMoved, VelocityCommanded
 from sim.trace.figures.concurrency import threads_at_once
 from sim.trace.figures.waiting import waited_by
@@ -132,7 +132,7 @@ def _names(timeline: Timeline) -> dict[EntityId, str]:
     return {
         entity.id: spoken[entity.id]
         if shared[spoken[entity.id]] == 1
-        else f"{spoken[entity.id]} ({_known_by(entity) or timeline.nodes.get(entity.node, '')})"
+        else f"{spoken[entity.id]} ({_known_by(entity) or node_name(entity.node, timeline)})"
         for entity in timeline.entities.values()
     }
 
