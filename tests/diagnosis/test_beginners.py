@@ -148,6 +148,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("locks_in_methods", "self-made-deadlock", "with self.l", "in the same order"),
         ("locks_in_helpers", "self-made-deadlock", "with self.", "in the same order"),
         ("lock_by_decorator", "self-made-deadlock", "@locked", "threading.RLock"),
+        ("item_of_its_group", "endless-wait", "self.items.get()", "give work a callback group of its own"),
         ("lock_of_ended_thread", "endless-wait", "with self.lock", "take locks by with"),
         ("lock_not_released", "self-made-deadlock", "self.lock.acquire()", "take the lock by with"),
         ("lock_left_by_another", "self-made-deadlock", "self.lock.acquire()", "take the lock by with"),
@@ -257,6 +258,13 @@ def test_a_lock_has_its_name_with_who_took_it_and_where(program: str, wants: str
     timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 3.0)).timeline
     told = diagnose(timeline)[0].rule.explain(diagnose(timeline)[0], timeline)
     assert wants in told.what
+
+
+def test_the_call_that_would_end_a_wait_for_an_item_is_told_with_its_line() -> None:
+    timeline = run_to_end(program_setup(PROGRAMS / "item_of_its_group.py", 3.0)).timeline
+    told = diagnose(timeline)[0].rule.explain(diagnose(timeline)[0], timeline)
+    assert "; self.items.put() in on_raw (item_of_its_group.py:21) would end it; " in told.what
+    assert told.cure.endswith(", so that what ends the wait can run")
 
 
 def test_two_nodes_of_one_name_are_told_apart(tmp_path: Path) -> None:

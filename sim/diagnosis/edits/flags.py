@@ -24,22 +24,37 @@ def setters(source: SourceEditor, line: int) -> tuple[str, ...]:
 
 
 @asked_of_file
-def event_setters(source: SourceEditor, line: int) -> tuple[str, ...]:
-    """Return the functions that set the event or future, or notify the condition, for which a line waits."""
+def enders(source: SourceEditor, line: int) -> tuple[tuple[str, str, int], ...]:
+    """Return what ends the wait of a line: the functions, the calls there, and their lines.
+
+    The wait is for an event, a future, a condition, an item of a queue, or room in it.
+    """
     there = [each for each in source.nodes(ast.expr) if each.lineno <= line <= (each.end_lineno or 0)]
-    waits = (each.func for each in there if isinstance(each, ast.Call))
-    awaited = {
-        ast.unparse(each.value)
-        for each in waits
-        if isinstance(each, ast.Attribute) and each.attr in ("wait", "wait_for")
-    }
-    awaited |= {ast.unparse(each.value) for each in there if isinstance(each, ast.Await)}
-    wakes = {f"{each}.{name}" for each in awaited for name in ("set", "notify", "notify_all", "set_result")}
+    waits = {ast.unparse(each.func) for each in there if isinstance(each, ast.Call)}
+    waits |= {f"{ast.unparse(each.value)}.wait" for each in there if isinstance(each, ast.Await)}
+    parts = (each.rpartition(".") for each in waits)
+    wakes = {f"{awaited}.{name}" for awaited, _, way in parts if awaited for name in _ENDS.get(way, ())}
+    around = [each for each in source.nodes(ast.ClassDef) if each.lineno <= line <= (each.end_lineno or 0)]
+    own = around[-1] if around and all(each.startswith("self.") for each in wakes) else source.tree
     return tuple(
-        function.name
-        for function in source.nodes(ast.FunctionDef)
-        if any(ast.unparse(each.func) in wakes for each in source.nodes(ast.Call, function))
+        (function.name, ast.unparse(each.func), each.lineno)
+        for function in source.nodes(ast.FunctionDef, own)
+        for each in source.nodes(ast.Call, function)
+        if ast.unparse(each.func) in wakes
     )
+
+
+_ENDS = {
+    **dict.fromkeys(("wait", "wait_for"), ("set", "notify", "notify_all", "set_result")),
+    "get": ("put", "put_nowait"),
+    "put": ("get", "get_nowait"),
+}
+"""The methods that end the wait in a method of the same object."""
+
+
+def event_setters(file: str, line: int) -> tuple[str, ...]:
+    """Return the functions that end the wait of a line."""
+    return tuple(dict.fromkeys(function for function, _, _ in enders(file, line)))
 
 
 @asked_of_file

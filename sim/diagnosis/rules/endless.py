@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from sim.diagnosis.cures import remedy_for_waits
-from sim.diagnosis.edits.flags import setters, sleeps
+from sim.diagnosis.edits.flags import enders, setters, sleeps
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_location, line_of
 from sim.diagnosis.rules.edits import beside_others, edits_for_reply, edits_for_waiting
 from sim.diagnosis.rules.overlooked import KINDS as OVERLOOKED
@@ -77,9 +77,13 @@ class EndlessWait(Rule):
         if at and at[-1].taken_by and not notice.advice:
             cure = _RELEASE if at[-1].is_left else f"let {at[-1].taken_by} {_LET_GO}"
         room = remedy_for_waits(kept, found.subject, Window(found.at, found.until + 1), timeline)
+        ends = _enders(found.subject, at[-1] if at else None, timeline)
+        what += f"; {listed(ends)} would end it" if ends else ""
         if room.words(timeline):
             what += f"; {listed(who(each, timeline) for each in kept)} can run only when it is over"
             cure = f"{cure}: {room.words(timeline)}"
+            if ends:
+                cure = f"wait with a timeout; and {room.words(timeline)}, so that what ends the wait can run"
         return Explanation(
             f"{who(found.subject, timeline)}{what}{often(found.count)}",
             _LEFT if at and at[-1].is_left else _WAITS,
@@ -302,6 +306,18 @@ def _setters(entity: EntityId, loop: CodeLocation | None, timeline: Timeline) ->
     """Return the other functions that set what the loop of a callback asks."""
     found = setters(loop.file, loop.first_line) if loop else ()
     return [each for each in found if each != who(entity, timeline)]
+
+
+def _enders(entity: EntityId, at: Position | None, timeline: Timeline) -> list[str]:
+    """Return the calls of other functions that end a callback's wait, as its source shows."""
+    if at is None or at.doing is not Doing.WAITS or at.waits_for_lock:
+        return []
+    file, own = at.file, who(entity, timeline)
+    return [
+        f"{call}() in {function} ({Path(file).name}:{line})"
+        for function, call, line in enders(file, at.line)
+        if function != own
+    ]
 
 
 def _moment(found: Finding) -> Window:
