@@ -3,13 +3,17 @@
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from threading import Event
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 
 from cbtui.looks.theme import Charset
-from cbtui.runs.judged.cures import Cure, Verdict
+from cbtui.runs.judged.cures import Cure, TriedRun, Verdict, problem_of
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.shown_program import ShownProgram
+from cbtui.screens.parts.cures import CureTrial, CureTrials
 from cbtui.screens.windows import diagnoses
 from cbtui.screens.windows.diagnoses import (
     ChosenStep,
@@ -20,6 +24,7 @@ from cbtui.screens.windows.diagnoses import (
 from lessons.catalogue import find
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import CodeEdit
+from sim.trace.timeline import Timeline
 from tests.screens.test_diagnoses import TURNED, console, press, told_of
 from tests.support.exercises import until
 from tests.support.pictures import text_of
@@ -206,3 +211,27 @@ def test_a_cure_that_edits_nothing_tells_what_to_write() -> None:
         "executor = MultiThreadedExecutor(num_threads=2)",
         "executor.spin()",
     ]
+
+
+def test_what_was_tried_for_a_run_is_not_tried_again_when_the_window_is_opened_again(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    events, timeline = shared_group_run().until(TURNED), Timeline()
+    timeline.extend(events)
+    (found, *_) = told_of(events)
+    problem, tried = problem_of(found.finding, timeline), list[Changes]()
+
+    def run_with(_: CureTrial, changes: Changes, *_rest: object) -> TriedRun:
+        tried.append(changes)
+        return TriedRun({} if changes.threads else {problem: False}, end=timeline.end)
+
+    monkeypatch.setattr(CureTrial, "_try", run_with)
+    restarts: Any = SimpleNamespace(changes=Changes())
+    runs: Any = SimpleNamespace(timeline=timeline, run=SimpleNamespace(timeline=timeline))
+    trials = CureTrials(runs, restarts, cast("ShownProgram", None), lambda: None)
+    for _ in range(2):
+        assert trials.begin().judge(found, APART, Event()).helps
+    assert tried == [Changes(), APART.changes]
+    runs.run = SimpleNamespace(timeline=timeline)
+    assert trials.begin().judge(found, APART, Event()).helps
+    assert len(tried) == 4

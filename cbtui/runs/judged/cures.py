@@ -112,6 +112,11 @@ class Cure:
     diff: str = ""
     code: tuple[str, ...] = ()
 
+    @property
+    def key(self) -> str:
+        """What two cures of one run have in common that change the same."""
+        return f"{self.words}\n{self.diff}"
+
 
 def problem_of(found: Finding, timeline: Timeline) -> Problem:
     """Return what identifies a finding in other runs; in a deadlock either side may be the subject."""

@@ -1,7 +1,7 @@
 """Tries cures of findings in the background, and compares a run with a cure to the one before."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain, takewhile
 from threading import Event
@@ -9,6 +9,7 @@ from threading import Event
 from cbtui.engines.follow import GivenUpError
 from cbtui.runs.judged.cures import (
     Cure,
+    Problem,
     TriedRun,
     Verdict,
     cures_of,
@@ -48,27 +49,41 @@ class CureTrials:
     restarts: Restarts
     subject: ShownProgram
     compare: Callable[[], None]
+    _latest: "CureTrial | None" = None
 
     def begin(self) -> "CureTrial":
-        """Return a trial of cures for the run on screen so far."""
-        until = min(max(self.runs.timeline.end, _SHORTEST), _LONGEST)
-        return CureTrial(self, self.runs.run, self.restarts.changes, until)
+        """Return a trial of cures for the run on screen so far, or that which was begun for it before."""
+        latest = self._latest
+        if latest is None or latest.run is not self.runs.run or latest.changes != self.restarts.changes:
+            latest = self._latest = self._anew()
+        return latest
+
+    def _anew(self) -> "CureTrial":
+        return CureTrial(self, self.runs.run, self.restarts.changes, self.until())
+
+    def until(self) -> Nanoseconds:
+        """Return the moment up to which a trial runs that begins now."""
+        return min(max(self.runs.timeline.end, _SHORTEST), _LONGEST)
 
     async def run(self, cure: Cure) -> None:
         """Run again with a cure and the same inputs, and compare with the run before."""
-        await self.restarts.again(cure.changes, self.begin().inputs)
+        await self.restarts.again(cure.changes, self._anew().inputs)
         self.compare()
 
 
 @dataclass
 class CureTrial:
-    """Tries several cures of a run up to a moment; ``judge`` is used on one thread, which may be another."""
+    """Tries several cures of a run up to a moment; ``judge`` is used on one thread, which may be another.
+
+    What it has found out it keeps, so that it can be asked again.
+    """
 
     trials: CureTrials
     run: LiveRun
     changes: Changes
     until: Nanoseconds
     _before: TriedRun | None = None
+    _verdicts: dict[tuple[Problem, str], Verdict] = field(default_factory=dict)
 
     @property
     def refusal(self) -> str:
@@ -95,15 +110,25 @@ class CureTrial:
         Unknown if the run without a cure does not show the finding in time: then no cure is tried.
         """
         problem = problem_of(found.finding, self.run.timeline)
+        if (known := self._verdicts.get((problem, cure.key))) is not None:
+            return known
         try:
-            if self._before is None:
-                self._before = self._try(self.changes, given_up, lambda done: note(done // 2))
-            if problem not in self._before.problems:
+            before = self._without(problem, given_up, lambda done: note(done // 2))
+            if problem not in before.problems:
                 return Verdict(None)
             after = self._try(cure.changes, given_up, lambda done: note(50 + done // 2))
-            return judged(problem, self._before, after)
         except (GivenUpError, OSError, UnknownInputError):
             return Verdict(None)
+        return self._verdicts.setdefault((problem, cure.key), judged(problem, before, after))
+
+    def _without(self, problem: Problem, given_up: Event, note: Note) -> TriedRun:
+        """Return the run without a cure; another one up to now, if the one before does not show a problem."""
+        before, now = self._before, self.trials.until()
+        if before is None or (problem not in before.problems and now > self.until):
+            self.until, self._before = now, None
+            vars(self).pop("inputs", None)
+            before = self._before = self._try(self.changes, given_up, note)
+        return before
 
     @cached_property
     def inputs(self) -> tuple[TimedInput, ...]:
