@@ -45,18 +45,23 @@ def two_groups() -> tuple[CallbackGroup, CallbackGroup]:
     return MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
 
 
-def test_more_threads_than_ever_needed_are_remarked_on() -> None:
+def test_more_threads_than_groups_are_remarked_on() -> None:
     run = two_timers(two_groups(), threads=4)
     assert rules(run) == ["threads-never-used"]
-    assert run.explained("threads-never-used").what == "2 of 4 threads were ever needed at once"
+    told = run.explained("threads-never-used").what
+    assert told == "no more than 2 of 4 threads can run callbacks at once: there are 2 groups"
 
 
-def test_threads_are_not_counted_where_a_callback_blocks_in_a_call() -> None:
+def test_a_run_that_needed_few_threads_does_not_say_how_many_another_one_needs() -> None:
+    assert rules(two_timers((ReentrantCallbackGroup(), None), threads=4)) == []
+
+
+def test_threads_are_not_counted_where_calls_need_them_for_their_done_callbacks() -> None:
     def program(_: Simulation) -> None:
         node = Node("n")
         node.create_service(SetBool, "/serve", lambda request, response: response)
         client = node.create_client(SetBool, "/serve", callback_group=ReentrantCallbackGroup())
-        node.create_timer(1.0, lambda: client.call(SetBool.Request()), MutuallyExclusiveCallbackGroup())
+        node.create_timer(1.0, lambda: client.call_async(SetBool.Request()), MutuallyExclusiveCallbackGroup())
         spin(node, 4)
 
     assert rules(diagnosed(program, until=5.0)) == []

@@ -5,10 +5,11 @@ from itertools import islice
 
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, is_models, place_of
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import listed, thread_count, threads_needed
+from sim.diagnosis.words import listed, thread_count
 from sim.quantities.nanoseconds import SECOND
+from sim.quantities.plural import counted
 from sim.trace.events import EntityKind, GroupId, GroupKind, NodeId
-from sim.trace.model import EntityInfo, ExecutorInfo, GroupInfo, Nanoseconds, Window
+from sim.trace.model import EntityInfo, ExecutorInfo, GroupInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
 _WARMED_UP: Nanoseconds = SECOND
@@ -16,30 +17,35 @@ _WARMED_UP: Nanoseconds = SECOND
 
 
 class ThreadsNeverUsed(Rule):
-    """An executor has more threads than ever ran callbacks at once; not told where others run some, too.
+    """An executor has more threads than there are groups, all of which are mutually exclusive.
 
-    Nor where a callback was blocked in a call: its reply needs a thread besides, and in another run others
-    may be blocked meanwhile.
+    Not told where others run callbacks, too, nor where calls are made: their done-callbacks need threads, and
+    are in no group. That fewer threads did in one run says nothing about the next one.
     """
 
     id = "threads-never-used"
-    summary = "fewer threads would have done"
+    summary = "more threads than groups"
     weight = Weight.REMARK
     is_effect = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Compare the threads needed with those available."""
-        threads = sum(each.threads for each in _with_workers(view.timeline))
-        needed = view.threads_needed
-        is_judged = view.end >= _WARMED_UP and 0 < needed < threads and _only_group(view.timeline) is None
-        if is_judged and _runs_on_one_executor(view) and not _blocks_in_calls(view.timeline):
-            yield Finding(self, 0, view.end, size=needed, detail=str(threads))
+        """Compare the threads with the groups."""
+        timeline = view.timeline
+        threads = sum(each.threads for each in _with_workers(timeline))
+        if view.end < _WARMED_UP or not threads or timeline.calls or not view.threads_needed:
+            return
+        inhabited = (each for each in timeline.groups.values() if timeline.group_members(each.id))
+        groups = list(islice(inhabited, threads))
+        is_judged = all(each.kind is GroupKind.EXCLUSIVE for each in groups) and _runs_on_one_executor(view)
+        if is_judged and len(groups) < threads and _only_group(timeline) is None:
+            yield Finding(self, 0, view.end, size=len(groups), detail=str(threads))
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        groups = f"{'is' if found.size == 1 else 'are'} {counted(found.size, 'group')}"
         return Explanation(
-            threads_needed(found.size, int(found.detail), timeline),
-            "a thread is needed only while all the others run callbacks",
-            f"num_threads={found.size} would have done for this run",
+            f"no more than {found.size} of {found.detail} threads can run callbacks at once: there {groups}",
+            "a mutually exclusive group lets one callback in at a time, however many threads there are",
+            f"num_threads={found.size} will do, until callbacks get further groups, or a reentrant one",
             None,
         )
 
@@ -118,11 +124,6 @@ def _with_workers(timeline: Timeline) -> list[ExecutorInfo]:
 def _runs_on_one_executor(view: TimelineView) -> bool:
     threads = view.timeline.threads.values()
     return len({each.executor for each in threads if view.timeline.spans_on(each.id, view.window)}) == 1
-
-
-def _blocks_in_calls(timeline: Timeline) -> bool:
-    whole = Window(0, timeline.end + 1)
-    return any(each.entity for thread in timeline.threads for each in timeline.blocks_on(thread, whole))
 
 
 def _only_group(timeline: Timeline) -> GroupInfo | None:
