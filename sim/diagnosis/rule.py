@@ -78,6 +78,8 @@ class Finding:
     """What those callbacks wait for that wait for each other."""
     ring: tuple[str, ...] = ()
     """The cycle of waits, from a callback by the awaited things back to it: ``tick``, ``/add``, ``tick``."""
+    keeper: EntityId = 0
+    """The callback of a cycle that keeps its group from what others wait for; 0 for none."""
 
     @property
     def key(self) -> tuple[str, EntityId, str]:

@@ -60,6 +60,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ),
         ("wait_for_event", "endless-wait", "self.opened.wait()", "give go a callback group of its own"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
+        ("calls_of_two_peers", "self-made-deadlock", "self.client.call(", "num_threads=3"),
         ("call_in_script", "self-made-deadlock", "client.call(", "give ask a callback group of its own"),
         ("call_in_subscription", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("wait_for_future", "self-made-deadlock", "time.sleep(0.1)", "add_done_callback"),

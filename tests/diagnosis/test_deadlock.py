@@ -78,6 +78,19 @@ def test_as_many_calls_as_threads_need_one_thread_more(count: int, kind: Group) 
     assert f"num_threads={count + 1}" in told.cure
 
 
+def test_one_thread_more_is_not_advised_alone_where_a_group_keeps_out_an_answer_too(tmp_path: Path) -> None:
+    text = (PROGRAMS / "calls_of_two_peers.py").read_text()
+    own = "callback_group=group if name == 'left' else None"
+    (tmp_path / "peers.py").write_text(text.replace("self.tick", f"self.tick, {own}"))
+    run = run_to_end(program_setup(tmp_path / "peers.py", 4.0))
+    found = diagnose(run.timeline)[0]
+    assert found.rule.id == "needs-one-more-worker"
+    assert found.rule.explain(found, run.timeline).cure == (
+        "give tick (/right) a callback group of its own, and spin with MultiThreadedExecutor(num_threads=3), "
+        "or use call_async()"
+    )
+
+
 def test_one_callback_on_all_threads_is_named_once_for_the_requests_and_replies_of_its_service() -> None:
     run = run_to_end(program_setup(PROGRAMS / "call_in_reentrant_timer.py", 4.0))
     found = diagnose(run.timeline)[0]

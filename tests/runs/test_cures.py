@@ -103,6 +103,14 @@ FIT = "define it with the parameters it is called with (diff)"
             ],
         ),
         ("call_in_script", [APART.replace("tick", "ask"), AWAIT.format("ask")]),
+        (
+            "calls_of_two_peers",
+            [
+                APART.replace("tick", "tick (/left)").replace("=2", "=3"),
+                DONE,
+                AWAIT.format("tick (/left)"),
+            ],
+        ),
         ("call_in_service", [APART.replace("tick", "cook"), AWAIT.format("cook")]),
         ("spin_in_service", [AWAIT.format("cook")]),
         ("wait_for_future", [APART, DONE, AWAIT.format("tick")]),

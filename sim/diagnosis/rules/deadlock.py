@@ -33,7 +33,16 @@ from sim.diagnosis.rules.edits import edits_for_reply, edits_for_rounds, edits_f
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES, WaitForGraph, stands
 from sim.diagnosis.waiters import StuckCallback
-from sim.diagnosis.words import awaiting, must_answer, often, threads_for, until_when, who, with_threads
+from sim.diagnosis.words import (
+    awaiting,
+    must_answer,
+    often,
+    thread_of,
+    threads_for,
+    until_when,
+    who,
+    with_threads,
+)
 from sim.trace.events import EntityId, EntityKind, Reason
 from sim.trace.model import AWAIT, Blocked, Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -101,11 +110,7 @@ class SelfMadeDeadlock(Rule):
                     f"to wait inside it, {apart}"
                 )
         threads = 0
-        if (
-            not awaits
-            and WaitedFor.LOCK not in found.waited_for
-            and threads_for([found.subject], found.until, timeline) == 1
-        ):
+        if not awaits and WaitedFor.LOCK not in found.waited_for and _keeps_every_thread(found, timeline):
             threads = found.size + 1
             cure += f", and spin with {with_threads(threads)}"
         return _explanation(found, why, cure, self._remedies(found, threads, timeline), timeline)
@@ -147,13 +152,17 @@ class NeedsOneMoreWorker(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         why = f"{found.size} callbacks in call() at once need at least {found.size + 1} threads"
+        room = Remedy(threads=found.size + 1)
+        if found.keeper:
+            why = f"{why}, and what answers them a group that lets it in"
+            room = replace(room, own_groups=(found.keeper,))
         other = "use call_async()"
         if must_answer(found.subject, timeline):
             other = f"after call_async() {awaiting(who(found.subject, timeline))}"
-        cure = f"spin with {with_threads(found.size + 1)}, or {other}"
+        cure = f"{room.words(timeline)}, or {other}"
         place = _line_of(found.subject, found, timeline)
         edits = edits_for_reply(place, found.subject, timeline)
-        return _explanation(found, why, cure, (Remedy(threads=found.size + 1), *edits), timeline)
+        return _explanation(found, why, cure, (room, *edits), timeline)
 
 
 _KINDS = {
@@ -232,6 +241,14 @@ def _without_rate(place: CodeLocation | None, entity: EntityId, timeline: Timeli
         return steps
     least = -(-known.period // min(rates))
     return *steps, *edits_for_rounds(place, entity, timeline, least)
+
+
+def _keeps_every_thread(found: Finding, timeline: Timeline) -> bool:
+    """Whether stuck callbacks keep all threads of the executor: then a group of its own is not enough."""
+    threads = [thread_of(each, found.until, timeline) for each in found.stuck]
+    mine = thread_of(found.subject, found.until, timeline)
+    kept = {each.id for each in threads if each and mine and each.executor == mine.executor}
+    return len(kept) >= threads_for([found.subject], found.until, timeline)
 
 
 def _shares_group(entity: EntityId, timeline: Timeline) -> bool:
@@ -334,6 +351,8 @@ def _found(
     callbacks = [each.entity for each in deadlock if each.entity]
     others = [each for each in callbacks if each != closing.entity]
     culprit = others[0] if others else closing.entity
+    names = {each.waiter: each.entity for each in deadlock}
+    keepers = (names[waiter] for each in deadlock if each.obstacle.group for waiter in each.obstacle.by)
     ring = (step for each in deadlock for step in (each.name(timeline), *each.obstacle.steps))
     return Finding(
         rule,
@@ -348,4 +367,5 @@ def _found(
         ends=min((each.until for each in deadlock if each.until), default=0),
         waited_for=frozenset(each.obstacle.kind for each in deadlock),
         ring=(*ring, who(closing.entity, timeline)),
+        keeper=next(keepers, 0),
     )
