@@ -269,6 +269,14 @@ def test_no_cure_helps_where_a_run_does_not_come_to_what_was_found_or_ends_too_s
     assert not judged(problem, bad, bad).helps
 
 
+def test_a_run_that_took_too_long_is_judged_by_what_it_came_to() -> None:
+    problem = "self-made-deadlock", "a", "b"
+    before = TriedRun({problem: True}, end=40 * SECOND, since={problem: 20 * SECOND})
+    far, near = (TriedRun({}, is_whole=False, is_cut=True, end=each * SECOND) for each in (23, 21))
+    assert judged(problem, before, far).helps
+    assert judged(problem, before, near).helps is None
+
+
 def test_a_crash_is_worse_than_what_comes_to_light_without_it() -> None:
     crash, slow = ("program-raised", "", ""), ("group-starvation", "", "")
     assert judged(crash, TriedRun({crash: False}, is_whole=False), TriedRun({slow: False})).helps

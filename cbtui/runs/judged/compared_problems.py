@@ -3,16 +3,12 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
-from cbtui.runs.judged.cures import Problem, name_of, problem_of
+from cbtui.runs.judged.cures import NOTICED, Problem, name_of, problem_of
 from sim.diagnosis import Diagnoses, Weight, sentence
-from sim.quantities.nanoseconds import SECOND
 from sim.trace.figures.comparison import unlike_commands
 from sim.trace.figures.comparison_rows import RUNS
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
-
-_NOTICED: Nanoseconds = 2 * SECOND
-"""How long after it began a problem is known as one."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +96,7 @@ def _only_in(one: _Problems, other: _Problems) -> list[_Known]:
 
 def _has_come_to(timeline: Timeline, *problems: _Known) -> bool:
     """Whether a run has come so far that it would have shown these problems of the other one."""
-    return timeline.end >= max(each.at for each in problems) + _NOTICED
+    return timeline.end >= max(each.at for each in problems) + NOTICED
 
 
 def _problems_of(timeline: Timeline, diagnoses: Diagnoses) -> _Problems:

@@ -18,6 +18,7 @@ from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import diff
 from sim.engine.setup import RunSetup, TimedInput
 from sim.files.untrusted import MAX_PROGRAM_BYTES, read_text
+from sim.quantities.nanoseconds import SECOND
 from sim.quantities.plural import counted
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -30,6 +31,12 @@ _TIME_STOOD_STILL = (
     "computes, so what would end the loop does not come."
 )
 _NOT_SHOWN = "Whether a cure helps is not known: the run that was made to try one did not show this problem."
+_TOO_SLOW = (
+    "Whether a cure helps is not known: the run with it did not get far enough in the time it was given."
+)
+
+NOTICED: Nanoseconds = 2 * SECOND
+"""How long after it began a problem is known as one."""
 
 Problem: TypeAlias = tuple[str, str, str]
 """A rule's id, its subject and its culprit, by name: comparable between runs of a program."""
@@ -68,7 +75,8 @@ class TriedRun:
     """The problems of a run, each with whether it lasts for ever; ``is_whole`` if the run reached its end.
 
     ``effects`` are the ids of the rules that found only effects of a problem; ``names`` are the problems'
-    names in sentences. ``end`` is its length.
+    names in sentences, and ``since`` when each was there. ``end`` is its length; ``is_cut``: it was given up
+    there because it took long, and would have gone on.
     """
 
     problems: Mapping[Problem, bool]
@@ -76,11 +84,13 @@ class TriedRun:
     effects: frozenset[str] = frozenset()
     names: Mapping[Problem, str] = field(default_factory=dict)
     end: Nanoseconds = 0
+    is_cut: bool = False
+    since: Mapping[Problem, Nanoseconds] = field(default_factory=dict)
 
     @property
     def badness(self) -> tuple[int, int]:
         """A rank, greater for worse: first endless problems and an early end count, then all problems."""
-        return sum(self.problems.values()) + (not self.is_whole), len(self.problems)
+        return sum(self.problems.values()) + (not (self.is_whole or self.is_cut)), len(self.problems)
 
 
 @dataclass(frozen=True)
@@ -180,14 +190,16 @@ def judged(problem: Problem, before: TriedRun, after: TriedRun) -> Verdict:
         return Verdict(None, reason=_TIME_STOOD_STILL)
     if problem in after.problems:
         return Verdict(False)
+    if after.is_cut and after.end < before.since.get(problem, 0) + NOTICED:
+        return Verdict(None, reason=_TOO_SLOW)
     left = {each: lasts for each, lasts in after.problems.items() if each[0] not in before.effects}
     new = sorted((each for each in left if each not in before.problems), key=lambda each: not left[each])
     instead = after.names.get(new[0], "") if new else ""
     if problem[0] == _CRASH and not before.is_whole and (after.is_whole or after.end > before.end):
         return Verdict(True, instead)
-    if after.is_whole and replace(after, problems=left).badness < before.badness:
-        return Verdict(True)
-    return Verdict(False, instead)
+    goes_on = after.is_whole or after.is_cut
+    helps = goes_on and replace(after, problems=left).badness < before.badness
+    return Verdict(True) if helps else Verdict(False, instead)
 
 
 def tried_in_vain(tried: Sequence[tuple[Cure, Verdict]]) -> str:
@@ -215,12 +227,16 @@ def try_run(
     """
     timeline = Timeline(until_ending=True)
     unwatched = msgspec.structs.replace(setup, clock="virtual", speed=None, until=until)
-    with FollowedRun(unwatched, ProcessSession, given_up) as run, suppress(EngineLostError, RunTimeoutError):
-        run.start()
-        run.limit(_LIMIT)
-        for batch in run:
-            timeline.extend(batch)
-            note(timeline.end)
+    is_cut = False
+    with FollowedRun(unwatched, ProcessSession, given_up) as run, suppress(EngineLostError):
+        try:
+            run.start()
+            run.limit(_LIMIT)
+            for batch in run:
+                timeline.extend(batch)
+                note(timeline.end)
+        except RunTimeoutError:
+            is_cut = True
     found = diagnose(timeline)
     wrong = [each for each in found if each.rule.weigh(each, timeline) is Weight.PROBLEM]
     told = {problem_of(each, timeline): (each, each.rule.explain(each, timeline)) for each in wrong}
@@ -228,4 +244,5 @@ def try_run(
     names = {problem: name_of(*each) for problem, each in told.items()}
     effects = {each.rule.id for each in found if each.due_to} - {each.rule.id for each in wrong}
     is_whole = timeline.ended is not None and timeline.ended.time_was_up
-    return TriedRun(lasts, is_whole, frozenset(effects), names, timeline.end)
+    since = {problem: each.at for problem, (each, _) in told.items()}
+    return TriedRun(lasts, is_whole, frozenset(effects), names, timeline.end, is_cut, since)
