@@ -1,10 +1,13 @@
 """The participants of a run: programs, threads, executors, nodes, callback groups and entities."""
 
+from dataclasses import replace
+
 import msgspec
 
 from sim.trace.events import (
     EntityAppeared,
     EntityId,
+    EntityKind,
     ExecutorAppeared,
     ExecutorId,
     GroupAppeared,
@@ -18,6 +21,9 @@ from sim.trace.events import (
     ThreadId,
 )
 from sim.trace.model import EntityInfo, ExecutorInfo, GroupInfo, Nanoseconds, ThreadInfo
+
+_RATES = ("/ros/entities/timer.py", "/rclpy/timer.py")
+"""The files of rates, of the model and of rclpy: a timer with a callback there is a rate's."""
 
 
 def letter(place: int) -> str:
@@ -74,6 +80,8 @@ class Participants:
     def add_entity(self, event: EntityAppeared) -> EntityInfo:
         """Add an entity."""
         entity = EntityInfo(*msgspec.structs.astuple(event)[1:])
+        if entity.kind is EntityKind.TIMER and entity.file.endswith(_RATES):
+            entity = replace(entity, callback="rate's timer")  # rclpy has no name for it
         self.entities[event.entity] = entity
         self._members.setdefault(event.group, []).append(entity)
         return entity

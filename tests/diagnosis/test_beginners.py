@@ -220,6 +220,13 @@ def test_a_callback_that_sleeps_by_a_rate_alone_in_its_group_needs_only_a_thread
     assert told.remedies[-1].own_groups == ()
 
 
+def test_the_timer_of_a_rate_has_one_name_in_sentences_and_tables() -> None:
+    timeline = run_to_end(program_setup(PROGRAMS / "rate_sleep.py", 2.0)).timeline
+    assert "rate's timer" in {each.spoken_name for each in timeline.entities.values() if each.period}
+    told = diagnose(timeline)[0].rule.explain(diagnose(timeline)[0], timeline)
+    assert "waits for the rate's timer for ever" in told.what
+
+
 @pytest.mark.parametrize("program", ["spin_in_service", "call_in_service"])
 def test_a_service_is_not_told_to_go_on_after_it_has_returned(program: str) -> None:
     timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 2.0)).timeline
