@@ -190,6 +190,7 @@ class Engine:
             follow(clock)
             HungCallbacks(clock, record, self._positions.callback_on).start()
         self._terminal.put_in_place()
+        self._probe.usage.watch_coroutines()
         self._commands.schedule(setup)
         self._batches.guard(
             {"outbox": self._outbox, "probe": self._probe, "host": self._host, "clock": clock}

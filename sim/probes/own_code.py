@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dis
 import sys
+import sysconfig
 from collections.abc import Iterator
 from pathlib import Path
 from types import FrameType
@@ -30,6 +31,12 @@ def is_own(frame: FrameType) -> bool:
 def is_library(frame: FrameType) -> bool:
     """Whether a frame runs the code of an installed package."""
     return "site-packages" in Path(frame.f_code.co_filename).parts
+
+
+def is_written(file: str) -> bool:
+    """Whether a file is neither of Python's library, of an installed package, nor of the model."""
+    inside = (sysconfig.get_paths()["stdlib"], str(Path(__file__).parents[1]))
+    return not file.startswith(("<", *inside)) and "site-packages" not in Path(file).parts
 
 
 def own_frame(frame: FrameType | None) -> FrameType | None:

@@ -4,6 +4,7 @@ It gives out the ids, and keeps per thread which callback runs there. Every meth
 lock held or uses nothing shared, and only appends to the sink.
 """
 
+import sys
 import threading
 from collections.abc import Callable, Sequence
 from itertools import count
@@ -100,7 +101,7 @@ class Probe:
         now = self._now()
         group = self._group_id(now, entity)
         entity.trace_id = next(self._entities)
-        name, file, first, last = written_at(entity.shown_callback())
+        callback, place = entity.shown_callback(), self.place_of_call()
         self._sink(
             events.EntityAppeared(
                 now,
@@ -109,16 +110,14 @@ class Probe:
                 group,
                 entity.kind,
                 entity.name,
-                name,
-                file,
-                first,
-                last,
+                *written_at(callback),
                 entity.depth,
                 entity.period,
                 entity.interface_type,
-                self.place_of_call(),
+                place,
             )
         )
+        self.usage.callback_made(callback, place, entity.trace_id)
 
     def _group_id(self, now: int, entity: TracedEntity) -> int:
         group = entity.callback_group
@@ -332,6 +331,7 @@ class Probe:
         here = self._here
         if here.thread == 0:
             here.thread = next(self._threads)
+            sys.set_coroutine_origin_tracking_depth(1)  # of this thread
             thread = threading.current_thread()
             process = getattr(thread, "ros_process", None)
             number = 0 if process is None else process.number

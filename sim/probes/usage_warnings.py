@@ -1,11 +1,13 @@
 """Records where a program misuses what rclpy gives it, though nothing fails."""
 
 import threading
+import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
-from sim.probes.own_code import call_into_ros, is_result_dropped, place_of_caller
+from sim.probes.loop_variables import SharedVariables
+from sim.probes.own_code import call_into_ros, is_result_dropped, is_written, place_of_caller
 from sim.trace.events import NoticeKind
 
 _AT_ONCE = 10_000_000
@@ -33,6 +35,7 @@ class UsageWarnings:
         self._here = here
         self._warn = warn
         self._told: set[tuple[str, int, int]] = set()
+        self._shared = SharedVariables()
 
     def result_check(self) -> Callable[[], None]:
         """Return what to call when the result of the request that is sent now is asked for and not there.
@@ -65,6 +68,46 @@ class UsageWarnings:
             advice = "make one in __init__"
             self._tell_of(place, NoticeKind.PUBLISHERS_KEPT, problem, advice, number)
 
+    def callback_made(self, callback: object, place: tuple[str, int], entity: int) -> None:
+        """Warn if a callback shares the variable of a loop with one made at the same line before."""
+        for name in self._shared.of(callback, place):
+            code = getattr(callback, "__code__")  # noqa: B009 - it is a function
+            given = ", ".join((*code.co_varnames[: code.co_argcount], f"{name}={name}"))
+            problem = (
+                f"the callbacks made at one line share the loop's variable {name}, and all see its last value"
+            )
+            advice = f"bind it when each is made: def {code.co_name}({given})"
+            if code.co_name == "<lambda>":
+                advice = f"bind it when each is made: lambda {given}: …, or functools.partial"
+            self._tell_of(place, NoticeKind.LATE_BOUND, problem, advice, entity=entity)
+
+    def watch_coroutines(self) -> None:
+        """Have Python tell of coroutines that are dropped before anything of them has run."""
+        tell_in_general = warnings._warn_unawaited_coroutine  # type: ignore[attr-defined]
+
+        def tell(coroutine: Any) -> None:
+            if not self._never_awaited(coroutine):
+                tell_in_general(coroutine)
+
+        warnings._warn_unawaited_coroutine = tell  # type: ignore[attr-defined]
+
+    def _never_awaited(self, coroutine: Any) -> bool:
+        """Warn of a coroutine that a callback dropped, if the program's own code made it."""
+        for file, line, function in (coroutine.cr_origin or ())[:1]:
+            name = coroutine.__qualname__.rpartition(".")[2]
+            if self._here.entity and is_written(file):
+                problem = f"{function} calls {name}() without await, so nothing of {name} runs"
+                advice = f"write await {name}(), in an async def {function}"
+                self._tell_of((file, line), NoticeKind.NEVER_AWAITED, problem, advice)
+                return True
+        return False
+
+    def result_of_rejected(self) -> None:
+        """Warn that the result of a goal is asked for which the server has rejected."""
+        problem = "the result of a goal is asked for that the server rejected: it is empty, with status 0"
+        advice = "look at goal_handle.accepted first, and return if it is False"
+        self._tell(("get_result", "get_result_async"), NoticeKind.REJECTION_OVERLOOKED, problem, advice)
+
     def many_made(self, number: int, kind: str) -> None:
         """Warn that callbacks keep creating entities of one kind; the node has ``number`` of them."""
         self._warn(
@@ -81,9 +124,17 @@ class UsageWarnings:
             self._tell_of((file, line), kind, problem, advice)
 
     def _tell_of(
-        self, place: tuple[str, int], kind: NoticeKind, problem: str, advice: str, number: int = 0
+        self,
+        place: tuple[str, int],
+        kind: NoticeKind,
+        problem: str,
+        advice: str,
+        number: int = 0,
+        entity: int = 0,
     ) -> None:
         if (*place, number) not in self._told:
             self._told.add((*place, number))
             told = {"kind": kind, "problem": problem, "advice": advice, "place": place}
-            self._warn(f"{problem} ({Path(place[0]).name}:{place[1]}); {advice}", self._here.entity, **told)
+            self._warn(
+                f"{problem} ({Path(place[0]).name}:{place[1]}); {advice}", entity or self._here.entity, **told
+            )

@@ -2,14 +2,17 @@
 
 from collections.abc import Callable
 from pathlib import Path
+from textwrap import dedent, indent
 from typing import Any
 
 import pytest
 
+from sim.diagnosis import diagnose
 from sim.interfaces import message
 from sim.ros.node.node import Node
 from sim.ros.parameters.parameter import Parameter
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, spin
+from tests.support.engine_runs import run_program
 from tests.support.simulation import Simulation
 
 SetParametersResult = message("rcl_interfaces", "SetParametersResult")
@@ -90,3 +93,144 @@ def test_a_result_that_a_later_callback_asks_for_is_well_though_it_may_not_be_th
         futures.append(node.create_client(SetBool, "nobody").call_async(SetBool.Request()))
 
     assert "answer-overlooked" not in {rule for rule, _ in told_of(poll).told()}
+
+
+_NODE = """
+import functools
+import rclpy
+
+rclpy.init()
+node = rclpy.create_node("n")
+each = node.get_logger().info
+
+
+def numbered(number):
+    return lambda: each(f"{number}")
+
+
+def add(numbers):
+    for number in numbers:
+        node.create_timer(0.5, lambda: each(f"{number}"))
+
+
+def make():
+MADE
+
+
+make()
+rclpy.spin(node)
+"""
+
+
+def told_of_lines(made: str, folder: Path) -> list[str]:
+    """What is said of a function with these lines that makes timers."""
+    run = run_program(folder, _NODE.replace("MADE", indent(dedent(made), "    ")), seconds=2.0)
+    return [each.rule.explain(each, run.timeline).cure for each in diagnose(run.timeline)]
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        "for a in range(2): node.create_timer(0.5, lambda: each(f'{a}'))",
+        "[node.create_timer(0.5, lambda: each(f'{a}')) for a in range(2)]",
+        "for b in range(2):\n    a = f'{b}'\n    node.create_timer(0.5, lambda: each(a))",
+    ],
+)
+def test_callbacks_of_a_loop_that_share_its_variable_are_told(made: str, tmp_path: Path) -> None:
+    bound = "bind it when each is made: lambda a=a: …, or functools.partial"
+    assert told_of_lines(made, tmp_path) == [bound]
+
+
+def test_functions_defined_in_a_loop_share_its_variable_too(tmp_path: Path) -> None:
+    made = "for a in range(2):\n    def tick():\n        each(f'{a}')\n    node.create_timer(0.5, tick)"
+    assert told_of_lines(made, tmp_path) == ["bind it when each is made: def tick(a=a)"]
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        "for a in range(2): node.create_timer(0.5, lambda a=a: each(f'{a}'))",
+        "for a in range(2): node.create_timer(0.5, functools.partial(each, f'{a}'))",
+        "for a in range(2): node.create_timer(0.5, numbered(a))",
+        "add([1])\nadd([2])",
+        "n = 0\nfor a in range(2):\n    n += 1\n    node.create_timer(0.5, lambda a=a: each(f'{a} of {n}'))",
+        "for a in (1, 1): node.create_timer(0.5, lambda: each(f'{a}'))",
+    ],
+    ids=["default", "partial", "factory", "two loops of one", "counter", "same value"],
+)
+def test_callbacks_of_a_loop_with_values_of_their_own_are_well(made: str, tmp_path: Path) -> None:
+    assert told_of_lines(made, tmp_path) == []
+
+
+_COROUTINES = """
+import rclpy
+
+rclpy.init()
+node = rclpy.create_node("n")
+
+
+async def fetch():
+    node.get_logger().info("fetched")
+
+
+async def whole():
+    await fetch()
+
+
+def drop():
+    fetch()
+
+
+def start():
+    node.executor.create_task(fetch())
+
+
+node.create_timer(0.5, CALLBACK)
+rclpy.spin(node)
+"""
+
+
+@pytest.mark.parametrize(
+    ("callback", "cures"),
+    [
+        ("drop", ["write await fetch(), in an async def drop"]),
+        ("fetch", []),
+        ("whole", []),
+        ("start", []),
+    ],
+)
+def test_a_coroutine_that_a_callback_drops_is_told(callback: str, cures: list[str], tmp_path: Path) -> None:
+    run = run_program(tmp_path, _COROUTINES.replace("CALLBACK", callback), seconds=2.0)
+    assert [each.rule.explain(each, run.timeline).cure for each in diagnose(run.timeline)] == cures
+
+
+_GOALS = """
+import rclpy
+from example_interfaces.action import Fibonacci
+from rclpy.action import ActionClient, ActionServer, GoalResponse
+
+def execute(goal):
+    goal.succeed()
+    return Fibonacci.Result()
+
+def accepted(future):
+    goal = future.result()
+    if goal.accepted or BLINDLY:
+        goal.get_result_async()
+
+rclpy.init()
+node = rclpy.create_node("n")
+server = ActionServer(node, Fibonacci, "fib", execute, goal_callback=lambda _: GoalResponse.REJECT)
+client = ActionClient(node, Fibonacci, "fib")
+client.wait_for_server()
+client.send_goal_async(Fibonacci.Goal()).add_done_callback(accepted)
+rclpy.spin(node)
+"""
+
+
+@pytest.mark.parametrize("blindly", [True, False])
+def test_the_result_of_a_rejected_goal_is_told_where_it_is_asked_for(blindly: bool, tmp_path: Path) -> None:
+    run = run_program(tmp_path, _GOALS.replace("BLINDLY", str(blindly)), seconds=2.0)
+    told = [each.rule.explain(each, run.timeline) for each in diagnose(run.timeline)]
+    lines = ["look at goal_handle.accepted first, and return if it is False"]
+    assert [each.cure for each in told] == (lines if blindly else [])

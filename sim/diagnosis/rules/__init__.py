@@ -16,7 +16,7 @@ from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.leaks import NeverDestroyed
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, SentTooEarly, StaleData
 from sim.diagnosis.rules.names import MisspeltTopic
-from sim.diagnosis.rules.overlooked import AnswerOverlooked
+from sim.diagnosis.rules.overlooked import AnswerOverlooked, Slip
 from sim.diagnosis.rules.parameters import ParameterOverruled
 from sim.diagnosis.rules.services import NobodyOffers, ServiceNeverComes, UnreturnedResponse
 from sim.diagnosis.rules.spinning import (
@@ -58,6 +58,7 @@ RULES: tuple[Rule, ...] = (
     NeverSynchronised(),
     TimesKept(),
     ParameterOverruled(),
+    Slip(),
     AnswerOverlooked(),
     ExceptionSwallowed(),
     ExceptionCaught(),

@@ -7,7 +7,6 @@ from sim.diagnosis.cures import remedy_for_waits
 from sim.diagnosis.edits.flags import enders, setters, sleeps
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_location, line_of
 from sim.diagnosis.rules.edits import beside_others, edits_for_reply, edits_for_waiting
-from sim.diagnosis.rules.overlooked import KINDS as OVERLOOKED
 from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import awaited_lock, listed, must_answer, often, who
@@ -140,10 +139,12 @@ class WaitsForLock(Rule):
         )
 
 
+_WAITS = (NoticeKind.OTHER, NoticeKind.NO_PROGRESS, NoticeKind.ENDLESS_WAIT, NoticeKind.DEADLOCK)
+
+
 def _on_waits(timeline: Timeline) -> Iterator[Notice]:
     """Yield the notices on callbacks that do not go on."""
-    others = (NoticeKind.OVERRULED, NoticeKind.CANCEL_IGNORED, NoticeKind.PUBLISHERS_KEPT, *OVERLOOKED)
-    return (each for each in timeline.notices if each.entity and each.kind not in others)
+    return (each for each in timeline.notices if each.entity and each.kind in _WAITS)
 
 
 def _at_locks(timeline: Timeline) -> list[Position]:

@@ -1,4 +1,4 @@
-"""The rule on answers of rclpy that a program makes nothing of."""
+"""Rules on answers of rclpy that a program makes nothing of, and on slips that Python passes over."""
 
 from collections.abc import Iterator
 
@@ -9,11 +9,14 @@ from sim.trace.events import Notice, NoticeKind
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 
-KINDS = (NoticeKind.EARLY_RESULT, NoticeKind.REFUSAL_OVERLOOKED)
+KINDS = (NoticeKind.EARLY_RESULT, NoticeKind.REFUSAL_OVERLOOKED, NoticeKind.REJECTION_OVERLOOKED)
 
 
 class AnswerOverlooked(Rule):
-    """A program asks for a result before there can be one, or drops the answer that refuses a parameter."""
+    """A program asks for a result before there can be one, or drops an answer that refuses what it asks for.
+
+    That is a parameter, or a goal whose result it asks for nevertheless.
+    """
 
     id = "answer-overlooked"
     summary = "a result is asked for too early, or a refusal is not looked at"
@@ -27,8 +30,7 @@ class AnswerOverlooked(Rule):
                 yield Finding(self, notice.t, notice.t, notice.entity, about=about, event=notice)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        notice = found.event
-        assert isinstance(notice, Notice)
+        notice = _notice_of(found)
         subject = who(found.subject, timeline) if found.subject else "the program"
         if notice.kind is NoticeKind.EARLY_RESULT:
             what = f"{subject} asks a future for its result() as soon as the request is sent: that is None"
@@ -36,6 +38,11 @@ class AnswerOverlooked(Rule):
             cure = awaiting(subject)
             if not must_answer(found.subject, timeline):
                 cure = f"use the result in a done-callback, by future.add_done_callback(), or {cure}"
+        elif notice.kind is NoticeKind.REJECTION_OVERLOOKED:
+            what, cure = notice.problem, notice.advice
+            why = (
+                "the reply to a goal tells whether the server takes it, and only a goal it takes has a result"
+            )
         else:
             what = f"{subject} does not look at what set_parameters() returns: {notice.problem}"
             why = "a refused parameter keeps its value, and only the result that is returned tells"
@@ -46,3 +53,36 @@ class AnswerOverlooked(Rule):
         """Irrelevant if the callback raised: that is told."""
         spans = timeline.spans_of(found.subject, Window(found.at, found.at + 1))
         return None if any(span.error for span in spans) else self.weight
+
+
+class Slip(Rule):
+    """A line does not do what it seems to: its callbacks share a variable, or its call never runs."""
+
+    id = "slip"
+    summary = "callbacks of a loop share its variable, or a coroutine is not awaited"
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each line once, as the engine reports it."""
+        for notice in view.timeline.notices:
+            if notice.kind in _WHY and notice.t <= view.end:
+                about = f"{notice.place[0]}:{notice.place[1]}"
+                yield Finding(self, notice.t, notice.t, notice.entity, about=about, event=notice)
+
+    def kind(self, found: Finding, timeline: Timeline) -> str:
+        """Distinguish the two."""
+        return _notice_of(found).kind.value.replace(" ", "-")
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        notice = _notice_of(found)
+        return Explanation(notice.problem, _WHY[notice.kind], notice.advice, line_location(*notice.place))
+
+
+_WHY = {
+    NoticeKind.LATE_BOUND: "a function looks up its variables when called, and by then the loop is over",
+    NoticeKind.NEVER_AWAITED: "calling an async def only makes a coroutine, which runs when it is awaited",
+}
+
+
+def _notice_of(found: Finding) -> Notice:
+    assert isinstance(found.event, Notice)
+    return found.event

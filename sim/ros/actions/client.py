@@ -181,6 +181,8 @@ class ActionClient(ActionWaitable):
 
     def _get_result_async(self, goal_handle: ClientGoalHandle) -> Future[Any]:
         _check_is_goal_handle(goal_handle)
+        if not goal_handle.accepted:
+            self._probe.usage.result_of_rejected()
         request = self._action_type.Impl.GetResultService.Request(goal_id=goal_handle.goal_id)
         future = self._result_client.call_async(request)
         key = uuid_of(goal_handle.goal_id)
