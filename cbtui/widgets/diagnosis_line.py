@@ -129,7 +129,7 @@ def _ways_to_say(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def _texts(diagnosis: Diagnosis) -> Iterator[str]:
-    """Yield texts, the fullest first: short names, no time, no number of times, no brackets, the first clauses."""
+    """Yield texts, the fullest first: then short names, no time, no count, no brackets, the first clauses."""
     yield from filter(None, (diagnosis.at_length, diagnosis.text))
     brief = [sub(r"\w+_callback\b(?!\.py)", lambda found: short_name(found[0]), diagnosis.text)]
     brief.append(brief[0].removeprefix(diagnosis.time))

@@ -24,6 +24,7 @@ _WAITING = ("sim.clock.", "threading", "queue")
 LOCK = "Lock.acquire"
 """The name that a position gives to every way of taking a lock."""
 _JOIN = "Thread.join"
+_NAMES = {"acquire": LOCK, "__enter__": LOCK, "join": _JOIN}
 
 _TIMEOUTS = ("timeout_sec", "timeout", "time_to_wait")
 """The parameters that limit a wait, in seconds; negative numbers, infinity and None do not."""
@@ -121,7 +122,8 @@ def _activity(inside: list[FrameType]) -> tuple[Doing, str]:
     if module.startswith("sim.ros."):
         return Doing.CALLS_ROS, own
     if any(str(frame.f_globals.get("__name__")).startswith(_WAITING) for frame in inside):
-        return Doing.WAITS, {"acquire": LOCK, "__enter__": LOCK, "join": _JOIN}.get(name, own)
+        known = {} if own.startswith("Semaphore.") else _NAMES
+        return Doing.WAITS, known.get(name, own)
     return Doing.COMPUTES, ""
 
 

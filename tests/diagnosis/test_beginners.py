@@ -59,6 +59,13 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "give tick a callback group of its own, and let on_start complete it",
         ),
         ("wait_for_event", "endless-wait", "self.opened.wait()", "give go a callback group of its own"),
+        (
+            "semaphore_in_reentrant_group",
+            "endless-wait",
+            "self.parts.acquire()",
+            "make sure that it comes; give take a MutuallyExclusiveCallbackGroup",
+        ),
+        ("job_waits_for_job", "endless-wait", "submit(self.plan)", "let it call the function itself"),
         ("late_bound_lambda", "slip", "lambda: self.blink(colour)", "lambda colour=colour: …"),
         ("never_awaited", "slip", "self.is_well()", "write await is_well(), in an async def tick"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),

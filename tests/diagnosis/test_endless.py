@@ -8,6 +8,7 @@ import pytest
 
 from sim.diagnosis import Explanation, Weight
 from sim.diagnosis.diagnoses import diagnose
+from sim.diagnosis.edits.flags import event_setters
 from sim.engine.watchdogs import hung_callbacks, outside_time
 from sim.trace.events import (
     AnyEvent,
@@ -27,7 +28,10 @@ from sim.trace.events import (
 )
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
+from tests.support.engine_runs import program_setup, run_to_end
 from tests.trace.samples import CAST
+
+PROGRAMS = Path(__file__).parent / "beginners"
 
 
 def explained(*events: AnyEvent, rule: str = "endless-wait") -> list[tuple[str, str]]:
@@ -175,3 +179,26 @@ def test_on_the_real_clock_a_callback_that_computes_has_not_come_back_for_longer
 def test_a_callback_that_computes_is_reported_after_one_and_a_half_seconds(watch: Any) -> None:
     assert pytest.approx(1.5) == watch._LOOK * watch._PATIENCE
     assert "has not come back for 1.5 " in watch._PROBLEM
+
+
+@pytest.mark.parametrize(
+    ("waits", "ends"),
+    [
+        ("self.gate.wait()", "self.gate.set()"),
+        ("item = self.items.get()", "self.items.put(1)"),
+        ("self.places.acquire()", "self.places.release()"),
+        ("await self.ready", "self.ready.set_result(True)"),
+    ],
+)
+def test_the_functions_that_end_a_wait_are_found(waits: str, ends: str, tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    both = f"        {waits}\n        {ends}\n"
+    path.write_text(f"class N:\n    async def a(self):\n{both}    def b(self):\n        {ends}\n")
+    assert event_setters(str(path), 3) == ("b",)
+
+
+def test_a_semaphore_is_no_lock(tmp_path: Path) -> None:
+    run = run_to_end(program_setup(PROGRAMS / "semaphore_in_reentrant_group.py", 2.0))
+    assert {
+        each.call for each in run.events if isinstance(each, CallbackAt) and each.doing is Doing.WAITS
+    } == {"Semaphore.acquire"}

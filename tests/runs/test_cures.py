@@ -93,6 +93,8 @@ FIT = "define it with the parameters it is called with (diff)"
         ("rate_in_main", ["spin the node in a thread beside the loop (diff)"]),
         ("spin_once", ["return from go, and go on where what it waits for is set (diff)"]),
         ("wait_for_event", [APART.replace("tick", "go")]),
+        ("semaphore_in_reentrant_group", ["give take a callback group of its own"]),
+        ("job_waits_for_job", []),
         ("call_in_timer", [APART, DONE, AWAIT.format("tick")]),
         (
             "call_in_subscription",

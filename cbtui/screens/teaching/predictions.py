@@ -76,7 +76,7 @@ class Predictions(ScreenPart):
             self.ask(go_on)
 
     def check_whether_watched(self) -> None:
-        """Unlock the explanation once enough of the run was watched, and no window is open for it to cover."""
+        """Unlock the explanation once enough was watched, and no window is open that it would cover."""
         learning = self.learning
         if learning.state is None:
             return

@@ -27,7 +27,8 @@ def setters(source: SourceEditor, line: int) -> tuple[str, ...]:
 def enders(source: SourceEditor, line: int) -> tuple[tuple[str, str, int], ...]:
     """Return what ends the wait of a line: the functions, the calls there, and their lines.
 
-    The wait is for an event, a future, a condition, an item of a queue, or room in it.
+    The wait is for an event, a future, a condition, a semaphore, an item of a queue, or room in it. What a
+    function both takes and gives, such as a lock, it keeps meanwhile: that ends nobody's wait.
     """
     there = [each for each in source.nodes(ast.expr) if each.lineno <= line <= (each.end_lineno or 0)]
     waits = {ast.unparse(each.func) for each in there if isinstance(each, ast.Call)}
@@ -39,13 +40,20 @@ def enders(source: SourceEditor, line: int) -> tuple[tuple[str, str, int], ...]:
     return tuple(
         (function.name, ast.unparse(each.func), each.lineno)
         for function in source.nodes(ast.FunctionDef, own)
+        if not _does(source, function, waits)
         for each in source.nodes(ast.Call, function)
         if ast.unparse(each.func) in wakes
     )
 
 
+def _does(source: SourceEditor, function: ast.FunctionDef, calls: set[str]) -> bool:
+    return any(ast.unparse(each.func) in calls for each in source.nodes(ast.Call, function))
+
+
 _ENDS = {
     **dict.fromkeys(("wait", "wait_for"), ("set", "notify", "notify_all", "set_result")),
+    "result": ("set_result",),
+    "acquire": ("release",),
     "get": ("put", "put_nowait"),
     "put": ("get", "get_nowait"),
 }

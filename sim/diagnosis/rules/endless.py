@@ -1,19 +1,19 @@
 """The rule on callbacks that wait for a lock that is not released or an event that is not set."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from sim.diagnosis.cures import remedy_for_waits
-from sim.diagnosis.edits.flags import enders, setters, sleeps
+from sim.diagnosis.cures import Remedy, remedy_for_waits
+from sim.diagnosis.edits.flags import enders, event_setters, setters, sleeps
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_location, line_of
 from sim.diagnosis.rules.edits import beside_others, edits_for_reply, edits_for_waiting
 from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import awaited_lock, listed, must_answer, often, who
+from sim.diagnosis.words import awaited_lock, listed, must_answer, often, threads_for, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import doing_of
-from sim.trace.events import Doing, EntityId, EntityKind, Notice, NoticeKind, Severity
+from sim.trace.events import Doing, EntityId, EntityKind, GroupKind, Notice, NoticeKind, Severity
 from sim.trace.model import Position, Span, Window
 from sim.trace.timeline import Timeline
 
@@ -72,14 +72,24 @@ class EndlessWait(Rule):
         if notice.kind is NoticeKind.NO_PROGRESS and at:
             doing = f"waits for {awaited_lock(at[-1], timeline)}," if at[-1].lock else doing_of(at[-1])
             what = f" {doing} and {_how_long(found, timeline)}"
-        cure, kept = notice.advice or _ADVICE, _kept_waiting(found, timeline)
+        place, kept = line_of(found.subject, _moment(found), timeline), _kept_waiting(found, timeline)
+        ends = _enders(found.subject, at[-1] if at else None, timeline)
+        what += f"; {listed(ends)} would end it" if ends else ""
+        cure = "wait with a timeout, and make sure that it comes" if ends else notice.advice or _ADVICE
         if at and at[-1].taken_by and not notice.advice:
             cure = _RELEASE if at[-1].is_left else f"let {at[-1].taken_by} {_LET_GO}"
         room = remedy_for_waits(kept, found.subject, Window(found.at, found.until + 1), timeline)
-        ends = _enders(found.subject, at[-1] if at else None, timeline)
-        what += f"; {listed(ends)} would end it" if ends else ""
+        running = timeline.moment(found.until).running.values()
+        calls = sum(each.entity == found.subject for each in running)
+        if calls > 1:
+            room = Remedy((found.subject,))
+            one = f"then one of its calls waits at a time, and not {calls} on a thread each"
+            cure += f"; give {who(found.subject, timeline)} a MutuallyExclusiveCallbackGroup: {one}"
+        elif not _may_help(found, place, kept, at, timeline):
+            room = Remedy()
         if room.words(timeline):
             what += f"; {listed(who(each, timeline) for each in kept)} can run only when it is over"
+        if room.words(timeline) and calls == 1:
             cure = f"{cure}: {room.words(timeline)}"
             if ends:
                 cure = f"wait with a timeout; and {room.words(timeline)}, so that what ends the wait can run"
@@ -87,7 +97,7 @@ class EndlessWait(Rule):
             f"{who(found.subject, timeline)}{what}{often(found.count)}",
             _LEFT if at and at[-1].is_left else _WAITS,
             cure,
-            line_of(found.subject, _moment(found), timeline),
+            place,
             for_ever=found.until >= timeline.end,
             remedies=(room,) if kept else (),
         )
@@ -97,6 +107,27 @@ class EndlessWait(Rule):
         raised = any(span.error for span in timeline.spans_of(found.subject, _moment(found)))
         over = (found.until < timeline.end or raised) and not _is_deadlock(_notice_of(found))
         return None if over else Weight.PROBLEM
+
+
+def _may_help(
+    found: Finding,
+    place: CodeLocation | None,
+    kept: Sequence[EntityId],
+    at: Sequence[Position],
+    timeline: Timeline,
+) -> bool:
+    """Whether room helps: those that may end the wait have none, or are unknown.
+
+    The result of a pool comes from its own threads.
+    """
+    functions = event_setters(place.file, place.first_line) if place else ()
+    known = [each for each in timeline.entities.values() if each.spoken_name in functions]
+    if not known:
+        return bool(functions) or not at or at[-1].call != "Future.result"
+    group = timeline.entities[found.subject].group
+    is_alone = threads_for([found.subject], found.until, timeline) == 1
+    is_exclusive = timeline.groups[group].kind is GroupKind.EXCLUSIVE
+    return any(is_alone or each.id in kept or (is_exclusive and each.group == group) for each in known)
 
 
 class WaitsForLock(Rule):
@@ -139,12 +170,12 @@ class WaitsForLock(Rule):
         )
 
 
-_WAITS = (NoticeKind.OTHER, NoticeKind.NO_PROGRESS, NoticeKind.ENDLESS_WAIT, NoticeKind.DEADLOCK)
+_OF_WAITS = (NoticeKind.OTHER, NoticeKind.NO_PROGRESS, NoticeKind.ENDLESS_WAIT, NoticeKind.DEADLOCK)
 
 
 def _on_waits(timeline: Timeline) -> Iterator[Notice]:
     """Yield the notices on callbacks that do not go on."""
-    return (each for each in timeline.notices if each.entity and each.kind in _WAITS)
+    return (each for each in timeline.notices if each.entity and each.kind in _OF_WAITS)
 
 
 def _at_locks(timeline: Timeline) -> list[Position]:

@@ -9,6 +9,7 @@ from types import FrameType
 from sim.clock import RunClock
 from sim.engine.callback_positions import LOCK, position_of
 from sim.engine.waited_lock import decorated
+from sim.engine.watchdogs.wait_descriptions import advice_on_pools
 from sim.interpreter.function_marks import calls_the_program, waits_for_keyboard, waits_for_time
 from sim.probes.own_code import is_own, outwards, place_of
 from sim.trace.events import AnyEvent, Doing, EntityId, Notice, NoticeKind, Severity
@@ -58,8 +59,12 @@ class HungCallbacks:
                 seen[thread] = id(call), looks + 1 if before == id(call) else 1
                 if seen[thread][1] == _PATIENCE:
                     entity, kind = self._callback_on(thread), NoticeKind.NO_PROGRESS
-                    now, text = self._clock.now(), _sentence(call, top)
-                    self._record(Notice(now, Severity.WARN, text, entity, kind=kind, problem=_PROBLEM))
+                    advice = advice_on_pools()
+                    now, text = self._clock.now(), "; ".join(filter(None, (_sentence(call, top), advice)))
+                    told = Notice(
+                        now, Severity.WARN, text, entity, kind=kind, problem=_PROBLEM, advice=advice
+                    )
+                    self._record(told)
         self._seen = seen
 
 

@@ -10,12 +10,16 @@ from types import FrameType
 from sim.clock.virtual_threads import HeldResource, VirtualThread
 from sim.engine.waited_lock import decorated, first_line, name_at, taking
 from sim.engine.watchdogs.thread_positions import place_of
+from sim.interpreter.function_marks import calls_the_program
+from sim.probes import own_code
 from sim.probes.own_code import is_own, outwards, own_frame, place_text
 from sim.quantities.durations import timestamp
 from sim.trace.events import EntityId, Notice, NoticeKind, Severity
 
 _AWAITS = threading.Condition.wait.__code__
 """The function in which every wait of Python's library ends that is not for a lock."""
+
+_RESULT = "Future.result"
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,6 +62,17 @@ def deadlock_of_last(thread: VirtualThread) -> WaitProblem:
 def long_wait(thread: VirtualThread, since: int) -> WaitProblem:
     """Describe a thread that has waited since a moment for what another thread might still do."""
     return WaitProblem(f"{waits(thread)}, since {timestamp(since)}", _cure(thread), is_deadlock=False)
+
+
+def advice_on_pools() -> str:
+    """Return advice if a job of a pool waits for another job, which needs a worker, too; else ""."""
+    for top in sys._current_frames().values():
+        inside = list(takewhile(lambda frame: frame not in calls_the_program, outwards(top)))
+        names = [frame.f_code.co_qualname for frame in inside]
+        if "_WorkItem.run" in names and _RESULT in names[: names.index("_WorkItem.run")]:
+            where = f"a job that waits for another job ({own_code.place_of(top)}) keeps a worker of its pool"
+            return f"{where}: let it call the function itself, or give the pool more workers"
+    return ""
 
 
 def waits(thread: VirtualThread) -> str:
@@ -114,6 +129,8 @@ def _library(thread: VirtualThread) -> list[FrameType]:
 
 
 def _cure(thread: VirtualThread) -> str:
+    if pools := _signal(thread) == _RESULT and advice_on_pools():
+        return pools
     if _signal(thread):
         return "wait with a timeout, and let a callback of another group, on another thread, end it"
     if _waits_for_end(thread):
