@@ -66,9 +66,14 @@ def awaited_lock(position: Position, timeline: Timeline, more: str = "") -> str:
 
 def lock_taker(position: Position, timeline: Timeline) -> str:
     """Return the callback that took the lock for which another one waits, else the thread; "" if unknown."""
-    spans = timeline.spans_on(position.holder, Window(position.start, position.start + 1))
-    keeper = position.keeper or (spans[-1].entity if spans else 0)
+    keeper = lock_keeper(position, timeline)
     return who(keeper, timeline) if keeper else position.taken_by
+
+
+def lock_keeper(position: Position, timeline: Timeline) -> EntityId:
+    """Return the callback that took the lock for which another one waits; 0 if none is known to."""
+    spans = timeline.spans_on(position.holder, Window(position.start, position.start + 1))
+    return position.keeper or (spans[-1].entity if spans else 0)
 
 
 def must_answer(entity: EntityId, timeline: Timeline) -> bool:

@@ -20,7 +20,7 @@ from sim.diagnosis.rule import (
 )
 from sim.diagnosis.rules.edits import edits_for_rounds
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import awaited_lock, lock_taker, often, threads_for, who, with_threads
+from sim.diagnosis.words import awaited_lock, lock_keeper, lock_taker, often, threads_for, who, with_threads
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind, GroupKind
@@ -146,7 +146,8 @@ class OverrunTimer(Rule):
             why = f"{duration(waited)} of that it waited for {awaited_lock(longest, timeline)}; {why}"
             whom = f"let {taker}" if taker else "find who keeps the lock, and"
             cure = f"{whom} let go of {'the lock' if taker else 'it'} before anything that takes long"
-            place, remedies = line_location(*longest.taken_at) or place, ()
+            keeper = line_of(lock_keeper(longest, timeline), during, timeline)
+            place, remedies = keeper or line_location(*longest.taken_at) or place, ()
         return Explanation(
             f"{subject} took {duration(found.lasted)} with a period of {duration(entity.period)}; "
             f"{ticks} missed or late{often(found.count, 'overruns in all')}",
