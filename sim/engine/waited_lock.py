@@ -102,7 +102,9 @@ def name_at(own: FrameType, objects: Sequence[object]) -> str:
     """Return the expression by which a frame takes one of some objects; "" if it is not known."""
     expressions = _expressions(own.f_code, own.f_lasti)
     if len(expressions) > 1:  # Python 3.11 tells the whole statement of several
-        expressions = [each for each in expressions if _value(each, own) in objects]
+        known = [each for each in objects if each is not None]
+        values = ((each, _value(each, own)) for each in expressions)
+        expressions = [each for each, value in values if any(value is one for one in known)]
     return lock_name(expressions[0]) if len(expressions) == 1 else ""
 
 

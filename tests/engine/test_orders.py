@@ -69,8 +69,8 @@ def test_threads_that_wait_for_each_others_locks_are_told_of_with_their_places(t
     )
     (notice,) = (each for each in run.events if isinstance(each, Notice) and each.severity is Severity.ERROR)
     assert notice.text.startswith("deadlock: ThreadPoolExecutor-0_")
-    assert ", in forth) waits for the lock that ThreadPoolExecutor-0_" in notice.text
-    assert ", in back) waits for the lock that ThreadPoolExecutor-0_" in notice.text
+    assert ", in forth) waits for self.two, which ThreadPoolExecutor-0_" in notice.text
+    assert ", in back) waits for self.one, which ThreadPoolExecutor-0_" in notice.text
     assert " took at mine.py:" in notice.text
     assert 0.1 * SECOND < notice.t < 0.5 * SECOND
 

@@ -218,13 +218,13 @@ def test_it_is_told_why_the_others_may_not_go_on() -> None:
     run.wait(ready, 0.1, reason=Reason.NO_FREE_WORKER)
     timeline = Timeline()
     timeline.extend(run.events)
-    crossed = "ThreadPoolExecutor-0_2 waits for the lock that ThreadPoolExecutor-0_3 took"
+    crossed = "ThreadPoolExecutor-0_2 waits for self.lock, which ThreadPoolExecutor-0_3 took"
     asked = question(0, ("MainThread (node.py:9, in main) waits for time or work", crossed))
     assert [*kept_of(asked, timeline)] == [
         "quick is ready: group A held by slow",
         "ready is ready for a thread that looks for work",
         "MainThread (node.py:9, in main) waits for time or work",
-        "Pool-0_2 waits for the lock that Pool-0_3 took",
+        "Pool-0_2 waits for self.lock, which Pool-0_3 took",
         "not ready, or about to begin: idle",
     ]
     assert [(option.text, option.line) for option in options_of(asked, timeline)] == [

@@ -77,7 +77,7 @@ def test_time_stands_at_each_choice_until_it_is_told_who_goes_on(tmp_path: Path)
     assert functions == {"", "add", "late", "main"}
     assert any(other.startswith("MainThread (mine.py:18") for other in first.others)
     late = [other for question in questions for other in question.others if other.startswith("late")]
-    assert "late (mine.py:11, in late) waits for the lock that MainThread took at mine.py:15, in main" in late
+    assert "late (mine.py:11, in late) waits for lock, which MainThread took at mine.py:15, in main" in late
     moves = [event.chosen for event in events if isinstance(event, ThreadChosen)]
     assert moves[:3] == [2, 1, 1]
     assert "n is 1" in printed(events)
