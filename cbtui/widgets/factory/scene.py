@@ -19,7 +19,18 @@ from cbtui.widgets.lanes.rows import (
 from sim.diagnosis.words import thread_count
 from sim.trace.events import EntityKind, GroupKind, Reason, ThreadId
 from sim.trace.figures.waiting import wait_told
-from sim.trace.model import Blocked, EntityInfo, GroupInfo, Moment, Nanoseconds, Queue, Span, Wait, Window
+from sim.trace.model import (
+    Blocked,
+    EntityInfo,
+    GroupInfo,
+    Moment,
+    Nanoseconds,
+    Position,
+    Queue,
+    Span,
+    Wait,
+    Window,
+)
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
 
@@ -51,7 +62,8 @@ class FactoryWorker:
     stay: WorkerState
     span: Span | None = None
     step: int = 0
-    blocked: Blocked | None = None
+    blocked: Blocked | Position | None = None
+    """The service call in which it is blocked, or where it waits for a lock."""
 
     @property
     def inside(self) -> bool:
@@ -197,7 +209,7 @@ class _SceneBuilder:
         span = self._moment.running.get(thread)
         if span is not None:
             since = self._now - span.start
-            blocked = self._moment.blocked.get(thread)
+            blocked = self._moment.blocked.get(thread) or self._lock_awaited(thread)
             if since < self._glance and blocked is None:
                 return FactoryWorker(name, WorkerState.COMES, span, self._step(since))
             return FactoryWorker(name, WorkerState.WORKS, span, blocked=blocked)
@@ -210,6 +222,11 @@ class _SceneBuilder:
             return FactoryWorker(name, WorkerState.STOPPED)
         ran = ever_ran(self._timeline, thread, self._now)
         return FactoryWorker(name, WorkerState.IDLE if ran else self._before_work(thread))
+
+    def _lock_awaited(self, thread: ThreadId) -> Position | None:
+        """Where a thread waits for a lock."""
+        position = self._timeline.position_on(thread, self._now)
+        return position if position is not None and position.waits_for_lock else None
 
     def _has_stopped(self, thread: ThreadId) -> bool:
         """Whether a thread, no worker of an executor, has raised and left a node that nobody spins."""

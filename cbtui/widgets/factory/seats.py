@@ -3,12 +3,18 @@
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from cbtui.looks.theme import Ink, Role
+from cbtui.looks.theme import GLYPHS, Ink, Role
 from cbtui.text.callback_names import short_name
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
 from cbtui.widgets.factory.plan import AreaPlacement, FactoryColumns
 from cbtui.widgets.factory.scene import STEPS, FactoryScene, FactoryWorker, WorkerState
-from cbtui.widgets.factory.texts import blocked_texts, finished_texts, first_fitting, suspended_texts
+from cbtui.widgets.factory.texts import (
+    blocked_texts,
+    crowd_texts,
+    finished_texts,
+    first_fitting,
+    suspended_texts,
+)
 from sim.quantities.durations import duration
 from sim.trace.model import EntityInfo
 
@@ -37,6 +43,7 @@ class SeatPainter:
         self._line_ink = Ink(Role.LINE, area.number)
         self._chip_ink = Ink(Role.LABEL, area.number)
         self._bar_ink = Ink(Role.BAR, area.number)
+        self._blocked = GLYPHS[canvas.charset].blocked
         self._marks = canvas.glyphs.open_seat if area.is_open else canvas.glyphs.seat
 
     def draw(self) -> None:
@@ -49,7 +56,9 @@ class SeatPainter:
         if area.is_open:
             seats += [partial(self._left, worker) for worker in leaving]
             glyphs = self._canvas.glyphs
-            faces = [glyphs.busy] * area.inside + [glyphs.away] * len(area.kept) + [" "] * len(leaving)
+            inside = [worker for worker in area.visitors if worker.inside]
+            faces = [self._blocked if worker.blocked else glyphs.busy for worker in inside]
+            faces += [glyphs.away] * len(area.kept) + [" "] * len(leaving)
             self._open(seats, faces)
             return
         if not seats and leaving:
@@ -86,9 +95,9 @@ class SeatPainter:
         room = (self._end - self._start - len("+99 more")) // _ABREAST
         seats = "".join(f"{left}{face}{right} " for face in faces[:room])
         at = self._canvas.write(self._start, line, seats, self._line_ink, len(seats))
-        busy = faces.count(self._canvas.glyphs.busy)
-        text = f"+{len(faces) - room} more" if len(faces) > room else f"{busy} busy" if busy else ""
-        self._canvas.write(at, line, text, PLAIN, self._end - at)
+        more = [f"+{len(faces) - room} more"] if len(faces) > room else []
+        texts = more or crowd_texts(faces.count(self._canvas.glyphs.busy), faces.count(self._blocked))
+        self._canvas.write(at, line, first_fitting(texts, self._end - at), PLAIN, self._end - at)
 
     # one seat
 
@@ -101,7 +110,7 @@ class SeatPainter:
         if rows > 1:
             tails: Sequence[str] = (took,)
         elif trouble:
-            tails = trouble[2:]
+            tails = blocked_texts(worker, self._scene, is_brief=True)
         else:
             tails = (f"{took}  {worker.name}", took)
         at = self._chip(worker, line, tails[-1])

@@ -6,14 +6,14 @@ from typing import NamedTuple
 
 from cbtui.text.callback_names import short_name
 from cbtui.widgets.factory.scene import Area, Belt, FactoryScene, FactoryWorker, WorkerState
-from cbtui.widgets.lanes.names import told_apart
+from cbtui.widgets.lanes.names import short_thread, told_apart
 from sim.diagnosis.words import late_reply
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.descriptions import name_of
 from sim.trace.events import EntityKind, GroupKind, Reason
 from sim.trace.figures.waiting import waits_since
-from sim.trace.model import EntityInfo, Nanoseconds
+from sim.trace.model import Blocked, EntityInfo, Nanoseconds, Position
 from sim.trace.timeline import Timeline
 
 _LATE_AT_LEAST: Nanoseconds = 1_000_000
@@ -90,9 +90,12 @@ def _trouble(scene: FactoryScene, *, is_brief: bool = False) -> str:
 
 def _calm(scene: FactoryScene) -> str:
     """Say what the belts and seats still tell of while no callback waits for another one."""
-    blocked = sum(worker.blocked is not None for worker in scene.workers)
-    if blocked:
-        return f"{counted(blocked, 'worker')} blocked in a call"
+    stuck = Counter(type(worker.blocked) for worker in scene.workers)
+    told = [f"{counted(stuck[Blocked], 'worker')} blocked in a call"] if stuck[Blocked] else []
+    if locked := stuck[Position]:
+        told.append(f"{counted(locked, 'worker')} {'waits' if locked == 1 else 'wait'} for a lock")
+    if told:
+        return ", ".join(told)
     if own := sum(1 for _ in scene.every_wait()):
         verb = "waits for its own last call" if own == 1 else "wait for their own last calls"
         return f"{counted(own, 'callback')} {verb}"
@@ -202,21 +205,33 @@ def _letter(worker: FactoryWorker, timeline: Timeline) -> str:
     return "?" if entity is None else timeline.groups[entity.group].letter
 
 
-def blocked_texts(worker: FactoryWorker, scene: FactoryScene) -> tuple[str, ...]:
-    """Return that a worker waits inside a service call, from the longest text to the shortest; () if not."""
-    if worker.blocked is None:
+def blocked_texts(worker: FactoryWorker, scene: FactoryScene, *, is_brief: bool = False) -> tuple[str, ...]:
+    """Return that a worker waits in a call or for a lock, from the longest text to the shortest; () if not.
+
+    Brief ones do not tell of the reply, or who has the lock.
+    """
+    blocked = worker.blocked
+    if blocked is None:
         return ()
-    took, service = duration(scene.now - worker.blocked.start), worker.blocked.service
-    is_there = late_reply(worker.blocked, scene.timeline.moment(scene.now), scene.timeline)
+    if isinstance(blocked, Position):
+        holder = scene.timeline.threads.get(blocked.holder)
+        who = () if is_brief or holder is None else (f"waits for a lock, {short_thread(holder.name)} has it",)
+        return (*who, "waits for a lock", "for a lock", "lock")
+    took, service = duration(scene.now - blocked.start), blocked.service
+    is_there = late_reply(blocked, scene.timeline.moment(scene.now), scene.timeline)
     why = "its reply not handed over" if is_there else f"no reply for {took}"
-    return (
-        f"blocked in call of {service}, {why}",
-        f"blocked in call of {service} {took}",
-        f"blocked in {service} {took}",
-        f"blocked in call {took}",
-        f"blocked {took}",
-        "blocked",
-    )
+    full = (f"blocked in call of {service}, {why}", f"blocked in call of {service} {took}")
+    brief = (f"blocked in {service} {took}", f"blocked in call {took}", f"blocked {took}", "blocked")
+    return brief if is_brief else (*full, *brief)
+
+
+def crowd_texts(busy: int, blocked: int) -> tuple[str, ...]:
+    """Return how many of those who sit side by side work, and how many wait in a call or for a lock."""
+    works = f"{busy} busy" if busy else ""
+    if not blocked:
+        return (works,)
+    waits = f"{blocked} wait{'s' if blocked == 1 else ''}"
+    return (f"{works}, {waits}" if works else waits, waits)
 
 
 def finished_texts(worker: FactoryWorker, callback: str) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from cbtui.looks.theme import Charset
 from cbtui.widgets.factory import FactoryPainter
+from sim.trace.events import CallbackAt, Doing
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
 from tests.widgets.factory.scenes import (
@@ -367,3 +368,23 @@ def test_before_a_run_is_over_no_worker_was_never_needed() -> None:
     first_step = told(split_groups_run(), until=1.0)
     assert "not used yet" in factory(first_step, 1.0, 140, 16)
     assert "never needed" not in factory(first_step, 1.0, 140, 16)
+
+
+def test_who_waits_for_a_lock_is_told_in_the_headline_and_at_its_seat() -> None:
+    run = Run("lock")
+    run.executor("MultiThreadedExecutor", 2)
+    node = run.node("/node")
+    count = run.subscription(run.reentrant(node), "/boxes", "count")
+    run.timer(run.exclusive(node), "blink", 1.0)
+    first, second = (run.thread(f"ThreadPoolExecutor-0_{number}") for number in range(2))
+    for worker in (first, second):
+        run.callback(count, worker, 1.0)
+    frames = (("node.py", "count", 11),)
+    run.add(CallbackAt(ns(1.0), count, second, Doing.WAITS, "Lock.acquire", frames, holder=first))
+    run.stop(9.0)
+    timeline = told(run)
+    headline, *rest = factory(timeline, 3.0, 78, 10).splitlines()
+    assert headline.strip() == "2 workers, 2 areas, 1 worker waits for a lock"
+    assert "(☻ count) waits for a lock" in "\n".join(rest)
+    assert "waits for a lock, Pool-0_0 has it" in factory(timeline, 3.0, 138, 20)
+    assert "(☻) (░) 1 busy, 1 waits" in factory(timeline, 3.0, 78, 4)
