@@ -51,7 +51,7 @@ class WorkerState(Enum):
     WORKS = auto()
     LEAVES = auto()
     STOPPED = auto()
-    """What it ran last raised, and nobody spins the node of that: the exception came out of ``spin()``."""
+    """The run is over, or what it ran last raised, and nobody spins the node of that."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,8 +147,8 @@ class FactoryScene:
 
     @cached_property
     def idle(self) -> int:
-        """Workers with nothing to do."""
-        return sum(not worker.inside for worker in self.workers)
+        """Workers with nothing to do, who would work."""
+        return sum(not worker.inside and worker.stay is not WorkerState.STOPPED for worker in self.workers)
 
     def waits(self) -> Iterator[Wait]:
         """Every wait for others."""
@@ -176,6 +176,8 @@ class _SceneBuilder:
         self._glance = glance
         self._moment: Moment = timeline.moment(now)
         self._numbers = {group: place for place, group in enumerate(timeline.groups)}
+        ended = timeline.ended
+        self._is_over = ended is not None and now >= ended.t and not ended.time_was_up
 
     def scene(self) -> FactoryScene:
         members: dict[int, list[EntityInfo]] = {}
@@ -229,7 +231,9 @@ class _SceneBuilder:
         return position if position is not None and position.waits_for_lock else None
 
     def _has_stopped(self, thread: ThreadId) -> bool:
-        """Whether a thread, no worker of an executor, has raised and left a node that nobody spins."""
+        """Whether the run is over, or a thread, no worker, has raised and left a node that nobody spins."""
+        if self._is_over:
+            return True
         entities = self._timeline.entities
         waits = self._moment.waiting.values()
         unspun = {entities[each.entity].node for each in waits if each.reason is Reason.NOBODY_SPINS}
@@ -292,7 +296,7 @@ class _SceneBuilder:
         if not spans or period <= 0:
             return TimerTick(None, 0)
         last = spans[-1]
-        if self._timeline.cancelled_since(timer.id, last.start, self._now):
+        if self._is_over or self._timeline.cancelled_since(timer.id, last.start, self._now):
             return TimerTick(None, last.age)
         due = last.start - last.age + period
         if due < last.start:

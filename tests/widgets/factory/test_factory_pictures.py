@@ -388,3 +388,19 @@ def test_who_waits_for_a_lock_is_told_in_the_headline_and_at_its_seat() -> None:
     assert "(☻ count) waits for a lock" in "\n".join(rest)
     assert "waits for a lock, Pool-0_0 has it" in factory(timeline, 3.0, 138, 20)
     assert "(☻) (░) 1 busy, 1 waits" in factory(timeline, 3.0, 78, 4)
+
+
+def test_after_the_end_of_a_run_nobody_waits_for_work_and_no_timer_is_due() -> None:
+    run = Run("over")
+    run.executor("MultiThreadedExecutor", 2)
+    workers = [run.thread(f"ThreadPoolExecutor-0_{number}") for number in range(2)]
+    tick = run.timer(run.exclusive(run.node("/node")), "tick", 2.0)
+    for number, worker in enumerate(workers, start=1):
+        run.callback(tick, worker, 2.0 * number, 0.1)
+    run.over(5.0, "the program returned")
+    timeline = told(run)
+    before, over = factory(timeline, 4.9, 78, 9), factory(timeline, 5.0, 78, 9)
+    assert "next in 1.1 s" in before
+    assert "Pool-0_0 waits for work" in before
+    assert "next in" not in over
+    assert "Pool-0_0 spins no more  · Pool-0_1 spins no more" in over
