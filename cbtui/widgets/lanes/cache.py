@@ -20,8 +20,8 @@ class LaneSummary:
     """A lane's content, column by column.
 
     ``locked`` are the columns in which a call waits for a lock, or the program itself waits; ``kept`` are the
-    stretches, by first column and the one after, in which a suspended call keeps the group; ``lasting`` is
-    the duration of the open interval, in words; ``unseen`` are the columns that are not aggregated yet.
+    stretches, by first column and the one after, in which a suspended call keeps the group; ``lasting`` are
+    the durations of what was not over yet, in words; ``unseen`` are the columns that are not aggregated yet.
     """
 
     scale: TimeScale

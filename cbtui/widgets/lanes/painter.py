@@ -323,7 +323,7 @@ class _LaneFrame:
             column.top.start
             for columns in (calls, waits)
             for column in columns
-            if column is not None and column.top.end is None
+            if column is not None and (column.top.end is None or column.top.end > self._told)
         )
         lengths = tuple(duration(max(0, self._told - start)) for start in lasting)
         return LaneSummary(

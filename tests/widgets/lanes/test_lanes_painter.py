@@ -57,6 +57,18 @@ def test_words_and_figures_are_of_the_moment_that_is_told_and_bars_go_on() -> No
     assert "MainThread  │▎▎▎▎▎A timer_callback ███████████████████████████▌│" in behind
 
 
+def test_once_a_call_is_over_its_label_tells_all_its_time_though_it_was_painted_when_less_was_told() -> None:
+    run, thread, _, timer = small_run()
+    run.callback(timer, thread, 0.5, 5.0)
+    timeline, window = told(run), Window(0, ns(10.0))
+    painter = LanePainter()
+    behind = plain(painter.paint(timeline, window, ns(5.6), 80, 6, told=ns(5.4)).rows)
+    assert "runs 4.9 s" in behind
+    later = painter.paint(timeline, window, ns(6.0), 80, 6, told=ns(6.0)).rows
+    assert later == LanePainter().paint(timeline, window, ns(6.0), 80, 6, told=ns(6.0)).rows
+    assert "runs 5.0 s" in plain(later)
+
+
 def test_a_label_in_the_past_tells_how_much_of_its_bar_is_over_but_not_if_it_begins_there() -> None:
     timeline = told(shared_group_run(), until=12.9)
     window = Window(ns(3.0), ns(12.9))
