@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.text.callback_names import short_name
+from cbtui.text.cells import fit
 from cbtui.widgets.lanes.rows import (
     GroupLane,
     Lane,
@@ -57,8 +58,11 @@ class LaneStatus:
         share = self.timeline.busy(thread.id, past) if past.length > 0 else 0.0
         running = self.moment.running.get(thread.id)
         if running is not None:
-            now = f"  {self._caller(running)} {duration(self.moment.at - running.start)}"
-            return TextRun(f"{share:4.0%}{now if self.width >= _WIDE else ' busy'}", PLAIN)
+            if self.width < _WIDE:
+                return TextRun(f"{share:4.0%} busy", PLAIN)
+            name, took = self._caller(running), f" {duration(self.moment.at - running.start)}"
+            room = self.width - 1 - len(took) - len("100%  ")
+            return TextRun(f"{share:4.0%}  {fit(name, min(len(name), room), self.charset)}{took}", PLAIN)
         if share == 0 and not ever_ran(self.timeline, thread.id, self.moment.at):
             if thread.executor == 0:
                 return TextRun("no callbacks" if self.width >= _WIDE else "own thread", FAINT)

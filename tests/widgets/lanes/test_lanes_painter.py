@@ -57,6 +57,17 @@ def test_words_and_figures_are_of_the_moment_that_is_told_and_bars_go_on() -> No
     assert "MainThread  │▎▎▎▎▎A timer_callback ███████████████████████████▌│" in behind
 
 
+@pytest.mark.parametrize(
+    ("name", "status"),
+    [("count_all", "B count_all 7.9 s"), ("count_with_lock", "B count_wit… 7.9 s")],
+)
+def test_a_long_name_gives_way_to_how_long_its_callback_has_run(name: str, status: str) -> None:
+    run, thread, _, _ = small_run()
+    run.callback(run.timer(run.exclusive(run.node("/m")), name, 9.0), thread, 0.1)
+    row, *_ = plain(LanePainter().paint(told(run), Window(0, ns(8.0)), ns(8.0), 120, 8).rows).splitlines()
+    assert row.rpartition("%  ")[2].rstrip() == status
+
+
 def test_once_a_call_is_over_its_label_tells_all_its_time_though_it_was_painted_when_less_was_told() -> None:
     run, thread, _, timer = small_run()
     run.callback(timer, thread, 0.5, 5.0)
