@@ -10,7 +10,7 @@ from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLan
 from cbtui.widgets.lanes.selection import Bar, Selection
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import doing_of, name_of, why_waiting
-from sim.trace.events import EntityId, EntityKind
+from sim.trace.events import EntityId, EntityKind, Reason
 from sim.trace.figures.waiting import WORTH_TELLING, waits_since
 from sim.trace.model import Call, EntityInfo, Nanoseconds, Position, Span, Wait, Window
 from sim.trace.timeline import Timeline
@@ -182,7 +182,7 @@ def _of_wait(timeline: Timeline, wait: Wait, now: Nanoseconds) -> Iterator[str]:
     since = waits_since(wait, timeline.queue(wait.entity, max(until - 1, wait.start)))
     if since < wait.start:
         yield f"{'ready' if since == wait.since else 'next in its queue'} since {timestamp(since)}"
-    if wait.workers_busy:
+    if wait.workers_busy and wait.reason is not Reason.NO_FREE_WORKER:
         yield "no thread was free either"
     entity = timeline.entities.get(wait.entity)
     if entity is not None and entity.depth:

@@ -117,6 +117,15 @@ def test_a_call_that_stood_still_tells_in_which_service() -> None:
     assert "stood 2.0 s in call /x" in details_of(timeline, span_of(timeline, "a_callback"), ns(9)).facts
 
 
+def test_that_no_thread_is_free_is_told_once() -> None:
+    run, thread, a, tick = two_callbacks()
+    run.callback(tick, thread, 1.0, 3.0)
+    run.wait(a, 2.0, 4.0, Reason.NO_FREE_WORKER, tick, workers_busy=True)
+    timeline = told(run)
+    facts = details_of(timeline, timeline.moment(ns(3.0)).waiting[a], ns(3.0)).facts
+    assert sum("free" in fact for fact in facts) == 1
+
+
 def test_a_service_tells_who_called() -> None:
     timeline = told(dummy_server_run(), until=8.2)
     text = text_of(details_of(timeline, span_of(timeline, "service_callback"), ns(8.2)))
