@@ -136,7 +136,8 @@ def choose_lanes(
 
 
 _SPARE = 4
-"""The priority of a thread beyond half of the room, and the highest of a client, which only takes replies."""
+"""The priority of a thread beyond half of the room, or whose calls take no time, and the highest of a client,
+which only takes replies."""
 _KEPT = 10
 """The priority of a callback that the picture is about: higher than any other."""
 _FAR = 2
@@ -171,7 +172,9 @@ class _LanePriority:
 
     def _thread(self, thread: ThreadInfo) -> int:
         busy = self.timeline.busy(thread.id, self.window)
-        return 9 if busy >= 0.5 else 7 if self.timeline.spans_on(thread.id, self.window) else 2
+        if busy == 0:
+            return _SPARE if self.timeline.spans_on(thread.id, self.window) else 2
+        return 9 if busy >= 0.5 else 7
 
     def _group_waits(self, group: GroupId) -> bool:
         return any(self._waits_long(member.id) for member in self.timeline.group_members(group)[:MOST_LANES])
