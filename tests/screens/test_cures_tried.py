@@ -106,14 +106,17 @@ async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.M
         def judge(
             self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
         ) -> Verdict:
+            started.wait(10)
             note(40)
             return Verdict(given_up.wait(10))
 
-    now = [100.0]
+    now, started = [100.0], Event()
     monkeypatch.setattr(diagnoses, "monotonic", lambda: now[0])
     async with console() as (app, pilot):
         screen = DiagnosesScreen(told_of(shared_group_run().until(TURNED)), Charset.BRAILLE, Endless())
         await app.push_screen(screen)
+        await until(pilot, lambda: "A cure is being tried, for 0 s now: its run is starting." in text_of(app))
+        started.set()
         await until(pilot, lambda: "A cure is being tried, for 0 s now: 20 %." in text_of(app))
         now[0] += 7
         await until(pilot, lambda: "A cure is being tried, for 7 s now: 20 %." in text_of(app))

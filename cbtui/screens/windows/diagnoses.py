@@ -276,7 +276,10 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             of = len(cures)
             percent = (100 * (of - left) + self._percent.get(place, 0)) // of
             subject = "Another cure" if any(about == place for about, _ in self._helpful) else "A cure"
-            return f"{subject} is being tried, for {monotonic() - self._trying_since:.0f} s now: {percent} %."
+            if place != self._cures[len(self._verdicts)][0]:
+                return f"{subject} will be tried after those of another problem."
+            how_far = f"{percent} %" if percent else "its run is starting"
+            return f"{subject} is being tried, for {monotonic() - self._trying_since:.0f} s now: {how_far}."
         tried = [(cure, verdict) for about, cure, verdict in self._verdicts if about == place]
         if tried and not any(verdict.helps for _, verdict in tried):
             return tried_in_vain(tried)
