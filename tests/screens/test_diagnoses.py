@@ -289,13 +289,16 @@ async def test_what_the_window_tells_follows_the_run_and_nothing_moves() -> None
         place for place, each in enumerate(latest[0]) if "odom_callback lost" in each.explanation.what
     )
     async with console() as (app, pilot):
-        screen = DiagnosesScreen(latest[0], Charset.BRAILLE, latest=lambda: latest[0])
+        now = [ns(9.0)]
+        screen = DiagnosesScreen(latest[0], Charset.BRAILLE, latest=lambda: latest[0], as_of=lambda: now[0])
         await app.push_screen(screen)
         await settle(pilot)
+        assert ", as of 9.0 s " in text_of(app)
         await press(pilot, *["down"] * place)
         assert "waited up to 5.0 s" in text_of(app)
         assert text_of(app).count("odom_callback lost 90 messages") == 2  # in the list and below it
-        latest[0] = told_of(shared_group_run().until(12.0))
+        latest[0], now[0] = told_of(shared_group_run().until(12.0)), ns(12.0)
+        await until(pilot, lambda: ", as of 12.0 s " in text_of(app))
         await until(pilot, lambda: "waited up to 8.0 s" in text_of(app))
         assert text_of(app).count("odom_callback lost 150 messages") == 2
         assert screen.query_one(OptionList).highlighted == place

@@ -72,7 +72,8 @@ class FindingsMonitor:
         self._diagnoses = diagnoses or Diagnoses()
         self._clock = clock
         self._due = 0.0
-        self._looked_to: Nanoseconds = 0
+        self.looked_to: Nanoseconds = 0
+        """The end of the run at the last update."""
         self._notices = 0
 
     def stuck_at(self, at: Nanoseconds) -> Finding | None:
@@ -98,7 +99,7 @@ class FindingsMonitor:
 
         Returns whether the findings changed.
         """
-        grown = self._timeline.end - self._looked_to
+        grown = self._timeline.end - self.looked_to
         has_news = len(self._timeline.notices) != self._notices
         if self._clock() < self._due and grown < _MAX_GROWTH and not has_news:
             return False
@@ -110,7 +111,7 @@ class FindingsMonitor:
         """Update the findings now."""
         began = self._clock()
         timeline = self._timeline
-        self._looked_to, self._notices = timeline.end, len(timeline.notices)
+        self.looked_to, self._notices = timeline.end, len(timeline.notices)
         self.findings = tuple(_explained(found, timeline) for found in self._diagnoses.update(timeline))
         ended = self._clock()
         self._due = max(began + _MIN_INTERVAL, ended + (ended - began) / _TIME_SHARE)

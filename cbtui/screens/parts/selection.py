@@ -115,7 +115,9 @@ class LaneSelection(ScreenPart):
         def latest() -> Sequence[ExplainedFinding] | None:
             return monitor.findings if self.runs.findings is monitor else None
 
-        screen = DiagnosesScreen(monitor.findings, self.host.charset, trial, self._lesson_on, latest)
+        screen = DiagnosesScreen(
+            monitor.findings, self.host.charset, trial, self._lesson_on, latest, lambda: monitor.looked_to
+        )
         self.host.ask(screen, self._take)
 
     def _lesson_on(self, found: ExplainedFinding) -> Lesson | None:

@@ -26,7 +26,9 @@ from cbtui.widgets.key_bar import KeyBar
 from lessons.lesson import Lesson
 from sim.diagnosis import location_text, sentence, with_stop
 from sim.quantities.durations import timestamp
+from sim.quantities.nanoseconds import SECOND
 from sim.quantities.plural import counted
+from sim.trace.model import Nanoseconds
 
 _ALL_IS_WELL = "No rule has found a problem so far. What a program should do and does not, no rule can know."
 _NOT_SIMPLE = (
@@ -91,7 +93,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
 
     A cure is offered once ``trial`` has found that it helps. ``lesson_on`` returns the lesson that shows a
     problem. ``latest`` returns the current findings, or None once another run has begun: the list follows
-    them, begins again when there is a new problem, and closes with its run.
+    them, begins again when there is a new problem, and closes with its run. ``as_of`` returns the time of the
+    run that they are about, which may have gone on since.
     """
 
     SCOPE = Scope.DIAGNOSES
@@ -103,11 +106,13 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         trial: Trial | None = None,
         lesson_on: Callable[[ExplainedFinding], Lesson | None] = lambda _: None,
         latest: Callable[[], Sequence[ExplainedFinding] | None] | None = None,
+        as_of: Callable[[], Nanoseconds] | None = None,
     ) -> None:
         super().__init__(charset)
         self._trial = trial
         self._lesson_on = lesson_on
         self._latest = latest
+        self._as_of = as_of
         self._given_up = Event()
         self._list(findings)
 
@@ -129,7 +134,14 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         self._rows = tuple(self._list_rows())
         self._given_up.set()
         self._given_up = Event()
-        self.heading = title_of(findings)
+        self._entitle()
+
+    def _entitle(self) -> None:
+        """Set the heading to the counts of the findings, and the time that they are about."""
+        as_of = "" if self._as_of is None else f", as of {self._as_of() / SECOND:.1f} s"
+        self.heading = f"{title_of(self._findings)}{as_of}"
+        for window in self.query(".window"):
+            window.border_title = self.heading
 
     def content(self) -> ComposeResult:
         """Lay out the list, and the details of the highlighted row."""
@@ -158,7 +170,6 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             self.dismiss(None)
         elif not _problems(findings) <= _problems(self._findings):
             self._list(findings)
-            self.query_one(".window").border_title = self.heading
             self._show_options()
             self._begin()
         else:
@@ -171,6 +182,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         for place, option in enumerate(self._options()):
             if listed.get_option_at_index(place).prompt != option.prompt:
                 listed.replace_option_prompt_at_index(place, option.prompt)
+        self._entitle()
         self._tell_highlighted()
 
     def on_unmount(self) -> None:
