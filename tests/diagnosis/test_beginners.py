@@ -66,6 +66,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "make sure that it comes; give take a MutuallyExclusiveCallbackGroup",
         ),
         ("job_waits_for_job", "endless-wait", "submit(self.plan)", "let it call the function itself"),
+        (
+            "asked_too_often",
+            "service-falls-behind",
+            "time.sleep(1.2)",
+            "let tick ask again only when the reply is there",
+        ),
         ("late_bound_lambda", "slip", "lambda: self.blink(colour)", "lambda colour=colour: …"),
         ("never_awaited", "slip", "self.is_well()", "write await is_well(), in an async def tick"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),

@@ -372,3 +372,38 @@ def test_a_timer_that_awaits_longer_than_its_period_overruns_it_as_one_that_wait
         name: f"return from {name}, and go on in a done-callback of the future{which}"
         for name, which in (("ask_and_await", ""), ("ask_and_wait", ", which call_async() returns"))
     }
+
+
+@pytest.mark.parametrize(
+    ("period", "told"), [(500.0, "0.5"), (1000.0, "1"), (300.0, ""), (99.0, ""), (0.5, "")]
+)
+def test_a_period_of_hundreds_of_seconds_may_be_meant_in_milliseconds(period: float, told: str) -> None:
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(period, lambda: None)
+        spin(node, None)
+
+    run = diagnosed(program, until=3.0)
+    assert run.problems() == set()
+    cures = [each.rule.explain(each, run.timeline).cure for each in run.findings]
+    assert cures == ([f"if milliseconds are meant, give it {told}"] if told else [])
+
+
+@pytest.mark.parametrize(("requests", "every"), [(6, 0.0), (6, 1.5)], ids=["burst", "slower than it answers"])
+def test_a_service_that_answers_what_it_was_asked_in_turn_does_not_fall_behind(
+    requests: int, every: float
+) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        client = node.create_client(SetBool, "/own", callback_group=MutuallyExclusiveCallbackGroup())
+
+        def serve(_: object, response: object) -> object:
+            simulation.sleep(1.2)
+            return response
+
+        node.create_service(SetBool, "/own", serve, callback_group=MutuallyExclusiveCallbackGroup())
+        for number in range(requests):
+            once(node, 0.5 + every * number, lambda: client.call_async(SetBool.Request()))
+        spin(node, 3)
+
+    assert diagnosed(program).problems() == set()

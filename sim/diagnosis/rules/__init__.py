@@ -18,7 +18,12 @@ from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, SentTooEa
 from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.overlooked import AnswerOverlooked, Slip
 from sim.diagnosis.rules.parameters import ParameterOverruled
-from sim.diagnosis.rules.services import NobodyOffers, ServiceNeverComes, UnreturnedResponse
+from sim.diagnosis.rules.services import (
+    NobodyOffers,
+    ServiceFallsBehind,
+    ServiceNeverComes,
+    UnreturnedResponse,
+)
 from sim.diagnosis.rules.spinning import (
     AsyncioStarved,
     NestedSpin,
@@ -28,7 +33,7 @@ from sim.diagnosis.rules.spinning import (
 )
 from sim.diagnosis.rules.synchronisers import NeverSynchronised
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
-from sim.diagnosis.rules.timing import FallsBehind, OverlappingCallback, OverrunTimer
+from sim.diagnosis.rules.timing import FallsBehind, MeantInMilliseconds, OverlappingCallback, OverrunTimer
 from sim.diagnosis.rules.transforms import LookupKeepsTransform
 from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NodeNeverSpins, NoFreeWorker
 
@@ -73,9 +78,11 @@ RULES: tuple[Rule, ...] = (
     OverlappingCallback(),
     OverrunTimer(),
     FallsBehind(),
+    ServiceFallsBehind(),
     StaleData(),
     DroppedMessages(),
     GapsInTrace(),
+    MeantInMilliseconds(),
     GroupsChangeNothing(),
     ThreadsNeverUsed(),
 )

@@ -1,7 +1,8 @@
 """Rules on service calls that are never answered."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.functions import return_response
@@ -22,10 +23,14 @@ from sim.diagnosis.rules.names import offer
 from sim.diagnosis.time_limits import time_limit
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, until_when, who
+from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind, ProgramAt
 from sim.trace.model import EntityInfo, Span, Window
 from sim.trace.timeline import Timeline
+
+_IN_TURN = 3
+"""The number of calls, one right after the other, that tell a habit."""
 
 _RETURNED = re.compile(r"got <class '(?:[\w<>]+\.)*(\w+)'>$")
 """The class of what a service's callback returned, in the error that comes of it; real rclpy names none."""
@@ -88,6 +93,59 @@ class UnreturnedResponse(Rule):
         """Irrelevant if the exception ended the program: that is the problem."""
         ended = timeline.ended
         return None if ended is not None and found.detail and found.detail == ended.error else self.weight
+
+
+class ServiceFallsBehind(Rule):
+    """Requests come faster than a service answers them, so each has waited longer than the one before."""
+
+    id = "service-falls-behind"
+    summary = "a service is asked faster than it answers, so that requests pile up"
+    is_effect = True
+    threshold = SECOND
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each call that took an old request, if it followed others at once that took younger ones."""
+        for entity in view.entities(EntityKind.SERVICE):
+            late = {span.number for span in view.spans(entity.id) if span.age >= self.threshold}
+            every = view.timeline.spans_of(entity.id, Window(0, view.end + 1)) if late else ()
+            for place, span in enumerate(every):
+                calls = every[max(0, place + 1 - _IN_TURN) : place + 1]
+                if span.number in late and _is_outrun(entity, calls, view.timeline):
+                    before = calls[-2]
+                    at, until = before.start, before.end_at(view.end)
+                    yield Finding(self, at, until, entity.id, about=entity.name, size=span.age)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        subject, until = who(found.subject, timeline), Window(0, timeline.end + 1)
+        calls = [each for each in timeline.calls_within(until) if each.service == found.about]
+        open_ = sum(each.replied is None for each in calls)
+        unanswered = f"; {open_} of {len(calls)} calls have no reply" if open_ else ""
+        callers = [who(each.caller, timeline) for each in calls if each.caller]
+        return Explanation(
+            f"{subject} falls behind: it takes {duration(found.lasted)} a request, and took one that was "
+            f"{duration(found.size)} old{unanswered}",
+            "requests come faster than that; one that its caller has given up is answered all the same, and "
+            "keeps the next one waiting",
+            f"let {listed(callers) if callers else 'the caller'} ask again only when the reply is there, or "
+            f"{subject} return sooner; what takes long is an action's",
+            line_of(found.subject, Window(found.at, found.until), timeline)
+            or place_of(found.subject, timeline),
+        )
+
+
+def _is_outrun(entity: EntityInfo, calls: Sequence[Span], timeline: Timeline) -> bool:
+    """Whether calls followed each other at once, each with an older request, and left more of them."""
+    left = [timeline.queue(entity.id, each.start).depth for each in calls]
+    return (
+        len(calls) == _IN_TURN
+        and left[0] < left[-1]
+        and all(
+            one.end is not None
+            and 0 <= other.start - one.end <= (one.end - one.start) // 10
+            and other.age > one.age
+            for one, other in pairwise(calls)
+        )
+    )
 
 
 class NobodyOffers(Rule):

@@ -13,6 +13,7 @@ from sim.diagnosis.rule import (
     Weight,
     by_edit,
     entity_of,
+    is_models,
     line_location,
     line_of,
     made_at,
@@ -197,6 +198,36 @@ def _awaits(entity: EntityInfo, view: TimelineView) -> Iterator[Window]:
 def _kind_of_group(entity: EntityInfo, view: TimelineView) -> GroupKind | None:
     group = view.timeline.groups.get(entity.group)
     return None if group is None else group.kind
+
+
+class MeantInMilliseconds(Rule):
+    """A timer is due so seldom that its period may have been meant in milliseconds.
+
+    Not told of whole minutes, and of what it has been called for.
+    """
+
+    id = "meant-in-milliseconds"
+    summary = "a timer's period is hundreds of seconds"
+    weight = Weight.REMARK
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each such timer that has not been called."""
+        for each in view.few_entities if view.end >= SECOND else ():
+            seconds, part = divmod(each.period, SECOND)
+            is_odd = not part and 100 <= seconds <= 10_000 and seconds % 60
+            is_called = is_odd and view.timeline.calls_of(each.id, Window(0, view.end + 1))
+            if is_odd and each.kind is EntityKind.TIMER and not is_called and not is_models(each):
+                yield Finding(self, 0, view.end, each.id)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        entity = entity_of(found, timeline)
+        seconds = entity.period // SECOND
+        return Explanation(
+            f"{who(found.subject, timeline)} is due every {seconds} s, and has not been called yet",
+            "create_timer() counts in seconds",
+            f"if milliseconds are meant, give it {seconds / 1000:g}",
+            made_at(entity),
+        )
 
 
 class FallsBehind(Rule):
