@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 from operator import attrgetter
+from pathlib import Path
 from typing import TypeAlias
 
 from cbtui.looks.theme import GLYPHS, Charset
@@ -104,6 +105,10 @@ def _at_line(position: Position, timeline: Timeline, at: Nanoseconds, file: Sour
         full = f"{doing} in a loop, {duration(lasted)} so far"
     else:
         full = f"{doing}, here for {duration(lasted)}"
+    taken, line = position.taken_at
+    if taken:
+        where = f"line {line}" if taken == position.file else f"{Path(taken).name}:{line}"
+        yield f"{doing}, taken at {where}, {duration(lasted)}"
     yield from (full, f"▶ {duration(lasted)}", "▶")
 
 

@@ -8,6 +8,7 @@ from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from cbtui.widgets.lanes.selection import Bar, Selection
+from sim.diagnosis.words import awaited_lock
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import doing_of, name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind, Reason
@@ -76,7 +77,11 @@ def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
         yield f"raised {span.error}"
     position = position_in(timeline, span, now)
     if position is not None:
-        yield f"{doing_of(position)} at {Path(position.file).name}:{position.line}"
+        at = f"at {Path(position.file).name}:{position.line}"
+        is_known = position.waits_for_lock and position.taken_at[0]
+        yield (
+            f"waits {at} for {awaited_lock(position, timeline)}" if is_known else f"{doing_of(position)} {at}"
+        )
     yield from _blocked(timeline, span, now)
     waits = _waits_before(timeline, span)
     if waits:

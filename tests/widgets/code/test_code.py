@@ -1,5 +1,6 @@
 from pathlib import Path
 
+import msgspec
 import pytest
 from textual.app import App, ComposeResult
 
@@ -82,6 +83,24 @@ def test_a_line_tells_how_long_a_callback_has_been_there_not_how_long_one_sleep_
     timeline.extend(sorted([*run.events, at], key=lambda event: event.t))
     files = SourceFiles(path)
     assert lines_at(timeline, ns(4.5), files)[files.main][31].texts[0] == told
+
+
+def test_a_line_that_waits_for_a_lock_tells_its_name_and_where_it_was_taken(path: Path) -> None:
+    run, timeline = sleeper(str(path))
+    thread, timer = next(iter(timeline.threads)), list(timeline.entities)[-1]
+    frames = ((str(path), "timer_callback", 31),)
+    at = CallbackAt(ns(1.0), timer, thread, Doing.WAITS, "Lock.acquire", frames, lock="self.arm")
+    timeline = Timeline()
+    taken = msgspec.structs.replace(at, taken_at=(str(path), 12))
+    timeline.extend(sorted([*run.events, taken], key=lambda event: event.t))
+    files = SourceFiles(path)
+    texts = lines_at(timeline, ns(4.5), files)[files.main][31].texts
+    assert texts == (
+        "▶ waits for self.arm, taken at line 12, 3.5 s",
+        "▶ waits for self.arm, 3.5 s",
+        "▶ 3.5 s",
+        "",
+    )
 
 
 @pytest.mark.parametrize(
