@@ -230,7 +230,7 @@ def _lane_signs(charset: Charset) -> _Section:
             _HelpRow(glyphs.lost, "a message is lost: its queue was full"),
             _HelpRow(glyphs.cross, "a callback raised an exception"),
             _HelpRow("excl reen", "a group's kind where names are short: exclusive, reentrant"),
-            _HelpRow("25% busy", "how much of the time on screen a thread worked"),
+            _HelpRow("25% busy", "how much of the time on screen a thread was in a callback"),
             _HelpRow("late", "a timer was called later than its period says"),
             _HelpRow(
                 f"{glyphs.up} {glyphs.back}", "a service is called and replies; your own call has its key"
