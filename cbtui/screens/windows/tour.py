@@ -41,7 +41,10 @@ STOPS = (
         "Time goes from left to right. The top lane is a thread: each stroke is a call of a callback.",
     ),
     TourStop("lanes", "Below are the callback groups. A letter and a colour belong to each, in every pane."),
-    TourStop("lanes", "When a callback has to wait, its lane is hatched, and says what it waits for."),
+    TourStop(
+        "lanes",
+        "Nothing waits yet. When a callback has to, its lane is hatched, ╱╱╱╱, and says what it waits for.",
+    ),
     TourStop("code", "The code, as it would run on a robot. The mark at its side shows what runs."),
     TourStop(
         "factory", "The same as a factory: belts bring messages, areas are groups, workers are threads."
