@@ -25,6 +25,8 @@ _LANES_LEAST, _LANES_MOST = 12, 75
 """Per cent of the screen's height."""
 _SCENE_LEAST = 34
 """Columns of a scene's pane in which its names and most of its reasons have room."""
+_WIDE_FROM = 160
+"""Columns of a screen from which the code has more of them than the scene."""
 _LANES_BESIDE_NARRATOR = 5
 """Rows that the lanes keep when the narrator takes its rows from them."""
 
@@ -126,15 +128,17 @@ class SizeKeys(ScreenPart):
 
     @property
     def _sizes(self) -> PaneSizes:
-        """The sizes in force; while the code is read, it usually has room for longer lines."""
+        """The sizes in force; on a wide screen, or while it is read, the code has room for longer lines."""
         if self._chosen is not None:
             return self._chosen
-        usual = PaneSizes(self.screen.layout_now)
-        if self.panes.current != "code" or not self._has_robot:
+        usual, columns = PaneSizes(self.screen.layout_now), self.screen.app.size.width
+        is_read = self.panes.current == "code"
+        if not self._has_robot or not (is_read or columns >= _WIDE_FROM):
             return usual
-        least = _SCENE_LEAST if self.screen.query_one(RobotView).actors else 0
-        right = ceil(_ACROSS * least / max(1, self.screen.app.size.width))
-        return PaneSizes(usual.layout, left=6, right=max(5, min(right, usual.right)))
+        is_plain = is_read and not self.screen.query_one(RobotView).actors
+        right = 0 if is_plain else ceil(_ACROSS * _SCENE_LEAST / max(1, columns))
+        left = 6 if is_read else usual.left
+        return PaneSizes(usual.layout, left=left, right=max(5, min(right, usual.right)))
 
     @property
     def _height(self) -> int:

@@ -72,6 +72,17 @@ async def test_a_scene_keeps_the_columns_of_its_words_while_the_code_is_read() -
         assert width(app, "code") >= 70
 
 
+@pytest.mark.parametrize(("lesson", "columns", "least"), [("stale-data", 160, 60), ("shared-group", 200, 88)])
+async def test_on_a_wide_screen_the_code_has_the_columns_that_the_scene_can_spare(
+    lesson: str, columns: int, least: int
+) -> None:
+    app = RecordedConsole(lesson, EVENTS, 12.9)
+    async with app.run_test(size=(columns, 55)) as pilot:
+        await settle(pilot)
+        assert width(app, "code") >= least
+        assert 34 <= width(app, "robot") < width(app, "guide") < width(app, "code")
+
+
 async def test_rows_go_between_lanes_and_pane_on_a_small_screen() -> None:
     app = RecordedConsole("shared-group", EVENTS, 12.9)
     async with app.run_test(size=NARROW) as pilot:
