@@ -93,11 +93,12 @@ def test_callbacks_that_there_are_not_are_told_of_at_the_end() -> None:
     run = overridden(
         "split-groups",
         1,
-        groups=(group("odom", "own", ""), group("odom_callback", "own", "/other")),
+        groups=(group("odo", "own", ""), group("odom_callback", "own", "/other")),
         periods=(PeriodChange("", "odom_callback", SECOND),),
     )
     assert [notice.text for notice in run.timeline.notices] == [
-        "no callback is named odom; there are odom_callback, scan_callback, timer_callback",
+        "no callback is named odo; there are odom_callback, scan_callback, timer_callback; "
+        "did you mean odom?",
         "no callback is named odom_callback in /other; "
         "there are odom_callback, scan_callback, timer_callback",
         "no timer callback is named odom_callback; there is timer_callback",
@@ -113,6 +114,15 @@ def test_changes_that_were_met_are_not_told_of() -> None:
         periods=(PeriodChange(SUB_NODE, "timer_callback", SECOND),),
     )
     assert not run.timeline.notices
+
+
+def test_a_callback_is_found_by_the_short_name_that_the_panes_show() -> None:
+    changes = {"groups": (group("odom", "own", ""),), "periods": (PeriodChange(SUB_NODE, "timer", SECOND),)}
+    run = overridden("shared-group", 3, **changes)
+    assert not run.timeline.notices
+    found = groups_of(run.timeline)
+    assert found["odom_callback"] != found["scan_callback"]
+    assert run.starts("timer_callback") == [1.0, 2.0]
 
 
 def test_the_services_that_every_node_brings_along_are_no_callbacks_of_the_program() -> None:

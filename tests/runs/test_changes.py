@@ -244,6 +244,15 @@ def test_a_program_that_takes_arguments_gets_them() -> None:
     assert code_of(changes, about_server) == ["node.py … -service_wait_time 2 -threads 4"]
 
 
+def test_a_short_name_is_told_in_code_by_the_whole_one() -> None:
+    changes = Changes(groups={("", "odom"): "default"}, periods={("", "timer"): 5})
+    assert (changes.group_of(ODOM), changes.period_of(TIMER)) == ("default", 5)
+    told = "".join(code_of(changes, ABOUT))
+    assert "self.odom_callback" in told
+    assert "self.timer_callback" in told
+    assert changes.with_group(ODOM, None).groups == {}
+
+
 def test_a_cure_by_threads_has_the_lines_that_spin_them_unless_they_are_there() -> None:
     more = Changes(threads=2)
     made = "executor = MultiThreadedExecutor(num_threads=2)"

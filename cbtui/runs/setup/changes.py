@@ -64,11 +64,11 @@ class Changes:
 
     def group_of(self, place: CallbackPlace) -> str | None:
         """The group that was chosen for a callback of a node."""
-        return self.groups.get(place, self.groups.get(("", place[1])))
+        return _chosen(self.groups, place)
 
     def period_of(self, place: CallbackPlace) -> int | None:
         """The period that was chosen for a timer of a node, in nanoseconds."""
-        return self.periods.get(place, self.periods.get(("", place[1])))
+        return _chosen(self.periods, place)
 
     def without(self, others: Changes) -> Changes:
         """Return the changes that ``others`` do not contain."""
@@ -157,9 +157,18 @@ def _without(ours: Mapping[Key, Value], theirs: Mapping[Key, Value]) -> dict[Key
     return {key: value for key, value in ours.items() if theirs.get(key) != value}
 
 
+def _keys(place: CallbackPlace) -> list[CallbackPlace]:
+    """What may name a callback in changes, which counts most first."""
+    return [(node, name) for name in (place[1], short_name(place[1])) for node in (place[0], "")]
+
+
+def _chosen(all_places: Mapping[CallbackPlace, Value], place: CallbackPlace) -> Value | None:
+    return next((all_places[key] for key in _keys(place) if key in all_places), None)
+
+
 def _changed(
     all_places: Mapping[CallbackPlace, Value], place: CallbackPlace, value: Value | None
 ) -> dict[CallbackPlace, Value]:
     """A copy with another value for a place; a change for the same callback of any node is removed."""
-    left = {key: kept for key, kept in all_places.items() if key not in (place, ("", place[1]))}
+    left = {key: kept for key, kept in all_places.items() if key not in _keys(place)}
     return left if value is None else left | {place: value}

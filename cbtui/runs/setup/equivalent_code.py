@@ -6,6 +6,7 @@ from pathlib import Path
 
 from cbtui.runs.setup.changeable import ChangeableSetup
 from cbtui.runs.setup.changes import CallbackPlace, Changes
+from cbtui.text.callback_names import short_name
 from sim.diagnosis.edits.code_edit import diff
 from sim.files.untrusted import program_text
 from sim.quantities.nanoseconds import SECOND
@@ -34,12 +35,11 @@ def code_of(changes: Changes, about: ChangeableSetup) -> list[str]:
     statements = [
         statement
         for place, wish in changes.groups.items()
-        for statement in code_of_group(place[1], *_kind_and_maker(place, about), wish)
+        for statement in code_of_group(*_callback_of(place, about), wish)
     ]
-    statements += [
-        code_of_period(place[1], period, _kind_and_maker(place, about)[1])
-        for place, period in changes.periods.items()
-    ]
+    for place, period in changes.periods.items():
+        name, _, maker = _callback_of(place, about)
+        statements.append(code_of_period(name, period, maker))
     statements += _command_line(changes, about)
     if changes.threads is not None and about.threads_argument is None:
         statements.append(code_of_threads(changes.threads, about))
@@ -126,15 +126,15 @@ def _command_line(changes: Changes, about: ChangeableSetup) -> Iterator[str]:
         yield "node.py … " + " ".join(f"{name} {number:g}" for name, number in given.items())
 
 
-def _kind_and_maker(place: CallbackPlace, about: ChangeableSetup) -> tuple[EntityKind, str]:
-    """The kind of a callback's entity, of a node or of the first with such a callback, and what makes it."""
+def _callback_of(place: CallbackPlace, about: ChangeableSetup) -> tuple[str, EntityKind, str]:
+    """The full name, kind and maker of a callback: of a node, or of the first that has such a one."""
     node, name = place
     fitting = (
-        (each.kind, each.maker)
+        (each.name, each.kind, each.maker)
         for each in about.callbacks
-        if each.place[1] == name and node in {"", each.place[0]}
+        if name in {each.name, short_name(each.name)} and node in {"", each.place[0]}
     )
-    return next(fitting, (EntityKind.WAITABLE, "self"))
+    return next(fitting, (name, EntityKind.WAITABLE, "self"))
 
 
 def _owner(maker: str) -> str:

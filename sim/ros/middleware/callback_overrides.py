@@ -4,10 +4,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
 from enum import StrEnum
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 CallbackKey: TypeAlias = tuple[str, str]
-"""A node's full name ("" for any node), and the name of a callback, or of its topic or service."""
+"""A node's full name ("" for any node), and the name of a callback, or of its topic or service.
+
+The name may lack the ending ``_callback``, as on screen.
+"""
+
+Override = TypeVar("Override")
 
 
 class GroupChoice(StrEnum):
@@ -38,12 +43,13 @@ class CallbackOverrides:
     def group_choice(self, node: str, callback: str) -> GroupChoice | None:
         """Register a callback and return the group chosen for it; None: the program's own."""
         self._callbacks[node, callback] = None
-        return self.groups.get((node, callback), self.groups.get(("", callback)))
+        return _chosen(self.groups, node, callback)
 
     def period(self, node: str, callback: str, asked: int) -> int:
         """Register a timer and return its period, in nanoseconds."""
         self._timers[node, callback] = None
-        return self.periods.get((node, callback), self.periods.get(("", callback), asked))
+        chosen = _chosen(self.periods, node, callback)
+        return asked if chosen is None else chosen
 
     def unmatched(self) -> Iterator[str]:
         """Sentences on the overrides that no callback has matched so far."""
@@ -51,17 +57,28 @@ class CallbackOverrides:
         yield from _unmatched(self.periods, self._timers, "timer callback")
 
 
+def _names(callback: str) -> tuple[str, str]:
+    return callback, callback.removesuffix("_callback")
+
+
+def _chosen(overrides: Mapping[CallbackKey, Override], node: str, callback: str) -> Override | None:
+    keys = ((place, name) for name in _names(callback) for place in (node, ""))
+    return next((overrides[key] for key in keys if key in overrides), None)
+
+
 def _unmatched(
     overrides: Mapping[CallbackKey, object], present: Mapping[CallbackKey, None], kind: str
 ) -> Iterator[str]:
     names = dict.fromkeys(callback for _, callback in present if callback)
+    spellings = {spelling for name in names for spelling in _names(name)}
+    there = {(node, spelling) for node, name in present for spelling in _names(name)}
     for node, callback in overrides:
-        if (node, callback) in present or (not node and callback in names):
+        if (node, callback) in there or (not node and callback in spellings):
             continue
-        is_elsewhere = node and callback in names
+        is_elsewhere = node and callback in spellings
         place = f" in {node}" if is_elsewhere else ""
         are = "is" if len(names) == 1 else "are"
         known = f"there {are} {', '.join(names)}" if names else f"there was no {kind} at all"
-        near = [] if is_elsewhere else get_close_matches(callback, names, 1, 0.75)
+        near = [] if is_elsewhere else get_close_matches(callback, sorted(spellings), 1, 0.75)
         meant = f"; did you mean {near[0]}?" if near else ""
         yield f"no {kind} is named {callback}{place}; {known}{meant}"

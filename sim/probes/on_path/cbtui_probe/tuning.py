@@ -37,10 +37,10 @@ class Tuning:
     def change(self, node: Any, kind: str, name: str, arguments: dict[str, Any]) -> None:
         """Change the arguments with which a node creates an entity whose callback has that name."""
         full = node.get_fully_qualified_name()
-        wish = self._groups.get((full, name), self._groups.get(("", name)))
+        wish = _chosen(self._groups, full, name)
         if wish is not None:
             arguments["callback_group"] = self._group(node, wish)
-        period = self._periods.get((full, name), self._periods.get(("", name)))
+        period = _chosen(self._periods, full, name)
         if kind == "timer" and period is not None:
             arguments["timer_period_sec"] = period / 1e9
 
@@ -62,3 +62,10 @@ class Tuning:
             made = ReentrantCallbackGroup() if wish == "reentrant" else MutuallyExclusiveCallbackGroup()
             self._shared[node, wish] = made
         return self._shared[node, wish]
+
+
+def _chosen(changes: dict[tuple[str, str], Any], node: str, callback: str) -> Any:
+    """The change for a callback, by its name or by that without ``_callback``; None if there is none."""
+    names = (callback, callback.removesuffix("_callback"))
+    keys = ((place, name) for name in names for place in (node, ""))
+    return next((changes[key] for key in keys if key in changes), None)
