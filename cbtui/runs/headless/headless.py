@@ -13,13 +13,14 @@ from cbtui.runs.headless.deadlock_news import DeadlockNews
 from cbtui.runs.headless.program_log import ProgramLog
 from cbtui.runs.headless.standard_input import StandardInput
 from cbtui.runs.live.disk_space import DiskSpaceWatch
+from cbtui.runs.setup.changeable import misnames
 from cbtui.terminal.interrupts import deferred_interrupt, ending_signals
 from cbtui.text.output import CannotSayError, complain, say
 from sim.diagnosis import diagnose, findings_text
 from sim.engine.commands import Stop
 from sim.engine.setup import Keyboard, RunSetup
 from sim.quantities.durations import timestamp
-from sim.trace.events import AnyEvent, NoticeKind
+from sim.trace.events import AnyEvent, CallbackStarted, NoticeKind
 from sim.trace.figures.summary import summarise
 from sim.trace.figures.summary_text import plain_text
 from sim.trace.timeline import Timeline
@@ -99,9 +100,11 @@ class _Headless:
         self._input = StandardInput(self._run.session.send) if setup.keyboard is Keyboard.LIVE else None
         self._log = ProgramLog(echo=self._input is None)
         self._signal: Signals | None = None
+        self._has_changes = bool(setup.groups or setup.periods) and setup.real is None
+        """Whether names of callbacks are still to be compared with those that there are."""
 
     def run(self) -> int:
-        """Run to the end, then print the summary and the diagnosis."""
+        """Run to the end, then print the summary and the diagnosis, unless a change was not met."""
         keyboard = nullcontext() if self._input is None else closing(self._input)
         with self._run, keyboard, ending_signals(self._end_early):
             complaint = self._run.start()
@@ -109,10 +112,11 @@ class _Headless:
                 complain(complaint)
             loss = self._follow()
         self._log.finish()
-        say(plain_text(summarise(self._timeline)))
-        found = findings_text(diagnose(self._timeline), self._timeline)
-        say(f"\n{found}" if found else "")
-        self._tell_chains()
+        if not self._is_unmatched:
+            say(plain_text(summarise(self._timeline)))
+            found = findings_text(diagnose(self._timeline), self._timeline)
+            say(f"\n{found}" if found else "")
+            self._tell_chains()
         if self._setup.seed and any(notice.unrepeatable for notice in self._timeline.notices):
             seed = self._setup.seed
             complain(f"this program is not repeatable: seed {seed} orders its threads, and nothing else")
@@ -150,6 +154,7 @@ class _Headless:
                     self._keep(events)
                 sentences = () if self._deadlocks is None else self._deadlocks.news(events)
                 self._log.print(events if self._deadlocks is None else self._deadlocks.without_told(events))
+                self._compare_names(events)
                 if self._input is not None:
                     self._input.follow(events)
                 self._warn_of_full_disk()
@@ -160,6 +165,17 @@ class _Headless:
         except RunTimeoutError:
             pass  # after a signal, if the engine does not exit
         return None
+
+    def _compare_names(self, events: list[AnyEvent]) -> None:
+        """Stop the run at its first callback if a change misspells one; the engine then tells which."""
+        if self._has_changes and any(isinstance(each, CallbackStarted) for each in events):
+            self._has_changes = False
+            if misnames(self._setup, self._timeline):
+                self._run.session.send(Stop())
+
+    @property
+    def _is_unmatched(self) -> bool:
+        return any(notice.kind is NoticeKind.UNMATCHED for notice in self._timeline.notices)
 
     def _warn_of_full_disk(self) -> None:
         if self._recorder is None:
@@ -185,8 +201,7 @@ class _Headless:
             if all(notice.text != ended.reason for notice in self._timeline.notices):
                 complain(" ".join(ended.reason.split()))
             return 1
-        unmatched = any(notice.kind is NoticeKind.UNMATCHED for notice in self._timeline.notices)
-        return max(2 * unmatched, self._events_verdict(), self._recording_verdict())
+        return max(2 * self._is_unmatched, self._events_verdict(), self._recording_verdict())
 
     def _events_verdict(self) -> int:
         if self._file is None:

@@ -4,6 +4,7 @@ import linecache
 import re
 from collections import Counter
 from dataclasses import dataclass, replace
+from difflib import get_close_matches
 
 from cbtui.runs.setup.changes import CallbackPlace
 from cbtui.runs.setup.quantities import USUAL_SENSOR_RATE, Quantity
@@ -111,6 +112,13 @@ def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
             )
     names = Counter(name for _, name in found)
     return {place: replace(each, is_alone=names[each.name] == 1) for place, each in found.items()}
+
+
+def misnames(setup: RunSetup, timeline: Timeline) -> bool:
+    """Whether a change is for a callback that the run lacks, and that is named nearly as another."""
+    names = {each for _, name in callbacks_of(timeline) for each in (name, short_name(name))}
+    changed = [*(each.callback for each in setup.groups), *(each.callback for each in setup.periods)]
+    return any(name not in names and get_close_matches(name, names, 1, 0.75) for name in changed)
 
 
 def place_of(entity: EntityInfo, timeline: Timeline) -> CallbackPlace:

@@ -81,6 +81,13 @@ def test_a_callback_that_there_is_not_is_a_slip() -> None:
     assert done.returncode == 2
     told = "no callback is named timer_calback; there are SetBool_callback, timer_callback; did you mean"
     assert f"{told} timer_callback?" in done.stderr
+    assert not done.stdout
+
+
+def test_a_run_ends_as_soon_as_a_callback_proves_misspelt() -> None:
+    done = cbtui("run", "single-thread", "--clock", "real", "--for", "60", "--group", "scan_callbck=own")
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "did you mean scan_callback?" in done.stderr
 
 
 @pytest.mark.parametrize("command", ["run", "open"])
