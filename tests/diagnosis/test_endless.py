@@ -105,7 +105,8 @@ def test_one_lock_that_is_waited_for_is_to_be_released_and_several_to_be_taken_i
         [found] = [each for each in diagnose(timeline) if each.rule.id == "waits-for-lock"]
         return found.rule.explain(found, timeline)
 
-    one, two = told("self.a", "self.a"), told("self.a", "self.b")
+    one, two, local = told("self.a", "self.a"), told("self.a", "self.b"), told("lock", "lock")
+    assert local.cure == two.cure, "one name of a variable may stand for several locks"
     assert one.what.startswith("odom_callback (node.py:60) has waited for self.a for 3.0 s, and so does ")
     assert one.cure.startswith("take self.a by with everywhere, which releases it")
     assert two.what.endswith("and so does odom_callback (node.py:61) for self.b")

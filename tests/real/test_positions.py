@@ -110,7 +110,7 @@ def test_who_waits_for_a_lock_for_long_is_told_with_the_line(tmp_path: Path) -> 
     found = next(each for each in diagnose(timeline) if each.rule.id == "waits-for-lock")
     said = found.rule.explain(found, timeline).what
     assert re.sub(r"one|other|\d+", "_", said) == (
-        "_ (tried.py:_) has waited for a lock for _._ s, and so does _ (tried.py:_)"
+        "_ (tried.py:_) has waited for second for _._ s, and so does _ (tried.py:_)"
     )
 
 

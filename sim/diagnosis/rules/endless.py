@@ -159,7 +159,8 @@ class WaitsForLock(Rule):
         also = f", and so {'does' if len(others) == 1 else 'do'} {listed(others)}" if others else ""
         locks = {(timeline.entities[each.entity].node, each.lock) for each in waiting if each.entity}
         why, cure = _IN_TURN
-        if len(locks) == 1 and waiting[0].lock:
+        own = all(each.lock.startswith("self.") and len(each.frames) == 1 for each in waiting)
+        if len(locks) == 1 and own:  # else one name may stand for several locks
             why, cure = _TAKEN, f"take {waiting[0].lock} by with everywhere, {_RELEASES}"
         lock = waiting[0].lock or "a lock"
         return Explanation(
