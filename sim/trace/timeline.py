@@ -70,10 +70,7 @@ class Timeline:
         self.entities: dict[EntityId, EntityInfo] = run.participants.entities
         """The entities, in order of appearance, including destroyed ones."""
         self.makings: Mapping[Making, Mapping[EntityId, Nanoseconds]] = run.makings.kept
-        """The entities that callbacks made at each line, with the starts of the calls that made them.
-
-        Lines of which an entity was destroyed or cancelled are left out.
-        """
+        """The entities that callbacks made at each line, and when; without lines of which one is gone."""
         self.services_called: Collection[str] = run.calls.services
         """The services that were called, in order of their first calls."""
         self.given: Sequence[ev.CommandGiven] = run.given
@@ -81,8 +78,7 @@ class Timeline:
         self.logs: Sequence[ev.Logged | ev.Printed] = run.logs
         """Log lines and printed lines, in order."""
         self.shell: Sequence[ShellEvent] = run.shell
-        """The shell's ``ros2`` lines with their output and ends, text typed for programs, and text printed
-        meanwhile, in order."""
+        """The ``ros2`` lines with their output and ends, text typed for programs and printed meanwhile."""
         self.notices: Sequence[ev.Notice] = run.notices
         """The engine's notices, in order."""
         self.choices: Sequence[ev.ThreadChosen] = run.choices

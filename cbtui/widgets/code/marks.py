@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
-from operator import attrgetter
+from operator import attrgetter, itemgetter
 from pathlib import Path
 from typing import TypeAlias
 
@@ -82,20 +82,31 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
     positions = [each for thread in running if (each := timeline.position_on(thread, at)) is not None]
     for thread in timeline.threads:
         positions += timeline.program_waits_on(thread, Window(at, at + 1))
-    for position in sorted(positions, key=attrgetter("start"), reverse=True):
+    since = [(_there_since(position, timeline), position) for position in positions]
+    for start, position in sorted(since, key=itemgetter(0), reverse=True):
         number = groups.index(timeline.entities[position.entity].group) if position.entity else -1
         *calls, here = position.frames
         for frame in (*calls, here):
             file = files.of(frame.file)
             if file is not None and (frame is here or frame.line not in found[file]):
-                texts = tuple(_at_line(position, timeline, at, file)) if frame is here else ()
+                texts = tuple(_at_line(position, at - start, timeline, file)) if frame is here else ()
                 found[file][frame.line] = LineMark(texts, number)
     return dict(found)
 
 
-def _at_line(position: Position, timeline: Timeline, at: Nanoseconds, file: SourceFile) -> Iterator[str]:
+def _there_since(position: Position, timeline: Timeline) -> Nanoseconds:
+    """Return when a thread came to its line; while it waits for a lock each new holder makes a position."""
+    while position.waits_for_lock:
+        before = timeline.position_on(position.thread, position.start - 1)
+        if before is None or before.frames != position.frames:
+            break
+        position = before
+    return position.start
+
+
+def _at_line(position: Position, lasted: Nanoseconds, timeline: Timeline, file: SourceFile) -> Iterator[str]:
     """Yield the texts of the innermost line; how long it has been there only if that is known."""
-    lasted, doing = at - position.start, f"▶ {doing_of(position)}"
+    doing = f"▶ {doing_of(position)}"
     if timeline.is_real and lasted < _SAMPLED:
         yield from (doing, "▶")
         return

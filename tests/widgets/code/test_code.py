@@ -14,6 +14,7 @@ from sim.trace.events import CallbackAt, Doing, ProgramAt, RunStarted
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.pictures import lines_of
+from tests.widgets.pictures import told
 
 SOURCE = "\n".join(["import rclpy", *(f"# {line}" for line in range(2, 40))]) + "\n"
 
@@ -194,6 +195,21 @@ def test_of_several_calls_of_a_callback_each_is_told_with_its_own_time_or_the_lo
     lines = lines_at(timeline, ns(3.0), files)[files.main]
     assert lines[36].texts[0] == "▶ sleeps, here for 1.5 s"
     assert lines[31].texts == ()
+
+
+def test_a_wait_for_a_lock_is_as_long_as_the_thread_is_at_its_line_whoever_has_the_lock(path: Path) -> None:
+    run = Run()
+    threads = [run.thread(f"Pool-0_{number}") for number in range(3)]
+    count = run.subscription(run.reentrant(run.node("/n")), "/boxes", "count", file=str(path), lines=(30, 33))
+    frames = ((str(path), "count", 31),)
+    for number, thread in enumerate(threads, start=1):
+        run.callback(count, thread, number / 10)
+    for at, holder in ((1.0, threads[1]), (2.0, threads[2])):
+        run.add(CallbackAt(ns(at), count, threads[0], Doing.WAITS, "Lock.acquire", frames, holder=holder))
+    run.log("still there", 8.0)
+    files = SourceFiles(path)
+    lines = lines_at(told(run), ns(3.0), files)[files.main]
+    assert lines[31].texts[0] == "▶ waits for a lock, 2.0 s"
 
 
 class CodeOnly(App[None]):
