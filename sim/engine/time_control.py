@@ -12,8 +12,8 @@ from sim.clock.paced import PacedClock
 from sim.engine import commands
 from sim.engine.commands import PaceCommand
 from sim.quantities.durations import timestamp
-from sim.robot.names import THREAD
 from sim.trace.events import (
+    ROBOT_THREAD,
     AnyEvent,
     CallbackEnded,
     CallbackResumed,
@@ -49,7 +49,7 @@ class VirtualControl:
         self.choose: Callable[[int], None] = _ignore
         """Takes the answer when the run asks which thread continues."""
         clock.time.pace.on_halt = self._note_halt
-        clock.time.is_background = lambda thread: thread.name == THREAD
+        clock.time.is_background = lambda thread: thread.name == ROBOT_THREAD
 
     def record(self, event: AnyEvent) -> None:
         """Take an event; stop time before this returns if the run continued up to such an event."""

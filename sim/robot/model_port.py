@@ -6,7 +6,6 @@ from typing import Any
 from sim.interfaces import message, service
 from sim.probes.probe import PublishingProbe
 from sim.robot.driver import Driver
-from sim.robot.names import THREAD
 from sim.robot.velocity_commands import VelocityCommands
 from sim.robot.world import World
 from sim.ros.context.context import Context
@@ -14,7 +13,7 @@ from sim.ros.middleware.host import Host
 from sim.ros.node.node import Node
 from sim.ros.qos.qos import QoSProfile, ReliabilityPolicy
 from sim.ros.scheduling.executors import SingleThreadedExecutor
-from sim.trace.events import AnyEvent
+from sim.trace.events import ROBOT_THREAD, AnyEvent
 
 _SENSOR_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
@@ -61,4 +60,4 @@ def start_robot(
         executor.spin()
 
     driver.offer()
-    port.context.process.start_thread(drive, THREAD)
+    port.context.process.start_thread(drive, ROBOT_THREAD)

@@ -1,9 +1,6 @@
-"""The robot's names: on the network, and of its thread."""
+"""The robot's names on the network."""
 
 from sim.trace.events import ROBOT_SERVICES, SENSOR_TOPICS, VELOCITY_TOPIC
 
 NAMES = (*SENSOR_TOPICS, VELOCITY_TOPIC, *ROBOT_SERVICES)
 """The robot's topics and services."""
-
-THREAD = "robot_driver"
-"""The thread that drives it on the model."""

@@ -11,10 +11,10 @@ from hypothesis import strategies as st
 from sim.engine.commands import PaceCommand, Pause, Resume, RunUntil, SetSpeed, Step
 from sim.engine.time_control import is_decision
 from sim.interfaces import message
-from sim.robot.names import THREAD
 from sim.ros.node.node import Node
 from sim.ros.scheduling.executors import MultiThreadedExecutor
 from sim.trace.events import (
+    ROBOT_THREAD,
     AnyEvent,
     CommandGiven,
     CommandKind,
@@ -143,7 +143,7 @@ def beside_a_robot(period: float) -> Program:
             while True:
                 simulation.sleep(0.05)
 
-        simulation.clock.start_thread(drive, THREAD)
+        simulation.clock.start_thread(drive, ROBOT_THREAD)
         while True:
             simulation.sleep(period)
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from cbtui.widgets.lanes.names import short_thread
 from sim.trace.descriptions import name_of, why_waiting
-from sim.trace.events import ChoiceAsked, Reason
+from sim.trace.events import ROBOT_THREAD, ChoiceAsked, Reason
 from sim.trace.timeline import Timeline
 
 
@@ -43,6 +43,8 @@ def options_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[ChoiceOpti
             where = f"{function if callback == function else f'{callback} in {function}'}, line {line}"
         elif callback:
             where = f"{callback} ends"
+        elif thread == ROBOT_THREAD:
+            where, about = "the robot goes on", []
         else:
             where = f"{about.pop()} {'looks for work' if number in question.pooled else 'begins'}"
         yield ChoiceOption(f"{where} ({', '.join(about)})" if about else where, file, line)

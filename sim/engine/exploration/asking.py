@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Callable, Hashable
+from itertools import takewhile
 from types import FrameType
 
 from sim.clock import VirtualClock
@@ -9,7 +10,8 @@ from sim.clock.moves import Choice, MovesSchedule
 from sim.clock.virtual_threads import VirtualThread
 from sim.engine.programs.program import pooled_threads
 from sim.engine.watchdogs.wait_descriptions import waits
-from sim.probes.own_code import own_frame, place_of
+from sim.interpreter.function_marks import calls_the_program
+from sim.probes.own_code import outwards, own_frame, place_of
 from sim.ros.middleware.host import Host
 from sim.trace.events import AnyEvent, ChoiceAsked
 from sim.trace.events.fields import SourcePlace
@@ -57,7 +59,7 @@ class AskedChoices:
         finally:
             self._clock.no_switching -= 1
         threads = [each for each in choice.options if isinstance(each, VirtualThread)]
-        frames = [own_frame(sys._current_frames().get(each.ident)) for each in threads]
+        frames = [_frame_of(each) for each in threads]
         others = sorted(set(self._clock.threads).difference(choice.options), key=lambda each: each.name)
         kept = tuple(
             f"{position(each)} waits for time or work" if each.wants is None else waits(each)
@@ -75,6 +77,14 @@ class AskedChoices:
                 tuple(place for place, each in enumerate(threads) if each.ident in pooled_threads()),
             )
         )
+
+
+def _frame_of(thread: VirtualThread) -> FrameType | None:
+    """The innermost frame of the program on a thread; None in what calls a callback, before and behind it."""
+    top = sys._current_frames().get(thread.ident)
+    own = own_frame(top)
+    inside = takewhile(lambda frame: frame is not own, outwards(top))
+    return None if any(frame in calls_the_program for frame in inside) else own
 
 
 def _line(frame: FrameType | None) -> SourcePlace:

@@ -61,6 +61,9 @@ SENSOR_TOPICS = {"/odom": "nav_msgs/msg/Odometry", "/scan": "sensor_msgs/msg/Las
 ROBOT_SERVICES = ("/reset_world", "/motor_power")
 """The services that the robot offers."""
 
+ROBOT_THREAD = "robot_driver"
+"""The thread that drives it on the model."""
+
 
 class VelocityCommanded(TraceEvent, frozen=True, tag="cmd_vel"):
     """The robot's driver took a velocity command."""

@@ -7,9 +7,12 @@ import msgspec
 
 from cbtui.engines.follow import FollowedRun
 from cbtui.engines.session import ProcessSession
-from cbtui.runs.setup.lesson_setup import RunRequest
+from cbtui.runs.setup.lesson_setup import RunRequest, setup_for
+from cbtui.widgets.choice import options_of
+from lessons.catalogue import find
 from sim.engine.commands import Choose, Command, Resume
 from sim.trace.events import AnyEvent, ChoiceAsked, CommandGiven, CommandKind, Printed, RunEnded, ThreadChosen
+from sim.trace.timeline import Timeline
 
 PROGRAM = """
 import threading, time
@@ -148,3 +151,18 @@ def test_workers_of_a_pool_are_told_from_other_threads(tmp_path: Path) -> None:
     assert not any(
         event.pooled for event in asked(tmp_path, lambda _: Choose(0)) if isinstance(event, ChoiceAsked)
     )
+
+
+def test_a_thread_that_has_left_its_callback_is_not_told_to_be_at_the_line_that_spins() -> None:
+    setup = setup_for(find("single-thread"), speed=None)
+    setup = msgspec.structs.replace(setup, seed="ask:", explored_from=950_000_000, until=1_100_000_000)
+    timeline, told = Timeline(), []
+    with FollowedRun(setup, ProcessSession) as run:
+        run.start()
+        run.limit(60)
+        for batch in run:
+            timeline.extend(batch)
+            for question in [each for each in batch if isinstance(each, ChoiceAsked)]:
+                told += [option.text for option in options_of(question, timeline)]
+                run.session.send(Choose(0))
+    assert told[:2] == ["timer_callback ends (runs now, MainThread)", "the robot goes on"]
