@@ -232,7 +232,9 @@ class Engine:
         self._shutdown.finish(outcome)
 
     def _tell_of_error(self, sentence: str, thread_died: str, place: SourcePlace) -> None:
-        kind = NoticeKind.THREAD_DIED if thread_died else NoticeKind.OTHER
+        # What a thread raises as the program ends took nothing away from the run.
+        died = thread_died and not self._shutdown.has_begun
+        kind = NoticeKind.THREAD_DIED if died else NoticeKind.OTHER
         self._outbox.record(
             Notice(self._clock.now(), Severity.ERROR, sentence, kind=kind, place=place, error=thread_died)
         )

@@ -17,6 +17,7 @@ from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.trace.events import ExceptionSurfaced, RunEnded
 from sim.trace.timeline import Timeline
 from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, executor_of, once
+from tests.support.engine_runs import run_program
 from tests.support.simulation import Simulation, Trace
 
 
@@ -372,3 +373,33 @@ def test_only_an_exception_on_a_worker_is_of_the_kind_that_may_get_lost(
     run = ended_by(add_to, threads)
     found = run.one("program-raised")
     assert found.rule.kind(found, run.timeline) == kind
+
+
+RAISES_IN_A_THREAD = """\
+import threading
+import time
+import rclpy
+from rclpy.node import Node
+
+rclpy.init()
+node = Node("n")
+node.create_timer(0.5, lambda: None)
+
+def work():
+    while {condition}:
+        time.sleep(0.1)
+    raise RuntimeError("late")
+
+threading.Thread(target=work).start()
+rclpy.spin(node)
+"""
+
+
+@pytest.mark.parametrize(
+    ("condition", "told"), [("rclpy.ok()", []), ("time.sleep(0.5)", ["thread-raised"])], ids=["end", "before"]
+)
+def test_what_a_thread_raises_as_the_program_ends_took_nothing_from_the_run(
+    condition: str, told: list[str], tmp_path: Path
+) -> None:
+    run = run_program(tmp_path, RAISES_IN_A_THREAD.format(condition=condition), 2.0)
+    assert [each.rule.id for each in diagnose(run.timeline)] == told
