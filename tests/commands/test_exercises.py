@@ -200,7 +200,9 @@ def test_a_file_that_is_named_after_its_lesson_is_checked_and_another_one_needs_
     here: Path, capsys: pytest.CaptureFixture[str], refused: Refused
 ) -> None:
     (here / "my_own.py").write_text(STARTER)
-    assert refused("check", "my_own.py").endswith("cbtui check LESSON my_own.py")
+    told = refused("check", "my_own.py")
+    assert "cbtui check LESSON my_own.py; " in told
+    assert told.endswith("what goes wrong in a node of your own is told by cbtui run my_own.py")
     (here / "split_groups.py").write_text(STARTER)
     assert cli.main(["check", "./split_groups.py"]) == 1
     assert "1 of 5 checks passed" in capsys.readouterr().out.splitlines()

@@ -105,13 +105,9 @@ def _is_left(lock: HeldResource | None) -> bool:
     """Whether the function that took a lock has returned, or awaits."""
     if lock is None or lock.holder is None or lock.taken_at is None:
         return False
-    top = sys._current_frames().get(lock.holder.ident)
-    # A call that waits to take it where it was taken is a later one of the same function.
-    later = own_frame(top) if lock.holder.wants is lock else None
     code, offset = lock.taken_at
-    return all(
-        frame.f_code is not code or (frame is later and frame.f_lasti == offset) for frame in outwards(top)
-    )
+    stack = outwards(sys._current_frames().get(lock.holder.ident))
+    return all(frame.f_code is not code or frame.f_lasti == offset for frame in stack)  # it takes it again
 
 
 def _ended(lock: HeldResource) -> str:
