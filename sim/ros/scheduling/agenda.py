@@ -6,6 +6,7 @@ with attributes of the same names.
 
 import weakref
 from heapq import heappop, heappush
+from itertools import count
 from typing import TypeVar
 
 from sim.probes.probe import Probe
@@ -18,7 +19,7 @@ from sim.trace.events import Reason
 
 EntityT = TypeVar("EntityT", bound="Entity")
 
-
+_numbers = count()
 MANY = 1_000
 """The number of entities of a node that is reported, if a callback made the last one."""
 
@@ -33,7 +34,8 @@ class Agenda:
         """The waitables that the program wrote; an executor polls whether they are ready."""
         self._probe = probe
         self._orders = 0
-        self._pending: dict[Entity, None] = {}
+        self.ready: dict[Entity, int] = {}
+        """The ready entities, numbered in the order in which those of all nodes became ready."""
         self._timer_queue: list[tuple[int, int, Entity]] = []
         self._executor: weakref.ref[Executor] | None = None
         self._latest_executor: weakref.ref[Executor] | None = None
@@ -120,7 +122,7 @@ class Agenda:
         elif not (entity.pending or entity.destroyed):
             entity.pending = True
             entity.ready_since = now
-            self._pending[entity] = None
+            self.ready[entity] = next(_numbers)
 
     def of(self, kind: type[EntityT]) -> tuple[EntityT, ...]:
         """The entities of a class, oldest first."""
@@ -128,7 +130,7 @@ class Agenda:
 
     def entity_ready(self, entity: Entity) -> None:
         """An entity became ready."""
-        self._pending[entity] = None
+        self.ready[entity] = next(_numbers)
         executor = self.executor
         if executor is not None:
             executor._entity_ready(entity)
@@ -143,7 +145,7 @@ class Agenda:
 
     def entity_idle(self, entity: Entity) -> None:
         """An entity is no longer ready."""
-        self._pending.pop(entity, None)
+        self.ready.pop(entity, None)
         self._probe.wait_ended(entity)
 
     def timer_set(self, timer: Entity) -> None:
@@ -166,14 +168,14 @@ class Agenda:
             for each in watchers:
                 each.wake()
 
-    def collect_due(self, now: int) -> dict[Entity, None]:
+    def collect_due(self, now: int) -> dict[Entity, int]:
         """The ready entities, including the timers that are due."""
         while (due := self.next_due()) is not None and due <= now:
             timer = heappop(self._timer_queue)[2]
             timer.pending = True
             timer.ready_since = due
-            self._pending[timer] = None
-        return self._pending
+            self.ready[timer] = next(_numbers)
+        return self.ready
 
     def next_due(self) -> int | None:
         """The due time of the next timer that is not ready yet; None without such a timer."""

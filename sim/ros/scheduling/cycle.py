@@ -20,7 +20,7 @@ from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import Entity, OwnerNode
 from sim.ros.scheduling.pool import Pool
 from sim.ros.scheduling.task import Task
-from sim.ros.scheduling.wait_set import snapshot
+from sim.ros.scheduling.wait_set import in_order_of_readiness, snapshot
 
 Work: TypeAlias = "Entity | Task[Any]"
 """The work that a cycle yields."""
@@ -86,8 +86,6 @@ class Cycle:
         self._gathering = next(_gatherings)
         self._groups_left_out: set[CallbackGroup] = set()
         self._woken_in: int | None = None
-        self._found_first: deque[Entity] | None = None
-        """What the present wait would have found when the second callback since it began was begun."""
 
     @property
     def about_to_look(self) -> bool:
@@ -266,15 +264,19 @@ class Cycle:
         return not self._released()
 
     def _end_of_wait(self, awaited: deque[Entity]) -> deque[Entity] | None:
-        """What the wait found, of all that it could; None: it ended before any of that became ready.
+        """What the wait found, of all that it could; None: it ended, and another one began, before that.
 
-        The wake-up of the executor, for example by the start of a callback, races with what the callback
-        sends, and with what the callbacks do that the same thread runs next.
+        The wake-up of the executor, for example by the start of a callback, races with what comes then: the
+        wait finds the first of that, or nothing, and the executor may get the interpreter much later.
         """
         if self._woken_in is None and not self._tasks:
             return awaited
-        first = self._found_first
-        return (awaited, None, first)[self._clock.choose(3 if first else 2)]
+        fewest = 0 if self._tasks else 1
+        chosen = self._clock.choose(2 + max(len(awaited) - fewest, 0))
+        if chosen < 2:
+            return None if chosen else awaited
+        first = set(in_order_of_readiness(awaited)[: chosen - 2 + fewest])
+        return deque(each for each in awaited if each in first)
 
     def _ready(self, now: int) -> deque[Entity]:
         found = snapshot(self.view, now)
@@ -338,8 +340,6 @@ class Cycle:
 
     def entered(self, entity: Entity) -> None:
         """A handler starts: its entity was handed out, and the executor is woken."""
-        if self._woken_in == self._clock.turn and self.waits and self._found_first is None:
-            self._found_first = self._awaited(self._ready(self._clock.now()))
         self.woken()
         entity.entered_in = self._gathering
 
@@ -371,7 +371,7 @@ class Cycle:
         if self.pool is not None:
             self._gathering = next(_gatherings)
             self._groups_left_out.clear()
-            self._woken_in = self._found_first = None
+            self._woken_in = None
 
     # Tasks
 

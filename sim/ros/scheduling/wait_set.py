@@ -30,3 +30,8 @@ def snapshot(nodes: Iterable[OwnerNode], now: int) -> deque[Entity]:
             ready.extend(let_in)
     ready.extendleft(reversed(waitables))
     return ready
+
+
+def in_order_of_readiness(ready: Iterable[Entity]) -> list[Entity]:
+    """Ready entities in the order in which they became ready."""
+    return sorted(ready, key=lambda each: each.node._agenda.ready[each])
