@@ -1,15 +1,15 @@
 """Whether real ROS 2 goes as the model: systems that are decided, run on both as often as it takes."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from enum import Enum
 from itertools import repeat
 from typing import NamedTuple
 
-from sim.clock.moves import Moves
 from tests.conformance.drawing import drawn
 from tests.conformance.programs import program
 from tests.conformance.running import Said, run_all
+from tests.conformance.steered import Steering
 from tests.conformance.systems import System
 
 GAP = 0.05
@@ -90,10 +90,13 @@ def _until(said: Said, end: float) -> Said:
 
 
 def on_model(
-    systems: Iterable[System], distro: str, moves: Iterable[Moves | None] = repeat(None)
-) -> list[Said | None]:
-    """What the model says of systems, with its usual order of threads, or with moves for each."""
-    return list(run_all(map(program, systems), None, 12, distro, moves))
+    systems: Iterable[System],
+    distro: str,
+    steering: Iterable[Steering | None] = repeat(None),
+    at_once: int = 12,
+) -> Iterator[Said | None]:
+    """What the model says of systems, with its usual order of threads, or as each is steered."""
+    return run_all(map(program, systems), None, at_once, distro, steering)
 
 
 def _decided_until(said: Said, end: float, gap: float) -> float:

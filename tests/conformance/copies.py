@@ -1,11 +1,10 @@
 """Runs programs in copies of a process that has imported rclpy; a script, in any Python that has one.
 
-Standard input has a line of JSON for each program: its file, one for its output, and what its threads choose
-otherwise than first come, first served, as numbers of choices and options in turn, or null. The output is
-printed when the program has ended. With the arguments ``model DISTRO`` rclpy is the model on virtual time. A
-program finds among its globals ``moments``, at which anything fell due on the model (nanoseconds), and
-``choices``, as ``Steered.options``; or ``late``: when, and by how much, the machine was late to wake a thread
-of it (seconds).
+Standard input has a line of JSON for each program: its file, one for its output, and the ``Steering`` of its
+threads, or null for first come, first served. The output is printed when the program has ended. With the
+arguments ``model DISTRO`` rclpy is the model on virtual time. A program finds among its globals ``moments``,
+at which anything fell due on the model (nanoseconds), and ``choices``, as ``Steered.made``; or ``late``:
+when, and by how much, the machine was late to wake a thread of it (seconds).
 """
 
 import json
@@ -15,27 +14,29 @@ import signal
 import sys
 import threading
 import time
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 LONGEST = 60
 """Real seconds after which a program is ended."""
+_IMPORTED_ONCE = ("rclpy.action", "rclpy.experimental", "sim.ros.middleware.host", "test_msgs.action")
+"""What programs of the model use, which takes longer than to run them."""
 
 
-def on_model(source: str, distro: str, moves: list[int] | None) -> None:
+def on_model(source: str, distro: str, steering: list[Any] | None) -> None:
     """Run a program on the model, on virtual time, as a distribution of ROS 2 behaves."""
     from sim.clock import VirtualClock
     from sim.clock.stdlib import live_on
     from sim.probes.probe import SilentProbe
     from sim.releases.profile import Profile
     from sim.ros.middleware.host import Host, install
-    from tests.conformance.steered import Steered
+    from tests.conformance.steered import Steered, Steering
 
     program: dict[str, Any] = {"__name__": "__main__", "moments": (moments := {0})}
-    chosen = dict(zip(moves[::2], moves[1::2], strict=True)) if moves else {}
-    steered = Steered(chosen, lambda: len(program.get("said", ())))
-    program["choices"] = steered.options
-    clock = VirtualClock(schedule=None if moves is None else steered)
+    steered = Steered(Steering(*steering or ()), lambda: len(program.get("said", ())))
+    program["choices"] = steered.made
+    clock = VirtualClock(schedule=None if steering is None else steered)
     probe = SilentProbe(clock)
     probe.visible = True  # so that time stops over where a timer falls due that nobody waits for
     host = Host(clock, probe, profile=Profile.named(distro))
@@ -70,7 +71,7 @@ def _oversleep(late: list[tuple[float, float]]) -> None:
         late.append((due, time.monotonic() - due))
 
 
-def run(source: str, output: str, moves: list[int] | None, model_of: str | None) -> None:
+def run(source: str, output: str, steering: list[Any] | None, model_of: str | None) -> None:
     """Run a program in this process, which ends with it."""
     signal.signal(signal.SIGALRM, signal.SIG_DFL)  # whoever started this may ignore it
     signal.alarm(LONGEST)
@@ -79,7 +80,7 @@ def run(source: str, output: str, moves: list[int] | None, model_of: str | None)
         if model_of is None:
             on_ros(source)
         else:
-            on_model(source, model_of, moves)
+            on_model(source, model_of, steering)
     finally:
         os._exit(1)
 
@@ -91,6 +92,8 @@ def main() -> None:
         from sim.ros import importing
 
         importing.install()
+        for name in _IMPORTED_ONCE:
+            import_module(name)
     import std_srvs.srv  # type: ignore[import-untyped]  # noqa: F401
 
     assert threading.active_count() == 1
@@ -103,10 +106,10 @@ def main() -> None:
                 line += os.read(0, 1)
             ended = not line
             if line:
-                program, output, moves = json.loads(line)
+                program, output, steering = json.loads(line)
                 child = os.fork()
                 if child == 0:
-                    run(Path(program).read_text(), output, moves, model_of)
+                    run(Path(program).read_text(), output, steering, model_of)
                 running[child] = output
         child = os.waitpid(-1, 0 if ended else os.WNOHANG)[0] if running else 0
         if child:

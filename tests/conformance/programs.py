@@ -182,10 +182,10 @@ for name, executor in executors.items():
 time.sleep({end:.6f})
 ended = time.monotonic() - began
 lines = [f"{{at:.6f}} {{what}}" for at, what in said]
-chosen_among = globals().get("choices", ())
+made = globals().get("choices", ())
 falls_due = [at / 1e9 - began for at in globals().get("moments", ())]
 moments = sorted(at for at in falls_due if at > 1e-4)
-choices = [f"choice {{place}} {{number}} {{preempts:d}}" for place, number, preempts in chosen_among]
+choices = [f"choice {{line}} {{options}} {{chosen}}" for line, options, chosen in made]
 late_at = [late for at, late in globals().get("late", ()) if at > began]
 late = max(ended - {end:.6f}, sum(overslept) * {of_gap}, *late_at)
 print(*lines, "moments", *moments, *choices, f"late {{late:.6f}}", sep="\\n", flush=True)

@@ -5,13 +5,13 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable, Iterator
-from itertools import chain, repeat
+from itertools import repeat
 from pathlib import Path
 from typing import NamedTuple
 
-from sim.clock.moves import Moves
 from sim.real.programs import claimed_domain, unbootstrapped
 from tests.conformance import copies
+from tests.conformance.steered import Choice, Steering
 
 
 class Said(NamedTuple):
@@ -23,9 +23,8 @@ class Said(NamedTuple):
     """On the model: when anything fell due."""
     late: float = 0.0
     """On real ROS 2: how late the machine was at most to wake a thread of the program."""
-    choices: tuple[tuple[int, int, bool], ...] = ()
-    """On the model: the choices of what goes on next, each behind how many words, among how many, and whether
-    one of them is that the running thread goes on."""
+    choices: tuple[Choice, ...] = ()
+    """On the model: the choices of what goes on next."""
 
 
 def run_all(
@@ -33,14 +32,14 @@ def run_all(
     python: str | None,
     at_once: int,
     model_of: str = "",
-    moves: Iterable[Moves | None] = repeat(None),
+    steering: Iterable[Steering | None] = repeat(None),
 ) -> Iterator[Said | None]:
     """Run programs on the ROS 2 of an interpreter, or on the model (None); None for one that said nothing.
 
-    ``model_of`` is the distro whose named behaviours the model has; ``moves`` has, for each program, what the
-    model's threads choose otherwise than first come, first served; of None no choices are told.
+    ``model_of`` is the distro whose named behaviours the model has; ``steering`` has, for each program, what
+    the model's threads choose; None: first come, first served, and no choices are told. The next of either is
+    asked for when fewer than ``at_once`` programs run.
     """
-    sources = list(programs)
     domain, claim = claimed_domain()
     alone = {
         "ROS_DOMAIN_ID": str(domain),
@@ -65,19 +64,23 @@ def run_all(
         with process as running:
             assert running.stdin is not None
             assert running.stdout is not None
-            for place, (source, chosen) in enumerate(zip(sources, moves, strict=False)):
-                file = Path(folder, f"{place}.py")
+            ended: set[str] = set()
+            given = told = 0
+            for source, steered in zip(programs, steering, strict=False):
+                file = Path(folder, f"{given}.py")
                 file.write_text(source)
-                if place >= at_once:
-                    running.stdout.readline()
-                flat = None if chosen is None else [*chain(*chosen.items())]
-                told = [str(file), str(file.with_suffix(".out")), flat]
-                running.stdin.write(json.dumps(told) + "\n")
+                running.stdin.write(json.dumps([str(file), str(file.with_suffix(".out")), steered]) + "\n")
                 running.stdin.flush()
+                given += 1
+                if given >= at_once:
+                    ended.add(running.stdout.readline().rstrip())
+                while (output := Path(folder, f"{told}.out")) and str(output) in ended:
+                    yield _read(output)
+                    told += 1
             running.stdin.close()
             running.stdout.read()
-        for place in range(len(sources)):
-            yield _read(Path(folder, f"{place}.out"))
+            for place in range(told, given):
+                yield _read(Path(folder, f"{place}.out"))
 
 
 def _read(path: Path) -> Said | None:
@@ -86,11 +89,11 @@ def _read(path: Path) -> Said | None:
         return None
     told = [line.split(" ", 1) for line in said.splitlines() if line]
     *lines, late = measured.splitlines()
-    chosen = [line.split()[1:] for line in lines if line.startswith("choice")]
+    choices = [line.split()[1:] for line in lines if line.startswith("choice")]
     return Said(
         tuple(what for _, what in told),
         tuple(float(at) for at, _ in told),
         tuple(float(line) for line in lines if not line.startswith("choice")),
         float(late.removeprefix("late ")),
-        tuple((int(place), int(number), preempts == "1") for place, number, preempts in chosen),
+        tuple(Choice(*map(int, choice)) for choice in choices),
     )

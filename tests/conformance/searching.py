@@ -3,15 +3,12 @@
 from collections import defaultdict, deque
 from collections.abc import Iterable, Iterator
 from functools import partial
-from heapq import heappop, heappush
-from itertools import groupby, islice
+from itertools import islice, repeat
 from random import Random
 
-from sim.clock.moves import Moves
 from tests.conformance.comparing import DIFFERENT, Outcome, Result, on_model, outcome, place_of, words_of
 from tests.conformance.running import Said
-
-_RUNS_AT_ONCE = 12
+from tests.conformance.steered import Choice, Steering
 
 
 def searched(results: Iterable[Result], distro: str, runs: int) -> list[Result]:
@@ -25,59 +22,53 @@ def searched(results: Iterable[Result], distro: str, runs: int) -> list[Result]:
 
 
 class Search:
-    """Best first, mostly: what goes longest as a real run is tried with one choice more.
+    """Goes on from runs that are alike for long: back by a few lines, one other choice, then any choices.
 
-    Half of the tries go on from what is alike for less long, since what is longest so may be a dead end. A
-    thread is often left at several places in turn with the same effect, so the places within a stretch are
-    tried spread out, not in a row; and runs that go on alike behind their last choice are followed once.
+    An order mostly needs several choices, of which nothing is seen before the last one, so what comes behind
+    the other choice is random, to the end of the run. Half of the tries go on from what is alike for less
+    long, since what is longest so may be a dead end.
     """
 
     def __init__(self, result: Result, distro: str) -> None:
         self._case = result.case
         self._real = result.real
         self._distro = distro
-        self._untried: dict[int, list[tuple[float, float, Moves]]] = defaultdict(list, {0: [(0.0, 0.0, {})]})
-        """By how many lines are alike, each a heap: the cheapest first."""
-        self._random = Random(1)
-        self._followed: set[tuple[object, ...]] = set()
+        self._known: dict[int, list[tuple[Choice, ...]]] = defaultdict(list)
+        """By how many lines are alike, the choices up to there."""
+        self._random = Random(2)
+        self._seen: set[tuple[object, ...]] = set()
 
     def finds(self, runs: int) -> bool:
         """Whether one of so many runs of the model goes as a real one."""
-        for _ in range(0, runs, _RUNS_AT_ONCE):
-            tried = list(islice(self._next(), _RUNS_AT_ONCE))
-            said = on_model([self._case.system] * len(tried), self._distro, tried)
-            for moves, model in zip(tried, said, strict=True):
-                if model is not None and self._is_it(moves, model):
-                    return True
-        return False
+        said = on_model(repeat(self._case.system), self._distro, self._next(), at_once=1)
+        return any(model is not None and self._is_it(model) for model in islice(said, runs))
 
-    def _next(self) -> Iterator[Moves]:
-        """What to try next, as long as there is anything."""
-        while levels := sorted((alike for alike, untried in self._untried.items() if untried), reverse=True):
-            best, *others = levels
+    def _next(self) -> Iterator[Steering]:
+        """What to try next."""
+        yield Steering()
+        while self._known:
+            alike, *others = sorted(self._known, reverse=True)
             while others and self._random.random() < 0.5:
-                best, *others = others
-            yield heappop(self._untried[best])[-1]
+                alike, *others = others
+            choices = self._random.choice(self._known[alike])
+            line = choices[-1].line
+            while line and self._random.random() < 0.6:
+                line -= 1
+            line = max((each.line for each in choices if each.line <= line), default=choices[0].line)
+            place = self._random.choice([place for place, each in enumerate(choices) if each.line == line])
+            chosen = [each.chosen for each in choices[: place + 1]]
+            chosen[place] = self._random.choice([*{*range(choices[place].options)} - {chosen[place]}])
+            yield Steering(chosen, self._random.getrandbits(32))
 
-    def _is_it(self, moves: Moves, model: Said) -> bool:
+    def _is_it(self, model: Said) -> bool:
         if outcome(self._case._replace(model=model), list(self._real)) is Outcome.SAME:
             return True
-        alike, place = max(self._alike(model, real) for real in self._real)
-        last = max(moves, default=-1)
-        behind = (model.words, model.choices[last + 1 :])
-        if behind in self._followed:
-            return False
-        self._followed.add(behind)
-        left = range(last + 1, len(model.choices))
-        for (said, options, preempts), stretch in groupby(left, model.choices.__getitem__):
-            if said > place:
-                break
-            preemptions = sum(model.choices[each][2] for each in moves) + preempts
-            cost = len(moves) + 2 * preemptions + 0.1 * (place - said)
-            for turn, number in enumerate(_spread_out(list(stretch))):
-                for option in range(1, options):
-                    rank = (cost + 0.15 * turn.bit_length(), self._random.random())
-                    heappush(self._untried[alike], (*rank, {**moves, number: option}))
+        alike, first = max(self._alike(model, real) for real in self._real)
+        choices = tuple(each for each in model.choices if each.line <= first)
+        run = (model.words[: first + 1], tuple(each[:2] for each in choices))
+        if choices and run not in self._seen:
+            self._seen.add(run)
+            self._known[alike].append(choices)
         return False
 
     def _alike(self, model: Said, real: Said) -> tuple[int, int]:
@@ -94,8 +85,3 @@ class Search:
                 words.clear()
                 first = min(first, place)
         return alike, first
-
-
-def _spread_out(numbers: list[int]) -> list[int]:
-    """Consecutive numbers in another order, so that any first few of them are far apart."""
-    return sorted(numbers, key=lambda each: f"{each - numbers[0]:020b}"[::-1])

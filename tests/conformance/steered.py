@@ -1,20 +1,42 @@
-"""A schedule that makes each choice as it is told, and tells which choices there were."""
+"""A schedule that makes the first choices as it is told, then others, and tells which there were."""
 
-from collections.abc import Callable, Hashable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Sequence
+from random import Random
+from typing import NamedTuple
 
 from sim.clock.schedule import NO_ACCESSES, Accesses, Schedule
 
 
+class Choice(NamedTuple):
+    """A choice that was made behind so many lines of a program, among so many options."""
+
+    line: int
+    options: int
+    chosen: int
+
+
+class Steering(NamedTuple):
+    """What is chosen first; then the seed chooses at random; without one, the first option is chosen."""
+
+    chosen: Sequence[int] = ()
+    seed: int | None = None
+
+
 class Steered(Schedule):
-    """First come, first served, but for some choices, by their numbers from 0."""
+    """Chooses as ``steering`` has it; ``line`` tells how many lines there are."""
 
     explores = True
+    _RATES = (0.0, 0.02, 0.1, 0.4)
+    """How often another option than the first one is chosen; the seed draws one for its run."""
 
-    def __init__(self, moves: Mapping[int, int], said: Callable[[], int]) -> None:
-        self.options: list[tuple[int, int, bool]] = []
-        """For each choice that there was: behind how many lines, among how many, whether to go on is one."""
-        self._moves = moves
-        self._said = said
+    def __init__(self, steering: Steering, line: Callable[[], int]) -> None:
+        self.made: list[Choice] = []
+        self._told = steering.chosen
+        self._random = Random(steering.seed)
+        self._rate, leaving = (0.0, 0.0) if steering.seed is None else self._random.choices(self._RATES, k=2)
+        self._rate_of_leaving = leaving / 4
+        """A running thread is left seldom, for there are many places."""
+        self._line = line
         self._following: Hashable = None
 
     def next(self, ready: Sequence[Hashable]) -> int:
@@ -24,22 +46,26 @@ class Steered(Schedule):
 
     def yields(self, running: Hashable, ready: Sequence[Hashable], accesses: Accesses = NO_ACCESSES) -> bool:
         """A choice among going on and each of the others."""
-        place = self._choose(1 + len(ready), preempts=True)
+        place = self._choose(1 + len(ready), self._rate_of_leaving)
         if place:
             self._following = ready[place - 1]
         return place > 0
 
     def choose(self, number: int) -> int:
-        """The option that the moves want, if there is it; else the first."""
-        return self._choose(number, preempts=False)
+        """A choice."""
+        return self._choose(number, self._rate)
 
     def hands_over(self) -> bool:
         """A choice, too."""
         return self.choose(2) == 0
 
-    def _choose(self, number: int, *, preempts: bool) -> int:
+    def _choose(self, number: int, rate: float) -> int:
         if number < 2:
             return 0
-        self.options.append((self._said(), number, preempts))
-        move = self._moves.get(len(self.options) - 1, 0)
-        return move if move < number else 0
+        made = len(self.made)
+        if made < len(self._told):
+            chosen = min(self._told[made], number - 1)
+        else:
+            chosen = self._random.randrange(number) if self._random.random() < rate else 0
+        self.made.append(Choice(self._line(), number, chosen))
+        return chosen

@@ -10,6 +10,7 @@ from tests.conformance.programs import program
 from tests.conformance.recorded import against_recorded
 from tests.conformance.running import run_all
 from tests.conformance.searching import Search
+from tests.conformance.steered import Steering
 from tests.real.programs import needs_ros
 
 JAZZY = "jazzy@7.1.5"
@@ -46,7 +47,7 @@ def test_a_system_ends_at_no_moment_of_its_own(seed: str) -> None:
 def test_an_order_that_threads_can_come_to_is_found_and_another_one_is_not() -> None:
     case = next(each for each in cases(12, seed=5, distro=JAZZY) if each.system.executors == (4,))
     for number in range(60):
-        moved = on_model([case.system], JAZZY, [{number: 1}])[0]
+        moved = next(on_model([case.system], JAZZY, [Steering((*[0] * number, 1))]))
         assert moved is not None
         found = Result(case, outcome(case, [moved]), (moved,))
         if found.outcome is Outcome.ORDER:
@@ -58,7 +59,7 @@ def test_an_order_that_threads_can_come_to_is_found_and_another_one_is_not() -> 
     assert not Search(Result(case, Outcome.ORDER, (backwards,)), JAZZY).finds(48)
 
 
-@pytest.mark.slow
+@pytest.mark.bulk
 def test_an_order_that_real_ros_2_took_is_found_where_one_place_of_some_hundred_gives_it() -> None:
     # Jazzy 7.1.5, 1 run of 4: the second goal is accepted before a task of the first one begins.
     (case,) = decided([("1720-35", drawn("1720-35"))], JAZZY)
@@ -105,7 +106,7 @@ def test_an_order_that_real_ros_2_took_is_found_where_an_executor_goes_ahead_of_
         words=(*words[:14], *(words[place] for place in moved), *words[26:]),
         times=(*times[:19], times[20], *times[22:24], *times[22:]),
     )
-    assert Search(Result(case, Outcome.ORDER, (real,)), "kilted@9.1.2").finds(48)
+    assert Search(Result(case, Outcome.ORDER, (real,)), "kilted@9.1.2").finds(120)
 
 
 @needs_ros
