@@ -20,6 +20,8 @@ from sim.trace.events import Reason
 EntityT = TypeVar("EntityT", bound="Entity")
 
 _numbers = count()
+"""The order in which entities of all nodes become ready."""
+
 MANY = 1_000
 """The number of entities of a node that is reported, if a callback made the last one."""
 
