@@ -83,12 +83,13 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
     for thread in timeline.threads:
         positions += timeline.program_waits_on(thread, Window(at, at + 1))
     since = [(_there_since(position, timeline), position) for position in positions]
-    for start, position in sorted(since, key=itemgetter(0), reverse=True):
+    for start, position in sorted(since, key=itemgetter(0)):
         number = groups.index(timeline.entities[position.entity].group) if position.entity else -1
         *calls, here = position.frames
         for frame in (*calls, here):
             file = files.of(frame.file)
-            if file is not None and (frame is here or frame.line not in found[file]):
+            known = None if file is None else found[file].get(frame.line)
+            if file is not None and (known is None or (frame is here and not known.texts)):
                 texts = tuple(_at_line(position, at - start, timeline, file)) if frame is here else ()
                 found[file][frame.line] = LineMark(texts, number)
     return dict(found)
