@@ -129,13 +129,13 @@ def _ways_to_say(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def _texts(diagnosis: Diagnosis) -> Iterator[str]:
-    """Yield texts, the fullest first: then short names, no time, no count, no brackets, the first clauses."""
+    """Yield texts, the fullest first: short names, no time, the first clauses, nothing in brackets."""
     yield from filter(None, (diagnosis.at_length, diagnosis.text))
     brief = [sub(r"\w+_callback\b(?!\.py)", lambda found: short_name(found[0]), diagnosis.text)]
     brief.append(brief[0].removeprefix(diagnosis.time))
     brief.append(sub(r" \(\d+ \w+ in all\)$", "", brief[-1]))
-    brief.append(sub(r" \([^)]*\)", "", brief[-1]))
     yield from brief
     for text in brief:
         for end in reversed(list(finditer(r"[;.] ", text))):
             yield text[: end.start()]
+    yield sub(r" \([^)]*\)", "", brief[-1])
