@@ -112,6 +112,7 @@ async def test_a_prompt_with_completions(pytestconfig: pytest.Config) -> None:
         await settle(pilot)
         await press(pilot, "colon")
         app.screen.query_one(Prompt).insert_text_at_cursor("ros2 topic ")
+        await press(pilot, "tab")
         app.engines.latest._deliver([LineCompleted(ns(5.0), 3, 11, ("echo", "hz", "info", "list", "pub"))])
         await settle(pilot)
         pictures = pictures_of(app, [("shell", ShellView), ("keys-of-the-prompt", KeyBar)])
