@@ -2,37 +2,41 @@
 
 import ast
 import linecache
-from collections.abc import Mapping
 from functools import lru_cache
-from types import CodeType, FunctionType
-from typing import Any
-
-_Cells = Mapping[str, tuple[Any, Any]]
+from types import CellType, CodeType, FunctionType
+from weakref import ref
 
 
 class SharedVariables:
-    """Tells of each function made at a line which variables it shares with the one made before it."""
+    """Tells of each function made at a line which variables it shares with the one made before it.
+
+    It keeps neither functions nor values alive.
+    """
 
     def __init__(self) -> None:
-        self._latest: dict[tuple[CodeType, tuple[str, int]], _Cells] = {}
+        self._latest: dict[tuple[CodeType, tuple[str, int]], tuple[ref[FunctionType], dict[str, int]]] = {}
 
     def of(self, function: object, place: tuple[str, int]) -> list[str]:
         """Return the loop's variables that have changed since such a function was made at a line."""
         if not isinstance(function, FunctionType) or not function.__closure__ or not place[1]:
             return []
-        code, before = function.__code__, self._latest.get((function.__code__, place), {})
-        named = zip(code.co_freevars, function.__closure__, strict=True)
-        now = {name: (cell, _content(cell)) for name, cell in named}
-        self._latest[code, place] = now
+        cells = _cells(function)
+        values = {name: id(_content(cell)) for name, cell in cells.items()}
+        before, seen = self._latest.get((function.__code__, place), (None, {}))
+        self._latest[function.__code__, place] = ref(function), values
+        other = None if before is None else before()
+        shared = {} if other is None else _cells(other)
         changed = [
-            name
-            for name, (cell, value) in now.items()
-            if name in before and before[name][0] is cell and before[name][1] is not value
+            name for name, cell in cells.items() if shared.get(name) is cell and seen[name] != values[name]
         ]
         return [name for name in changed if name in _of_loops(*place)] if changed else []
 
 
-def _content(cell: Any) -> object:
+def _cells(function: FunctionType) -> dict[str, CellType]:
+    return dict(zip(function.__code__.co_freevars, function.__closure__ or (), strict=True))
+
+
+def _content(cell: CellType) -> object:
     try:
         return cell.cell_contents
     except ValueError:  # not assigned yet

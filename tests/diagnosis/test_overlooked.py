@@ -1,5 +1,7 @@
 """What a program makes nothing of: a future's result before there is one, and the refusal of a parameter."""
 
+import gc
+import weakref
 from collections.abc import Callable
 from pathlib import Path
 from textwrap import dedent, indent
@@ -9,6 +11,7 @@ import pytest
 
 from sim.diagnosis import diagnose
 from sim.interfaces import message
+from sim.probes.loop_variables import SharedVariables
 from sim.ros.node.node import Node
 from sim.ros.parameters.parameter import Parameter
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, spin
@@ -234,3 +237,20 @@ def test_the_result_of_a_rejected_goal_is_told_where_it_is_asked_for(blindly: bo
     told = [each.rule.explain(each, run.timeline) for each in diagnose(run.timeline)]
     lines = ["look at goal_handle.accepted first, and return if it is False"]
     assert [each.cure for each in told] == (lines if blindly else [])
+
+
+def test_what_a_function_of_a_loop_closes_over_is_not_kept_alive() -> None:
+    class Held:
+        pass
+
+    shared, place = SharedVariables(), (__file__, 1)
+
+    def made(held: Held) -> None:
+        shared.of(lambda: held, place)
+
+    held = Held()
+    gone = weakref.ref(held)
+    made(held)
+    del held
+    gc.collect()
+    assert gone() is None
