@@ -73,7 +73,7 @@ def decorated(frame: FrameType) -> FunctionType | None:
     functions = [each for each in inner if isinstance(each, FunctionType)]
     if not functions:
         return None
-    arguments = values[code.co_varnames[0]] if code.co_varnames else None
+    arguments = values.get(code.co_varnames[0]) if code.co_varnames else None  # it may not be set yet
     owner = arguments[0] if isinstance(arguments, tuple) and arguments else arguments
     for function in functions:
         name = function.__name__
