@@ -11,7 +11,7 @@ from sim.engine.setup import RobotUse
 from sim.trace.events import AnyEvent, Notice, RunEnded
 from sim.trace.model import Window
 from tests.faults.support import FIRST, PATIENCE, Provoked, console_on, node_with, provoked, still_here
-from tests.support.daily import first_daily
+from tests.support.daily import first_daily, first_row_daily
 
 AT = f"node.py:{FIRST}"
 NO_NUMBERS = """\
@@ -143,18 +143,21 @@ def test_a_file_that_is_gone_is_told_of_when_it_is_run_again(folder: Path) -> No
 
 
 @pytest.mark.parametrize(
-    "fault",
-    first_daily("lock = threading.Lock()\nlock.acquire()\nlock.acquire()", "os.read(os.pipe()[0], 1)"),
+    ("fault", "does"),
+    first_row_daily(
+        ("lock = threading.Lock()\nlock.acquire()\nlock.acquire()", "waits for lock"),
+        ("os.read(os.pipe()[0], 1)", "computes, or waits"),
+    ),
     ids=["a lock", "a pipe"],
 )
 def test_a_callback_that_waits_for_ever_on_the_real_clock_is_told_of_with_its_place(
-    folder: Path, fault: str
+    folder: Path, fault: str, does: str
 ) -> None:
     with provoked(node_with(folder, fault)) as run:
         run.until(lambda _: run.notices != [])
         (notice,) = run.notices
         line = FIRST + fault.count("\n")
-        assert notice.startswith(f"tick has not come back for 1.5 s (node.py:{line}, in fault): it computes")
+        assert notice.startswith(f"tick has not come back for 1.5 s (node.py:{line}, in fault): it {does}")
         assert _notices_of_the_end(run) == []
 
 

@@ -100,7 +100,7 @@ def test_a_line_that_waits_for_a_lock_tells_its_name_and_where_it_was_taken(path
         "▶ waits for self.arm, taken at line 12, 3.5 s",
         "▶ waits for self.arm, 3.5 s",
         "▶ 3.5 s",
-        "",
+        "▶",
     )
 
 
