@@ -40,6 +40,9 @@ _IN_ORDER = {
     EntityKind.SERVICE: "services come last",
 }
 
+_MOVES = 0.001
+"""The least speed in m/s or rad/s that is a movement: physics leaves less to a robot at rest."""
+
 
 class Narrator(PaintedWidget):
     """Shows the executor's last decision up to the moment ``now``."""
@@ -163,8 +166,8 @@ def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) ->
     running = dict.fromkeys(name_of(span.entity, timeline) for span in moment.running.values())
     robot = timeline.robot(at)
     goes_on = [f"{name} still runs" for name in running]
-    if robot is not None and (robot.linear or robot.angular):
-        goes_on.append("the robot drives on" if robot.linear else "the robot turns on")
+    if robot is not None and max(abs(robot.linear), abs(robot.angular)) >= _MOVES:
+        goes_on.append("the robot drives on" if abs(robot.linear) >= _MOVES else "the robot turns on")
     first = f"{first}: {', '.join(goes_on)}" if goes_on and not then else first
     return (first, *_waits(timeline, at, at))
 

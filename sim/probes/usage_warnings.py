@@ -97,7 +97,7 @@ class UsageWarnings:
             name = coroutine.__qualname__.rpartition(".")[2]
             if self._here.entity and is_written(file):
                 problem = f"{function} calls {name}() without await, so nothing of {name} runs"
-                advice = f"write await {name}(), in an async def {function}"
+                advice = f"put await before {name}(), in an async def {function}"
                 self._tell_of((file, line), NoticeKind.NEVER_AWAITED, problem, advice)
                 return True
         return False

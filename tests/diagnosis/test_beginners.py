@@ -73,7 +73,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "let tick ask again only when the reply is there",
         ),
         ("late_bound_lambda", "slip", "lambda: self.blink(colour)", "lambda colour=colour: …"),
-        ("never_awaited", "slip", "self.is_well()", "write await is_well(), in an async def tick"),
+        ("never_awaited", "slip", "self.is_well()", "put await before is_well(), in an async def tick"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("calls_of_two_peers", "self-made-deadlock", "self.client.call(", "num_threads=3"),
         ("call_in_script", "self-made-deadlock", "client.call(", "give ask a callback group of its own"),

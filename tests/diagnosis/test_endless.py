@@ -28,7 +28,7 @@ from sim.trace.events import (
 )
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
-from tests.support.engine_runs import program_setup, run_to_end
+from tests.support.engine_runs import program_setup, run_program, run_to_end
 from tests.trace.samples import CAST
 
 PROGRAMS = Path(__file__).parent / "beginners"
@@ -203,3 +203,36 @@ def test_a_semaphore_is_no_lock(tmp_path: Path) -> None:
     assert {
         each.call for each in run.events if isinstance(each, CallbackAt) and each.doing is Doing.WAITS
     } == {"Semaphore.acquire"}
+
+
+WAITS_IN_A_REENTRANT_GROUP = """\
+import threading
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+
+rclpy.init()
+node, ready = Node("n"), threading.Event()
+
+def work():
+    ready.wait()
+
+def release():
+    ready.set()
+
+node.create_timer(1.0, work, callback_group=ReentrantCallbackGroup())
+node.create_timer(20.0, release, callback_group=ReentrantCallbackGroup())
+executor = MultiThreadedExecutor(3)
+executor.add_node(node)
+executor.spin()
+"""
+
+
+def test_calls_that_wait_beside_each_other_and_keep_nobody_from_running_are_told(tmp_path: Path) -> None:
+    run = run_program(tmp_path, WAITS_IN_A_REENTRANT_GROUP, 6.0)
+    (found,) = (each for each in diagnose(run.timeline) if each.rule.id == "endless-wait")
+    told = found.rule.explain(found, run.timeline)
+    assert "ready.set() in release (node.py:14) would end it" in told.what
+    assert "can run only" not in told.what
+    assert "give work a MutuallyExclusiveCallbackGroup" in told.cure

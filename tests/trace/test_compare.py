@@ -385,6 +385,13 @@ def test_runs_first_differ_where_a_call_does_otherwise() -> None:
     assert differ(same, called(1, 1.0001, 1.1001)) is None
 
 
+def test_in_a_window_runs_differ_from_its_beginning_on_at_the_earliest() -> None:
+    long, short = run([ODOM], called(1, 1.0, 3.0)), run([ODOM], called(1, 1.0, 1.1))
+    assert run_to_end(first_difference(long, short, Window(0, ns(4.0)))) == ns(1.1)
+    other = run([ODOM], called(1, 2.5, 2.6))
+    assert run_to_end(first_difference(long, other, Window(ns(2.0), ns(4.0)))) == ns(2.0)
+
+
 def test_on_the_real_clock_runs_differ_by_more_than_a_start_that_is_a_little_later() -> None:
     def differ(first: list[AnyEvent], second: list[AnyEvent]) -> Nanoseconds | None:
         one, other = (run([ODOM], [RunStarted(0, "run", "real", 0), *events]) for events in (first, second))
@@ -411,6 +418,14 @@ def on_the_real_clock(first: float, losses: int, wait: float = 0.0) -> Timeline:
     )
 
 
+def starved_for_real(calls: int) -> Timeline:
+    """A callback that is called so many times in some seconds beside a timer on the real clock."""
+    ticks = [each for at in range(3) for each in called(2, at, at + 0.1)]
+    own = [each for at in range(calls) for each in called(1, at + 0.5, at + 0.6)]
+    events = sorted([*ticks, *own], key=lambda each: each.t)
+    return run([ODOM, TIMER], [RunStarted(0, "run", "real", 0), *events])
+
+
 def test_runs_on_the_real_clock_are_compared_from_their_first_calls_on() -> None:
     early, late = on_the_real_clock(0.2, 30), on_the_real_clock(1.1, 30)
     compared = compare(early, late, Window(0, ns(2.6)))
@@ -428,6 +443,8 @@ def test_what_differs_by_noise_on_the_real_clock_is_about_the_same() -> None:
     assert verdict(compared).startswith("Both runs are about the same")
     rows = {row.label: (row.difference, row.assessment) for row in sections(compared)[0].rows}
     assert rows["lost"] == rows["wait med/max"] == ("about the same", Assessment.SAME)
+    calls, *_ = sections(compare(starved_for_real(0), starved_for_real(2), window))[0].rows
+    assert (calls.label, calls.difference) == ("calls", "2 more")
     compared = compare(on_the_real_clock(1.0, 69), on_the_real_clock(1.0, 20), window)
     assert verdict(compared).startswith(f"run B is better: losses of {ODOM}")
 

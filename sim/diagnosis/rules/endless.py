@@ -87,7 +87,7 @@ class EndlessWait(Rule):
             cure += f"; give {who(found.subject, timeline)} a MutuallyExclusiveCallbackGroup: {one}"
         elif not _may_help(found, place, kept, at, timeline):
             room = Remedy()
-        if room.words(timeline):
+        if kept and room.words(timeline):
             what += f"; {listed(who(each, timeline) for each in kept)} can run only when it is over"
         if room.words(timeline) and calls == 1:
             cure = f"{cure}: {room.words(timeline)}"

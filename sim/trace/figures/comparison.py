@@ -198,7 +198,7 @@ def first_difference(first: Timeline, second: Timeline, window: Window) -> Incre
         differs = _first_unlike(one, another, end - _ALIKE) if real else _first_different(one, another)
         end = min(end, end if differs is None else differs)
         yield
-    return start + end if end < windows[0].length else None
+    return start + max(0, end) if end < windows[0].length else None
 
 
 _SAME: Nanoseconds = 1_000_000
