@@ -329,7 +329,7 @@ def test_a_single_threaded_executor_is_given_more_threads(tmp_path: Path, ground
     assert [(each.kind, each.threads) for each in timeline.executors.values()] == [
         ("MultiThreadedExecutor", 2)
     ]
-    assert "tick" in {each.callback for each in timeline.entities.values()}
+    assert "rate's timer" in {each.callback for each in timeline.entities.values()}
     walk = entity_named("walk", timeline)
     assert timeline.calls_of(walk, whole(timeline)) >= 2
 

@@ -132,7 +132,7 @@ async def test_a_run_without_problems_says_so_and_offers_no_way() -> None:
 
 @pytest.mark.slow
 async def test_what_is_true_of_the_whole_run_offers_no_way_to_go() -> None:
-    async with console("reentrant-2-threads", 3.0) as (app, pilot):
+    async with console("split-groups", 3.0) as (app, pilot):
         await press(pilot, "d")
         assert "Diagnoses: 1 remark" in text_of(app)
         assert "go there" not in text_of(app)
