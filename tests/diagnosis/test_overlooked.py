@@ -196,7 +196,7 @@ rclpy.spin(node)
 @pytest.mark.parametrize(
     ("callback", "cures"),
     [
-        ("drop", ["write await fetch(), in an async def drop"]),
+        ("drop", ["put await before fetch(), in an async def drop"]),
         ("fetch", []),
         ("whole", []),
         ("start", []),
