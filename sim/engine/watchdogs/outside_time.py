@@ -65,7 +65,9 @@ class Watchdog:
                 entity = self._callback_on(self._clock.current.ident)
                 kind, now = NoticeKind.NO_PROGRESS, self._clock.now()
                 self._record(Notice(now, Severity.WARN, sentence, entity, kind=kind, problem=_PROBLEM))
-            elif still == (_PATIENCE_WITH_IMPORTS if self._imports() else _LAST_PATIENCE):
+            elif (still == _LAST_PATIENCE and not self._imports()) or (
+                still == _PATIENCE_WITH_IMPORTS and self._imports()
+            ):
                 self._give_up(sentence)
 
     def _imports(self) -> bool:
