@@ -13,7 +13,7 @@ STUCK = ("self-made-deadlock", "needs-one-more-worker", "endless-wait", "waits-f
 
 def problems(run: Timeline) -> tuple[Finding, ...]:
     """Return the problems that the diagnosis finds in a run, without its remarks."""
-    return tuple(each for each in diagnose(run) if each.rule.weigh(each, run) is Weight.PROBLEM)
+    return tuple(each for each in diagnose(run) if each.weight_in(run) is Weight.PROBLEM)
 
 
 def never_stuck() -> Check:
@@ -61,7 +61,7 @@ def _without(asks: str, expected: str, counts: Callable[[Finding], object]) -> C
     def judge(run: Timeline) -> Verdict:
         for found in problems(run):
             if counts(found):
-                return Verdict(False, expected, found.rule.explain(found, run).what, found.at)
+                return Verdict(False, expected, found.explained(run).what, found.at)
         return Verdict(True, expected, "none")
 
     return Check(asks, judge)

@@ -1,11 +1,12 @@
 """The findings of all rules in a run, updated incrementally during the run."""
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 from typing import TypeAlias
 
-from sim.diagnosis.rule import Finding, Rule, Weight
+from sim.diagnosis.rule import Finding, Rule, Weight, fault_of
 from sim.diagnosis.rules import RULES
+from sim.diagnosis.rules.failed import FAILED_RULES
 from sim.diagnosis.timeline_view import TimelineView
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId
@@ -32,7 +33,7 @@ class Diagnoses:
     def __init__(self, rules: Iterable[Rule] = RULES) -> None:
         self.findings: tuple[Finding, ...] = ()
         """The findings of the last update: problems, the worst first, then remarks, the earliest first."""
-        self._rules = tuple(rules)
+        self._rules = (*rules, FAILED_RULES)
         self._timeline: Timeline | None = None
         self._from = _BEFORE_START
         self._settled: _Occurrences = {}
@@ -46,7 +47,7 @@ class Diagnoses:
         self._from = max(self._from, (timeline.end - _OUT_OF_ORDER) // SECOND * SECOND)
         merged = dict(self._settled)
         for rule in self._rules:
-            for found in rule.check(view):
+            for found in _checked(rule, view):
                 if found.until > window.start:
                     _merge(merged, found)
                     if found.until <= self._from:
@@ -71,7 +72,7 @@ class Diagnoses:
         ]
         causes = {each.culprit for each in left if each.rule.by_culprit}
         parted = [each if each.due_to in causes else replace(each, due_to=0) for each in left]
-        weights = {each.key: each.rule.weigh(each, timeline) for each in parted}
+        weights = {each.key: each.relevance(timeline) for each in parted}
 
         def rank(each: Finding) -> tuple[bool, Nanoseconds, object]:
             is_remark = weights[each.key] is Weight.REMARK
@@ -82,6 +83,14 @@ class Diagnoses:
 
     def _rank(self, found: Finding) -> tuple[int, Nanoseconds, EntityId, str, EntityId]:
         return self._rules.index(found.rule), found.at, found.subject, found.about, found.culprit
+
+
+def _checked(rule: Rule, view: TimelineView) -> Iterator[Finding]:
+    """Yield what a rule finds; if it fails, that too."""
+    try:
+        yield from rule.check(view)
+    except Exception as error:  # noqa: BLE001 - a fault of one rule, told as a finding
+        yield FAILED_RULES.failed(rule, fault_of(rule, error), view.timeline)
 
 
 def _is_hidden(found: Finding, hiding: Iterable[Finding]) -> bool:
@@ -112,7 +121,7 @@ def _worst_of_each_key(found: Iterable[Finding], timeline: Timeline) -> Collecti
     worst: dict[tuple[str, EntityId, str], Finding] = {}
 
     def rank(each: Finding) -> tuple[bool, int, Nanoseconds]:
-        return each.rule.weigh(each, timeline) is not None, each.size, -each.at
+        return each.relevance(timeline) is not None, each.size, -each.at
 
     for each in found:
         known = worst.get(each.key)

@@ -6,7 +6,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from enum import Enum, StrEnum
 from pathlib import Path
+from traceback import extract_tb
 from typing import ClassVar
+from warnings import warn
 
 import sim
 from sim.diagnosis.cures import Remedy
@@ -45,6 +47,22 @@ class WaitedFor(StrEnum):
     CLOCK = "the simulated time"
     LOCK = "a lock"
     THREAD = "the end of a thread"
+
+
+REPORT_IT = "please report this fault of cbtui, with the recording if you may; what else is told holds"
+"""What to do about a rule that fails."""
+
+
+class RuleFault(ResourceWarning):
+    """A rule failed on a run: a finding says so; Python's warning of it is shown with ``-X dev``."""
+
+
+def fault_of(rule: "Rule", error: Exception) -> str:
+    """Return what a rule failed with and at which line, and warn of it."""
+    frame = extract_tb(error.__traceback__)[-1]
+    fault = f"{type(error).__name__}: {error} ({Path(frame.filename).name}:{frame.lineno})"
+    warn(f"{rule.id}: {fault}", RuleFault, stacklevel=2)
+    return fault
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,6 +108,26 @@ class Finding:
     def lasted(self) -> Nanoseconds:
         """How long the worst occurrence lasted."""
         return self.until - self.at
+
+    def relevance(self, timeline: Timeline) -> Weight | None:
+        """Return the weight that the rule gives it, its usual one if it fails; None if it is irrelevant."""
+        try:
+            return self.rule.weigh(self, timeline)
+        except Exception as error:  # noqa: BLE001 - a fault of one rule, told with the finding
+            fault_of(self.rule, error)
+            return self.rule.weight
+
+    def weight_in(self, timeline: Timeline) -> Weight:
+        """Return how much it matters, as much as others of its rule if it is irrelevant."""
+        return self.relevance(timeline) or self.rule.weight
+
+    def explained(self, timeline: Timeline) -> "Explanation":
+        """Return it in the rule's words; if the rule fails, what it looks for and what it failed with."""
+        try:
+            return self.rule.explain(self, timeline)
+        except Exception as error:  # noqa: BLE001 - a fault of one rule, told with the finding
+            why = f"the words for it could not be made: {fault_of(self.rule, error)}"
+            return Explanation(self.rule.summary, why, REPORT_IT, place_of(self.subject, timeline))
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,8 +25,8 @@ def findings_text(findings: Sequence[Finding], timeline: Timeline) -> str:
 
 
 def _lines(found: Finding, timeline: Timeline) -> Iterator[str]:
-    weight = found.rule.weigh(found, timeline) or found.rule.weight
-    explanation = found.rule.explain(found, timeline)
+    weight = found.weight_in(timeline)
+    explanation = found.explained(timeline)
     yield from _wrapped(f"  {SIGNS[weight]} ", with_stop(explanation.what))
     yield from _wrapped("    ", sentence(explanation.why))
     yield from _wrapped("    → ", with_stop(explanation.cure))

@@ -107,7 +107,7 @@ def _row(timeline: Timeline, row: ThreadInfo | GroupInfo | EntityInfo, numbers: 
 
 def _findings(timeline: Timeline) -> Iterator[_Json]:
     for found in diagnose(timeline):
-        told = found.rule.explain(found, timeline)
+        told = found.explained(timeline)
         yield {"what": told.what, "why": told.why, "cure": told.cure, "at": _micro(found.at)}
 
 

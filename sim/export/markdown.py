@@ -101,8 +101,8 @@ def _diagnosis(timeline: Timeline) -> Iterator[str]:
     if not findings:
         yield "No problems found."
     for found in findings:
-        told = found.rule.explain(found, timeline)
-        weight = found.rule.weigh(found, timeline) or found.rule.weight
+        told = found.explained(timeline)
+        weight = found.weight_in(timeline)
         where = location_text(found, told)
         what = with_stop(plain(told.what))
         yield f"- **{weight.value.capitalize()}**{f' ({plain(where)})' if where else ''}: {what}"

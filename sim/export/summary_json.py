@@ -58,10 +58,10 @@ def _callback(figures: CallbackFigures) -> dict[str, Any]:
 
 def _findings(timeline: Timeline) -> Iterator[dict[str, Any]]:
     for found in diagnose(timeline):
-        told = found.rule.explain(found, timeline)
+        told = found.explained(timeline)
         yield {
             "rule": found.rule.id,
-            "weight": (found.rule.weigh(found, timeline) or found.rule.weight).value,
+            "weight": found.weight_in(timeline).value,
             "what": told.what,
             "why": told.why,
             "cure": told.cure,

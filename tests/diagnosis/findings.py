@@ -35,7 +35,7 @@ class Diagnosed:
         return {
             (each.rule.id, names[each.subject])
             for each in self.findings
-            if each.rule.weigh(each, self.timeline) is Weight.PROBLEM
+            if each.weight_in(self.timeline) is Weight.PROBLEM
         }
 
     def one(self, rule: str) -> Finding:
@@ -46,7 +46,7 @@ class Diagnosed:
     def explained(self, rule: str) -> Explanation:
         """The one finding of a rule, in words."""
         found = self.one(rule)
-        return found.rule.explain(found, self.timeline)
+        return found.explained(self.timeline)
 
 
 def diagnosed(program: Program, until: float = 10.0) -> Diagnosed:

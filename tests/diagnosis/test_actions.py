@@ -52,7 +52,7 @@ def told(
     timeline = run_program(folder, text, seconds=seconds).timeline
     found = [each for each in diagnose(timeline) if each.rule.id in ("cancel-ignored", "endless-wait")]
     assert {each.rule.id for each in found} <= {"cancel-ignored"}
-    return [each.rule.explain(each, timeline) for each in found]
+    return [each.explained(timeline) for each in found]
 
 
 def test_a_goal_that_goes_on_after_its_cancel_is_told_with_the_line_and_an_edit(tmp_path: Path) -> None:
@@ -142,7 +142,7 @@ rclpy.spin(node)
 def test_a_goal_that_nobody_executes_is_told_and_nothing_of_groups_that_nobody_made(tmp_path: Path) -> None:
     timeline = run_program(tmp_path, ACCEPTED, seconds=4.0).timeline
     (found,) = diagnose(timeline)
-    said = found.rule.explain(found, timeline)
+    said = found.explained(timeline)
     assert said.what == (
         "a goal of /fib was accepted, and execute has never been called: its result has been waited for "
         "for 3.5 s"

@@ -199,7 +199,7 @@ def test_a_beginners_mistake_is_one_problem_at_its_line(
     path = PROGRAMS / f"{program}.py"
     timeline = run_to_end(program_setup(path, 4.0)).timeline
     found = diagnose(timeline)
-    problems = [each for each in found if each.rule.weigh(each, timeline) is Weight.PROBLEM]
+    problems = [each for each in found if each.weight_in(timeline) is Weight.PROBLEM]
     assert [each.rule.id for each in problems] == [rule]
     told = problems[0].rule.explain(problems[0], timeline)
     assert told.place is not None
@@ -230,7 +230,7 @@ def test_a_callback_that_sleeps_by_a_rate_alone_in_its_group_needs_only_a_thread
     path.write_text("\n".join(each for each in lines if "create_subscription" not in each))
     timeline = run_to_end(program_setup(path, 2.0)).timeline
     found = diagnose(timeline)[0]
-    told = found.rule.explain(found, timeline)
+    told = found.explained(timeline)
     assert told.cure.endswith("; or keep it, and spin with MultiThreadedExecutor(num_threads=2)")
     assert told.remedies[-1].own_groups == ()
 
@@ -245,7 +245,7 @@ def test_the_timer_of_a_rate_has_one_name_in_sentences_and_tables() -> None:
 @pytest.mark.parametrize("program", ["spin_in_service", "call_in_service"])
 def test_a_service_is_not_told_to_go_on_after_it_has_returned(program: str) -> None:
     timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 2.0)).timeline
-    told = [each.rule.explain(each, timeline) for each in diagnose(timeline)]
+    told = [each.explained(timeline) for each in diagnose(timeline)]
     assert told
     assert "done_callback" not in "".join(each.cure for each in told)
 
@@ -309,7 +309,7 @@ def test_it_is_told_who_sets_the_event_that_a_callback_waits_for() -> None:
 
 def test_it_is_told_who_sets_what_a_loop_waits_for() -> None:
     timeline = run_to_end(program_setup(PROGRAMS / "busy_wait_in_service.py", 2.0)).timeline
-    told = [each.rule.explain(each, timeline) for each in diagnose(timeline)]
+    told = [each.explained(timeline) for each in diagnose(timeline)]
     assert told[0].why.endswith("does, and it waits for what on_closed sets")
 
 
@@ -322,9 +322,7 @@ def test_a_loop_that_sleeps_is_not_told_to_sleep(tmp_path: Path) -> None:
         )
     )
     timeline = run_to_end(program_setup(path, 4.0)).timeline
-    (told,) = (
-        each.rule.explain(each, timeline) for each in diagnose(timeline) if each.rule.id == "stays-in-loop"
-    )
+    (told,) = (each.explained(timeline) for each in diagnose(timeline) if each.rule.id == "stays-in-loop")
     assert told.cure == "give close a callback group of its own"
 
 
@@ -344,10 +342,10 @@ def test_a_circle_through_a_joined_thread_names_the_thread_and_is_over_with_its_
     timeline = run_to_end(program_setup(program, 4.0)).timeline
     found = diagnose(timeline)[0]
     assert found.ring == ring, "the callback is first, though its thread began to wait last"
-    assert found.rule.explain(found, timeline).why.startswith("the thread waits for what comes only once")
+    assert found.explained(timeline).why.startswith("the thread waits for what comes only once")
     for end, there in ((".join()", ".join(timeout=9.0)"), ("Request())", "Request(), timeout_sec=9.0)")):
         program.write_text(text.replace(end, there))
         timeline = run_to_end(program_setup(program, 4.0)).timeline
-        told = [each.rule.explain(each, timeline) for each in diagnose(timeline)]
+        told = [each.explained(timeline) for each in diagnose(timeline)]
         assert told[0].what.startswith("tick waits in vain for the end of a thread until 9.5 s; ")
         assert not told[0].for_ever

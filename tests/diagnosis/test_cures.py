@@ -85,7 +85,7 @@ def complaints(timeline: Timeline) -> dict[Complaint, str]:
     """What waits are found, with the cure of each."""
     names = {0: ""} | {each.id: each.spoken_name for each in timeline.entities.values()}
     return {
-        (each.rule.id, names[each.subject], names[each.culprit]): each.rule.explain(each, timeline).cure
+        (each.rule.id, names[each.subject], names[each.culprit]): each.explained(timeline).cure
         for each in diagnose(timeline)
     }
 

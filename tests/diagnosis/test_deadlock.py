@@ -85,7 +85,7 @@ def test_one_thread_more_is_not_advised_alone_where_a_group_keeps_out_an_answer_
     run = run_to_end(program_setup(tmp_path / "peers.py", 4.0))
     found = diagnose(run.timeline)[0]
     assert found.rule.id == "needs-one-more-worker"
-    assert found.rule.explain(found, run.timeline).cure == (
+    assert found.explained(run.timeline).cure == (
         "give tick (/right) a callback group of its own, and spin with MultiThreadedExecutor(num_threads=3), "
         "or use call_async()"
     )
@@ -94,7 +94,7 @@ def test_one_thread_more_is_not_advised_alone_where_a_group_keeps_out_an_answer_
 def test_one_callback_on_all_threads_is_named_once_for_the_requests_and_replies_of_its_service() -> None:
     run = run_to_end(program_setup(PROGRAMS / "call_in_reentrant_timer.py", 4.0))
     found = diagnose(run.timeline)[0]
-    assert found.rule.explain(found, run.timeline).what == (
+    assert found.explained(run.timeline).what == (
         "deadlock: toggle waits for /light for ever; /light needs a thread, and both stand still in toggle "
         "(call_in_reentrant_timer.py:26)"
     )
@@ -282,7 +282,7 @@ def test_a_sleep_on_simulated_time_that_keeps_its_publisher_out_is_a_deadlock(tm
     program = SLEEPER.replace("CLOCK", "node.get_clock()").replace("rclpy.spin(node)", spin)
     run = run_program(tmp_path, program, 3.0)
     (found,) = (each for each in diagnose(run.timeline) if each.rule.id == "self-made-deadlock")
-    told = found.rule.explain(found, run.timeline)
+    told = found.explained(run.timeline)
     assert "for ever; tell, which publishes on /clock, needs the only thread, which" in told.what
     assert "a callback group of its own, and spin with MultiThreadedExecutor(num_threads=2)" in told.cure
 
@@ -300,6 +300,6 @@ def test_a_sleep_on_simulated_time_that_keeps_the_clock_out_is_a_deadlock(
     found = [each for each in diagnose(run.timeline) if each.rule.id == "self-made-deadlock"]
     assert [each.rule.kind(each, run.timeline) for each in found] == rules
     for each in found:
-        told = each.rule.explain(each, run.timeline)
+        told = each.explained(run.timeline)
         assert "waits for the simulated time for ever; /clock waits for group A" in told.what
         assert "a callback group of its own" in told.cure

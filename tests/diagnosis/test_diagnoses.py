@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from msgspec.structs import replace
 
 from sim.diagnosis import RULES, Diagnoses, Finding, Weight, diagnose, findings_text
-from sim.diagnosis.rule import Explanation, Rule
+from sim.diagnosis.rule import Explanation, Rule, RuleFault
 from sim.diagnosis.timeline_view import TimelineView
 from sim.trace.events import (
     AnyEvent,
@@ -205,8 +205,8 @@ def test_a_trace_that_lacks_events_says_so_beside_what_it_finds() -> None:
     run.add(EventsLost(ns(2.0), 1200))
     timeline = timeline_of(run.events)
     (found,) = diagnose(timeline)
-    assert (found.rule.id, found.rule.weigh(found, timeline)) == ("gaps-in-trace", Weight.REMARK)
-    told = found.rule.explain(found, timeline).what
+    assert (found.rule.id, found.weight_in(timeline)) == ("gaps-in-trace", Weight.REMARK)
+    told = found.explained(timeline).what
     assert told.startswith("1,200 events are missing from the trace")
 
 
@@ -214,3 +214,47 @@ def test_a_trace_that_lacks_events_says_so_beside_what_it_finds() -> None:
 def test_a_trace_with_gaps_can_be_looked_at_too(events: list[AnyEvent], kept: int) -> None:
     timeline = timeline_of([event for place, event in enumerate(events) if kept >> place % 64 & 1])
     findings_text(diagnose(timeline), timeline)
+
+
+class FailsToCheck(Rule):
+    id = "fails-to-check"
+    summary = "a rule with a fault"
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        yield Finding(self, ns(1.0), ns(1.0), about="first")
+        raise LookupError("no second one")
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        return Explanation("told", "", "", None)
+
+
+class FailsToTell(FailsToCheck):
+    id = "fails-to-tell"
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        yield Finding(self, ns(2.0), ns(2.0))
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        raise LookupError("no weight")
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        raise LookupError("no words")
+
+
+@pytest.mark.filterwarnings("ignore::sim.diagnosis.rule.RuleFault")
+def test_a_rule_that_fails_is_told_and_leaves_the_others_findings() -> None:
+    timeline = timeline_of(shared_group_run().events)
+    found = Diagnoses((FailsToCheck(), FailsToTell(), *RULES)).update(timeline)
+    assert [each for each in found if each.rule in RULES] == list(diagnose(timeline))
+    first, wordless, failed = [each.explained(timeline) for each in found if each.rule not in RULES]
+    assert first.what == "told"
+    line = FailsToTell.explain.__code__.co_firstlineno + 1
+    assert wordless.what == "a rule with a fault"
+    assert f"LookupError: no words (test_diagnoses.py:{line})" in wordless.why
+    assert failed.what == "cbtui could not check this: a rule with a fault"
+    assert failed.why.startswith("LookupError: no second one")
+
+
+def test_a_rule_that_fails_is_warned_of_for_those_who_ask() -> None:
+    with pytest.warns(RuleFault, match="fails-to-check: LookupError: no second one"):
+        Diagnoses((FailsToCheck(),)).update(timeline_of(shared_group_run().events))

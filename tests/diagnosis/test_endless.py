@@ -37,7 +37,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
 def explained(*events: AnyEvent, rule: str = "endless-wait") -> list[tuple[str, str]]:
     timeline = Timeline()
     timeline.extend([*CAST, *events])
-    told = [(found, found.rule.explain(found, timeline)) for found in diagnose(timeline)]
+    told = [(found, found.explained(timeline)) for found in diagnose(timeline)]
     return [(each.what, each.cure) for found, each in told if found.rule.id == rule]
 
 
@@ -86,8 +86,8 @@ def test_who_waits_for_locks_is_told_with_the_lines_and_nothing_else_is_their_fa
     waits = WaitStarted(ns(0.5), 2, ns(0.5), Reason.NO_FREE_WORKER, 1, True)
     timeline.extend([*CAST, RunStarted(0, "t", "real", 0), CallbackStarted(5, 1, 1, 0, 0, 0)])
     timeline.extend([_at_a_lock(9, 1, 1, 60), waits, TimePassed(ns(3))])
-    [found] = [each for each in diagnose(timeline) if each.rule.weigh(each, timeline) is Weight.PROBLEM]
-    told = found.rule.explain(found, timeline)
+    [found] = [each for each in diagnose(timeline) if each.weight_in(timeline) is Weight.PROBLEM]
+    told = found.explained(timeline)
     assert told.what == "odom_callback (node.py:60) has waited for a lock for 3.0 s"
     assert told.cure.startswith("take locks in the same order everywhere")
 
@@ -103,7 +103,7 @@ def test_one_lock_that_is_waited_for_is_to_be_released_and_several_to_be_taken_i
             )
         timeline.extend([TimePassed(ns(3))])
         [found] = [each for each in diagnose(timeline) if each.rule.id == "waits-for-lock"]
-        return found.rule.explain(found, timeline)
+        return found.explained(timeline)
 
     one, two, local = told("self.a", "self.a"), told("self.a", "self.b"), told("lock", "lock")
     assert local.cure == two.cure, "one name of a variable may stand for several locks"
@@ -232,7 +232,7 @@ executor.spin()
 def test_calls_that_wait_beside_each_other_and_keep_nobody_from_running_are_told(tmp_path: Path) -> None:
     run = run_program(tmp_path, WAITS_IN_A_REENTRANT_GROUP, 6.0)
     (found,) = (each for each in diagnose(run.timeline) if each.rule.id == "endless-wait")
-    told = found.rule.explain(found, run.timeline)
+    told = found.explained(run.timeline)
     assert "ready.set() in release (node.py:14) would end it" in told.what
     assert "can run only" not in told.what
     assert "give work a MutuallyExclusiveCallbackGroup" in told.cure

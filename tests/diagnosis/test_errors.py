@@ -255,7 +255,7 @@ def test_an_exception_that_rclpy_makes_of_a_usual_slip_is_told_in_its_terms(
     timeline = Timeline()
     timeline.extend([RunEnded(1, error, failed=True, error=error, problem=f"the program raised {error}")])
     (found,) = diagnose(timeline)
-    told = found.rule.explain(found, timeline)
+    told = found.explained(timeline)
     assert (told.why, told.cure) == (why, cure)
 
 

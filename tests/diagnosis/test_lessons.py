@@ -46,14 +46,14 @@ def test_a_lesson_has_exactly_its_own_findings(
     for each in diagnose(timeline):
         entity = timeline.entities.get(each.subject)
         name = "" if entity is None else entity.spoken_name
-        found[each.rule.weigh(each, timeline)].add((each.rule.id, name))
+        found[each.weight_in(timeline)].add((each.rule.id, name))
     assert found == {Weight.PROBLEM: problems, Weight.REMARK: remarks}
 
 
 def test_calls_that_overlap_at_a_lock_are_told_which() -> None:
     timeline = run_lesson("lock-or-group", 8.0).timeline
     (found,) = (each for each in diagnose(timeline) if each.rule.id == "overlapping-callback")
-    told = found.rule.explain(found, timeline)
+    told = found.explained(timeline)
     assert "; the lock of line 51 lets one of them on at a time, and guards nothing outside it" in told.why
     assert told.cure.endswith("who waits there keeps no thread")
-    assert found.rule.weigh(found, timeline) is Weight.REMARK
+    assert found.weight_in(timeline) is Weight.REMARK

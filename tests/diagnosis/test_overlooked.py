@@ -128,7 +128,7 @@ rclpy.spin(node)
 def told_of_lines(made: str, folder: Path) -> list[str]:
     """What is said of a function with these lines that makes timers."""
     run = run_program(folder, _NODE.replace("MADE", indent(dedent(made), "    ")), seconds=2.0)
-    return [each.rule.explain(each, run.timeline).cure for each in diagnose(run.timeline)]
+    return [each.explained(run.timeline).cure for each in diagnose(run.timeline)]
 
 
 @pytest.mark.parametrize(
@@ -204,7 +204,7 @@ rclpy.spin(node)
 )
 def test_a_coroutine_that_a_callback_drops_is_told(callback: str, cures: list[str], tmp_path: Path) -> None:
     run = run_program(tmp_path, _COROUTINES.replace("CALLBACK", callback), seconds=2.0)
-    assert [each.rule.explain(each, run.timeline).cure for each in diagnose(run.timeline)] == cures
+    assert [each.explained(run.timeline).cure for each in diagnose(run.timeline)] == cures
 
 
 _GOALS = """
@@ -234,7 +234,7 @@ rclpy.spin(node)
 @pytest.mark.parametrize("blindly", [True, False])
 def test_the_result_of_a_rejected_goal_is_told_where_it_is_asked_for(blindly: bool, tmp_path: Path) -> None:
     run = run_program(tmp_path, _GOALS.replace("BLINDLY", str(blindly)), seconds=2.0)
-    told = [each.rule.explain(each, run.timeline) for each in diagnose(run.timeline)]
+    told = [each.explained(run.timeline) for each in diagnose(run.timeline)]
     lines = ["look at goal_handle.accepted first, and return if it is False"]
     assert [each.cure for each in told] == (lines if blindly else [])
 

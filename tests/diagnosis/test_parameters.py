@@ -43,6 +43,6 @@ def test_a_parameter_that_its_callback_sets_while_it_is_set_is_told_once_others_
     assert [each.text for each in run.events if isinstance(each, Printed)] == ["9 9 9 4"]
     (found,) = diagnose(run.timeline)
     assert found.rule.id == "parameter-overruled"
-    told = found.rule.explain(found, run.timeline)
+    told = found.explained(run.timeline)
     assert told.what == "a parameter callback sets 'own' while that is being set (node.py:9, in asked)"
     assert "pre-set callback" in told.cure

@@ -69,7 +69,7 @@ rclpy.spin(Caller())
 def problems(run: Run) -> list[str]:
     timeline = run.timeline
     found = diagnose(timeline)
-    return [f"{each.rule.id}: {each.rule.explain(each, timeline).what}" for each in found]
+    return [f"{each.rule.id}: {each.explained(timeline).what}" for each in found]
 
 
 def run_together(folder: Path, *sources: str) -> Run:
@@ -103,7 +103,7 @@ def test_an_exception_that_ends_one_of_two_programs_is_told_once_and_while_the_o
     before.extend([each for each in run.events if each.t <= SECOND])
     (found,) = diagnose(before)
     assert found.until < SECOND
-    explained = found.rule.explain(found, before)
+    explained = found.explained(before)
     assert (explained.what, str(explained.place)) == (told.partition(": ")[2], "node1.py:1")
 
 
@@ -115,7 +115,7 @@ def test_a_deadlock_is_told_with_the_line_of_its_callback(tmp_path: Path) -> Non
     ]
     timeline = run.timeline
     (found,) = diagnose(timeline)
-    assert str(found.rule.explain(found, timeline).place) == "node.py:17"
+    assert str(found.explained(timeline).place) == "node.py:17"
 
 
 @pytest.mark.parametrize(

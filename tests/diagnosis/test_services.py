@@ -183,6 +183,6 @@ def test_each_of_several_programs_is_told_where_it_waits_before_it_spins(tmp_pat
     )
     timeline = run_to_end(setup).timeline
     (found,) = diagnose(timeline)
-    told = found.rule.explain(found, timeline)
+    told = found.explained(timeline)
     assert told.what.startswith("the program waits-2 waits in wait_for_service() for /nowhere, ")
     assert str(told.place) == "waits.py:10"

@@ -106,7 +106,7 @@ def test_a_callback_that_spins_what_runs_it_is_told_with_its_line(
     run = run_program(tmp_path, program(ask, spin), 4.0)
     findings = diagnose(run.timeline)
     (found,) = found_in(run)
-    told = found.rule.explain(found, run.timeline)
+    told = found.explained(run.timeline)
     assert findings[0] == found
     assert not {"group-starvation", "node-never-spins"} & {each.rule.id for each in findings}
     assert told.what == what
@@ -127,7 +127,7 @@ def test_a_callback_that_spins_what_runs_it_is_told_with_its_line(
 def test_a_release_that_refuses_no_second_spin_is_not_said_to(ask: str, what: str, tmp_path: Path) -> None:
     run = run_program(tmp_path, program(ask), 1.2, distro="jazzy@7.1.6")
     (found,) = found_in(run)
-    assert found.rule.explain(found, run.timeline).what == what
+    assert found.explained(run.timeline).what == what
 
 
 def test_a_request_that_a_spinning_callback_keeps_out_is_a_ring_although_others_run(tmp_path: Path) -> None:
@@ -141,7 +141,7 @@ def test_a_request_that_a_spinning_callback_keeps_out_is_a_ring_although_others_
         distro="jazzy@7.1.6",
     )
     (found,) = found_in(run)
-    assert found.rule.explain(found, run.timeline).what == (
+    assert found.explained(run.timeline).what == (
         "deadlock: tick waits in spin_until_future_complete() for ever; /power waits for group A, "
         "which tick holds"
     )
@@ -151,7 +151,7 @@ def test_a_spin_without_end_inside_a_callback_is_a_ring_and_nothing_moves(tmp_pa
     run = run_program(tmp_path, program("rclpy.spin_until_future_complete(self, future)", SINGLE), 4.0)
     (found,) = found_in(run)
     assert found.ring == ("tick", "spin_until_future_complete()", "group A", "tick")
-    assert found.rule.explain(found, run.timeline).for_ever
+    assert found.explained(run.timeline).for_ever
     assert [each.rule.id for each in diagnose(run.timeline)] == ["nested-spin"]
 
 
@@ -165,7 +165,7 @@ def test_the_reply_that_a_spinning_callback_keeps_out_is_a_ring_although_others_
     groups = "from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup"
     run = run_program(tmp_path, f"{groups}\n{text}", 4.0)
     (found,) = found_in(run)
-    assert found.rule.explain(found, run.timeline).what == REPLY_HELD
+    assert found.explained(run.timeline).what == REPLY_HELD
     assert found.ring == ("tick", "spin_until_future_complete()", "group B", "tick")
     assert not never_stuck().judge(run.timeline).passed
 
@@ -185,7 +185,7 @@ def test_two_threads_that_spin_one_executor_are_told_of_too(tmp_path: Path) -> N
     )
     run = run_program(tmp_path, program("pass", spin))
     (found,) = found_in(run)
-    told = found.rule.explain(found, run.timeline)
+    told = found.explained(run.timeline)
     assert told.what.startswith("the program spins an executor that another thread spins, by spin_until")
     assert told.cure.startswith("spin each node in one thread only")
     assert [(each.function, each.line) for each in run.events if isinstance(each, SpinClashed)] == [
@@ -230,7 +230,7 @@ IN_CONSTRUCTOR = (
 def test_a_node_that_spins_in_its_constructor_is_told_with_the_line_of_the_spin(tmp_path: Path) -> None:
     run = run_lines(tmp_path, *IN_CONSTRUCTOR)
     (found,) = diagnose(run.timeline)
-    told = found.rule.explain(found, run.timeline)
+    told = found.explained(run.timeline)
     assert told.what == "__init__ calls spin(), which does not come back: what follows line 7 never runs"
     assert str(told.place) == "node.py:7"
     (remedy,) = told.remedies
@@ -257,7 +257,7 @@ def test_a_program_that_loops_and_never_spins_is_told_with_its_loop(tmp_path: Pa
         "    time.sleep(0.2)",
     )
     (found,) = diagnose(run.timeline)
-    told = found.rule.explain(found, run.timeline)
+    told = found.explained(run.timeline)
     assert found.rule.id == "node-never-spins"
     assert "the program is in the loop of line 6, and comes to no spin()" in told.what
     assert str(told.place) == "node.py:6"
@@ -288,7 +288,7 @@ def test_a_program_that_loops_is_told_of_even_if_no_callback_is_ready_yet(
         loop,
         "    time.sleep(0.2)",
     )
-    assert [each.rule.explain(each, run.timeline).what for each in diagnose(run.timeline)] == told
+    assert [each.explained(run.timeline).what for each in diagnose(run.timeline)] == told
 
 
 RARELY = (
@@ -304,7 +304,7 @@ RARELY = (
 
 def test_a_loop_that_spins_too_rarely_is_told_with_its_line(tmp_path: Path) -> None:
     run = run_lines(tmp_path, *RARELY, "    rclpy.spin_once(node)", "    time.sleep(1.3)", seconds=6.4)
-    told = {each.rule.id: each.rule.explain(each, run.timeline) for each in diagnose(run.timeline)}
+    told = {each.rule.id: each.explained(run.timeline) for each in diagnose(run.timeline)}
     never = told["node-never-spins"]
     assert never.what.endswith("does not run: the program is in the loop of line 8, and spins too rarely")
     assert str(never.place) == "node.py:8"
@@ -313,7 +313,7 @@ def test_a_loop_that_spins_too_rarely_is_told_with_its_line(tmp_path: Path) -> N
 def test_messages_that_are_lost_between_two_spins_are_told_with_the_loop(tmp_path: Path) -> None:
     run = run_lines(tmp_path, *RARELY, "    rclpy.spin_once(node)", "    time.sleep(0.2)", seconds=5.0)
     (found,) = diagnose(run.timeline)
-    told = found.rule.explain(found, run.timeline)
+    told = found.explained(run.timeline)
     assert found.rule.id == "dropped-messages"
     assert str(told.place) == "node.py:8"
     assert told.cure.startswith("do one step of the loop in a timer's callback, and call rclpy.spin(node)")
@@ -348,7 +348,7 @@ def test_a_program_that_waits_for_a_service_before_it_spins_is_told_of_the_one_t
         "    pass",
     )
     (found,) = diagnose(run.timeline)
-    told = found.rule.explain(found, run.timeline)
+    told = found.explained(run.timeline)
     assert told.what == (
         "the program waits in wait_for_service() for /lampe, which nobody offers, and comes to no spin()"
     )
@@ -388,8 +388,8 @@ def test_what_a_node_loses_once_a_spin_has_taken_it_is_put_down_to_that_and_no_t
     nested, lost = diagnose(run.timeline)
     assert nested.rule.id == "nested-spin"
     assert lost.rule.id == "dropped-messages"
-    assert lost.rule.weigh(lost, run.timeline) is Weight.REMARK
-    told = lost.rule.explain(lost, run.timeline)
+    assert lost.weight_in(run.timeline) is Weight.REMARK
+    told = lost.explained(run.timeline)
     assert "while it waited (nobody spins)" in told.what
     assert told.cure == "keep spinning its node; a longer queue only delays it"
 

@@ -259,7 +259,7 @@ def test_a_long_call_is_told_at_the_line_that_took_most_of_it_or_that_led_to_suc
     path.write_text(CALLS_TICK.format(*sleeps))
     timeline = run_to_end(program_setup(path, 3.0)).timeline
     [found] = [each for each in diagnose(timeline) if each.rule.id == "overrun-timer"]
-    place = found.rule.explain(found, timeline).place
+    place = found.explained(timeline).place
     assert place is not None
     assert line in path.read_text().splitlines()[place.first_line - 1]
 
@@ -313,7 +313,7 @@ def test_a_timer_is_not_said_to_be_slow_where_it_waits_for_a_lock(
 ) -> None:
     run = run_program(tmp_path, KEPT_LOCK.format(other=other, spin=spin))
     [found] = [each for each in diagnose(run.timeline) if each.rule.id == "overrun-timer"]
-    told = found.rule.explain(found, run.timeline)
+    told = found.explained(run.timeline)
     assert told.cure == cure
     assert told.why.split(" ", 2)[2].startswith(
         f"of that it waited for lock, which {cure.split()[1]} took at node.py:"
@@ -354,7 +354,7 @@ def test_what_is_too_slow_for_its_messages_is_told_at_the_line_that_takes_the_ti
     path.write_text(TALKS_FASTER.format(depth=depth))
     timeline = run_to_end(program_setup(path, 4.0)).timeline
     [found] = [each for each in diagnose(timeline) if each.rule.id == rule]
-    told, place = found.rule.explain(found, timeline), found.rule.explain(found, timeline).place
+    told, place = found.explained(timeline), found.explained(timeline).place
     assert re.search(
         r"(took one that was|what hear took then was up to) [12]\.\d s old", f"{told.what} {told.why}"
     )
@@ -365,9 +365,7 @@ def test_what_is_too_slow_for_its_messages_is_told_at_the_line_that_takes_the_ti
 def test_a_timer_that_awaits_longer_than_its_period_overruns_it_as_one_that_waits_in_call() -> None:
     timeline = run_lesson("three-cures", 8.0).timeline
     found = [each for each in diagnose(timeline) if each.rule.id == "overrun-timer"]
-    cures = {
-        timeline.entities[each.subject].callback: each.rule.explain(each, timeline).cure for each in found
-    }
+    cures = {timeline.entities[each.subject].callback: each.explained(timeline).cure for each in found}
     assert cures == {
         name: f"return from {name}, and go on in a done-callback of the future{which}"
         for name, which in (("ask_and_await", ""), ("ask_and_wait", ", which call_async() returns"))
@@ -385,7 +383,7 @@ def test_a_period_of_hundreds_of_seconds_may_be_meant_in_milliseconds(period: fl
 
     run = diagnosed(program, until=3.0)
     assert run.problems() == set()
-    cures = [each.rule.explain(each, run.timeline).cure for each in run.findings]
+    cures = [each.explained(run.timeline).cure for each in run.findings]
     assert cures == ([f"if milliseconds are meant, give it {told}"] if told else [])
 
 

@@ -27,6 +27,6 @@ def test_a_problem_of_a_lesson_leads_to_the_lesson_on_it(
     lesson: str, calls: tuple[float, ...], shown_by: str
 ) -> None:
     timeline = run_lesson(lesson, 12.0, *calls).timeline
-    problems = [each for each in diagnose(timeline) if each.rule.weigh(each, timeline) is Weight.PROBLEM]
+    problems = [each for each in diagnose(timeline) if each.weight_in(timeline) is Weight.PROBLEM]
     assert problems
     assert {lesson_on(each.rule.kind(each, timeline)) for each in problems} == {find(shown_by)}

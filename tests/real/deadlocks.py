@@ -147,8 +147,8 @@ def _logged(run: Run) -> list[str]:
 
 def _problems(timeline: Timeline) -> Iterator[str]:
     for found in diagnose(timeline):
-        if (found.rule.weigh(found, timeline) or found.rule.weight) is Weight.PROBLEM:
-            yield found.rule.explain(found, timeline).what
+        if found.weight_in(timeline) is Weight.PROBLEM:
+            yield found.explained(timeline).what
 
 
 def main() -> None:

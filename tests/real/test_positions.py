@@ -108,7 +108,7 @@ def test_who_waits_for_a_lock_for_long_is_told_with_the_line(tmp_path: Path) -> 
     executor = "MultiThreadedExecutor(num_threads=2)"
     timeline = programs.run(tmp_path, CROSSED, executor, seconds=3.0).timeline
     found = next(each for each in diagnose(timeline) if each.rule.id == "waits-for-lock")
-    said = found.rule.explain(found, timeline).what
+    said = found.explained(timeline).what
     assert re.sub(r"one|other|\d+", "_", said) == (
         "_ (tried.py:_) has waited for second for _._ s, and so does _ (tried.py:_)"
     )
@@ -159,7 +159,7 @@ class Tried(Node):
 def test_a_program_that_never_gets_beyond_init_is_told_of_as_on_the_model(tmp_path: Path, body: str) -> None:
     def told(ground: str) -> set[tuple[str, str, int]]:
         timeline = programs.run(tmp_path, body, ground=ground).timeline
-        explained = [(each.rule, each.rule.explain(each, timeline)) for each in diagnose(timeline)]
+        explained = [(each.rule, each.explained(timeline)) for each in diagnose(timeline)]
         return {
             (rule.id, each.what, each.place.first_line) for rule, each in explained if each.place is not None
         }
@@ -191,4 +191,4 @@ def test_a_call_with_a_timeout_is_told_with_its_end(tmp_path: Path) -> None:
     (found,) = (each for each in diagnose(timeline) if each.rule.id == "self-made-deadlock")
     [ask] = timeline.calls_begun(programs.entity_named("ask", timeline), programs.whole(timeline))
     assert (found.ends - ask.start) / 1e9 == pytest.approx(8.0, abs=0.3)
-    assert not found.rule.explain(found, timeline).for_ever
+    assert not found.explained(timeline).for_ever

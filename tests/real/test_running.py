@@ -152,7 +152,7 @@ def test_a_problem_is_the_same_on_both_grounds(tmp_path: Path, body: str, execut
     for ground in ("ros2", "model"):
         timeline = programs.run(tmp_path, body, executor, ground=ground, seconds=2.0).timeline
         told = [each for each in diagnose(timeline) if each.rule.id == rule]
-        found[ground] = [each.rule.explain(each, timeline).what for each in told]
+        found[ground] = [each.explained(timeline).what for each in told]
     assert found["ros2"] == found["model"]
     assert len(found["ros2"]) == 1
 
@@ -206,7 +206,7 @@ def test_an_exception_ends_the_program_and_is_placed(tmp_path: Path) -> None:
     assert run.ending.failed
     assert run.ending.reason == f"tried.py:{failed.line}: the program raised ValueError: no more"
     [found] = diagnose(run.timeline)
-    explained = found.rule.explain(found, run.timeline)
+    explained = found.explained(run.timeline)
     assert (explained.what, explained.place) == (
         "the program raised ValueError: no more",
         CodeLocation(failed.file, failed.line, failed.line),
@@ -253,7 +253,7 @@ def test_a_wait_for_a_reply_by_await_is_told_at_its_line(tmp_path: Path) -> None
     body = programs.AWAITS.replace("ReentrantCallbackGroup()", "MutuallyExclusiveCallbackGroup()")
     timeline = programs.run(tmp_path, body, "SingleThreadedExecutor()", seconds=2.3).timeline
     [found] = [each for each in diagnose(timeline) if each.rule.id == "self-made-deadlock"]
-    place = found.rule.explain(found, timeline).place
+    place = found.explained(timeline).place
     assert place is not None
     assert "await" in Path(place.file).read_text().splitlines()[place.first_line - 1]
 
@@ -305,7 +305,7 @@ class Tried(Node):
 @pytest.mark.slow
 def test_what_sleeps_by_a_rate_whose_timer_needs_its_thread_is_told_as_on_the_model(tmp_path: Path) -> None:
     timelines = [programs.run(tmp_path, SLEEPS_BY_A_RATE, ground=each).timeline for each in ("model", "ros2")]
-    on_model, on_ros = ([each.rule.explain(each, of).what for each in diagnose(of)] for of in timelines)
+    on_model, on_ros = ([each.explained(of).what for each in diagnose(of)] for of in timelines)
     assert "needs the only thread" in on_model[0]
     assert on_ros == on_model
 

@@ -43,7 +43,7 @@ def offered(program: str, folder: Path = PROGRAMS) -> tuple[Problem, RunSetup, l
     """The first problem of a program, and what can be tried of its cure."""
     setup, timeline = run_of(program, folder)
     found = diagnose(timeline)[0]
-    told = found.rule.explain(found, timeline)
+    told = found.explained(timeline)
     return problem_of(found, timeline), setup, list(cures_of(told, Changes(), timeline))
 
 
@@ -227,7 +227,7 @@ def test_threads_alone_do_not_open_a_held_group() -> None:
 def test_a_second_cure_edits_what_the_first_made() -> None:
     setup, timeline = run_of("qos_mismatch")
     found = diagnose(timeline)[0]
-    told, path = found.rule.explain(found, timeline), setup.programs[0].path
+    told, path = found.explained(timeline), setup.programs[0].path
     text = f"# a note\n{Path(path).read_text()}"
     line = CodeLocation(path, told.place.first_line + 1, told.place.first_line + 1) if told.place else None
     remedies = by_edit(line, "again", match_quality, found.detail)
@@ -309,7 +309,7 @@ def test_a_loop_without_a_wait_is_recognised_in_a_trial_of_a_run_on_the_real_clo
     found = diagnose(timeline)[0]
     assert found.rule.id == "stays-in-loop"
     problem, before = problem_of(found, timeline), try_run(setup, UNTIL, Event())
-    cures = list(cures_of(found.rule.explain(found, timeline), Changes(), timeline))
+    cures = list(cures_of(found.explained(timeline), Changes(), timeline))
     after = {
         cure.words: judged(problem, before, try_run(cure.changes.applied(setup), UNTIL, Event()))
         for cure in cures

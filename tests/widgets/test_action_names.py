@@ -38,6 +38,6 @@ def test_what_the_server_of_an_action_is_asked_has_a_time_of_its_own(
 
 def test_a_diagnosis_tells_when_in_its_wait_a_server_was_asked_to_cancel(cancelled: Timeline) -> None:
     (found,) = (each for each in diagnose(cancelled) if each.rule.id == "no-free-worker")
-    told = found.rule.explain(found, cancelled).what
+    told = found.explained(cancelled).what
     server = "/fetch_it server (asked to cancel after 1.5 s) waited 5.0 s"
     assert told == f"{server}: its only thread ran execute_callback"

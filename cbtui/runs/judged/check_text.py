@@ -47,4 +47,4 @@ def faults(timeline: Timeline) -> Iterator[str]:
     if ended is not None and not ended.time_was_up:
         yield f"the run was over at {timestamp(ended.t)}: {' '.join(ended.reason.split())}"
     for found in problems(timeline):
-        yield found.rule.explain(found, timeline).what
+        yield found.explained(timeline).what

@@ -103,8 +103,8 @@ def _problems_of(timeline: Timeline, diagnoses: Diagnoses) -> _Problems:
     found: dict[Problem, _Known] = {}
     effects: set[str] = set()
     for each in diagnoses.update(timeline):
-        told = each.rule.explain(each, timeline)
-        if (each.rule.weigh(each, timeline) or each.rule.weight) is Weight.PROBLEM:
+        told = each.explained(timeline)
+        if each.weight_in(timeline) is Weight.PROBLEM:
             found[problem_of(each, timeline)] = _Known(each.at, name_of(each, told), told.for_ever)
         elif each.due_to:
             effects.add(name_of(each, told))

@@ -238,8 +238,8 @@ def try_run(
         except RunTimeoutError:
             is_cut = True
     found = diagnose(timeline)
-    wrong = [each for each in found if each.rule.weigh(each, timeline) is Weight.PROBLEM]
-    told = {problem_of(each, timeline): (each, each.rule.explain(each, timeline)) for each in wrong}
+    wrong = [each for each in found if each.weight_in(timeline) is Weight.PROBLEM]
+    told = {problem_of(each, timeline): (each, each.explained(timeline)) for each in wrong}
     lasts = {problem: explained.for_ever for problem, (_, explained) in told.items()}
     names = {problem: name_of(*each) for problem, each in told.items()}
     effects = {each.rule.id for each in found if each.due_to} - {each.rule.id for each in wrong}

@@ -191,7 +191,7 @@ class Exploration:
 
 
 def _told(found: Finding, timeline: Timeline) -> str:
-    explanation = found.rule.explain(found, timeline)
+    explanation = found.explained(timeline)
     where = location_text(found, explanation)
     return f"{explanation.what} ({where})" if where else explanation.what
 

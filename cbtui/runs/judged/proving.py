@@ -287,8 +287,8 @@ def _problems(timeline: Timeline) -> Iterator[tuple[tuple[str, str], tuple[Nanos
     """
     for each in diagnose(timeline):
         entity = timeline.entities.get(each.subject)
-        if each.rule.weigh(each, timeline) is Weight.PROBLEM and not (entity and is_models(entity)):
-            explanation = each.rule.explain(each, timeline)
+        if each.weight_in(timeline) is Weight.PROBLEM and not (entity and is_models(entity)):
+            explanation = each.explained(timeline)
             culprit = timeline.entities.get(each.culprit) if each.rule.by_culprit else None
             named = culprit or entity
             name = "" if named is None or explanation.for_ever else named.spoken_name

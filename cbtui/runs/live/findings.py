@@ -118,8 +118,8 @@ class FindingsMonitor:
 
 
 def _explained(found: Finding, timeline: Timeline) -> ExplainedFinding:
-    weight = found.rule.weigh(found, timeline) or found.rule.weight
-    explanation, kind = found.rule.explain(found, timeline), found.rule.kind(found, timeline)
+    weight = found.weight_in(timeline)
+    explanation, kind = found.explained(timeline), found.rule.kind(found, timeline)
     return ExplainedFinding(found, weight, explanation, kind)
 
 

@@ -209,8 +209,8 @@ def found(run: Run) -> list[str]:
     """What the diagnosis says of the waits."""
     timeline = run.timeline
     findings = [each for each in diagnose(timeline) if each.rule.id == "endless-wait"]
-    assert all(each.rule.weigh(each, timeline) is Weight.PROBLEM for each in findings)
-    return [each.rule.explain(each, timeline).what for each in findings]
+    assert all(each.weight_in(timeline) is Weight.PROBLEM for each in findings)
+    return [each.explained(timeline).what for each in findings]
 
 
 def test_a_lock_taken_twice_and_an_event_that_nobody_sets_are_told_with_their_places(tmp_path: Path) -> None:
