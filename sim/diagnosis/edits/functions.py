@@ -16,7 +16,8 @@ _PARAMETERS = {
 def fit_parameters(source: SourceEditor, line: int) -> None:
     """Give the callback that is defined at a line the number of parameters that it is called with.
 
-    Its parameters keep their names; one is removed only if it is not used. A lambda is given those it lacks.
+    Its parameters keep their names; one is removed only if it is not used. A method is given the ``self``
+    that it lacks, a lambda all that it lacks.
     """
     lambdas = [
         each for each in source.nodes(ast.Lambda) if each.lineno == line and not ast.unparse(each.args)
@@ -26,33 +27,39 @@ def fit_parameters(source: SourceEditor, line: int) -> None:
         source.replace(lambdas[0], source.code_of(lambdas[0]).replace("lambda", begin, 1))
         return
     callback = _defined_at(source, line)
-    wanted, own = _parameters(source, callback), _own(source, callback)
-    given = callback.args.args
+    wanted, given = _parameters(source, callback), callback.args.args
+    own = _own(source, callback)
+    has_own = any(each.arg in ("self", "cls") for each in given[:own])
+    lacks_self = own > 0 and not has_own and len(given) <= len(wanted)
+    own -= lacks_self
     surplus, missing = given[own + len(wanted) :], wanted[len(given) - own :]
     used = {each.id for each in source.nodes(ast.Name, callback)}
     is_plain = ast.unparse(callback.args) == ", ".join(map(ast.unparse, given))
-    if not is_plain or used & {each.arg for each in surplus} or not (surplus or missing):
+    if not is_plain or used & {each.arg for each in surplus} or not (surplus or missing or lacks_self):
         raise NotSimpleError
+    if lacks_self and given:
+        source.insert_before(given[0], "self, ")
     if missing and given:
         source.insert_behind(given[-1], "".join(f", {each}" for each in missing))
-    elif missing:
+    elif not given:
         empty = name_of(callback)
         assert empty.end_col_offset is not None
         empty.end_col_offset += len("()")
         if source.code_of(empty) != f"{callback.name}()":
             raise NotSimpleError
-        source.replace(empty, f"{callback.name}({', '.join(missing)})")
+        source.replace(empty, f"{callback.name}({', '.join(['self'] * lacks_self + [*missing])})")
     elif surplus == given:
         source.replace(surplus[0], "")
         if surplus[1:]:
             source.cut_behind(surplus[0], surplus[-1])
-    else:
+    elif surplus:
         source.cut_behind(given[own + len(wanted) - 1], surplus[-1])
 
 
 def _own(source: SourceEditor, callback: ast.FunctionDef) -> int:
     """Return how many of a callback's parameters nobody passes: 1, for ``self``, of a method."""
-    return 1 if source.is_method(callback) else 0
+    is_static = any(ast.unparse(each) == "staticmethod" for each in callback.decorator_list)
+    return 1 if source.is_method(callback) and not is_static else 0
 
 
 def hand_over_function(source: SourceEditor, line: int) -> None:
