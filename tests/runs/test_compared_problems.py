@@ -3,7 +3,10 @@
 from functools import cache
 from pathlib import Path
 
+from msgspec.structs import replace
+
 from cbtui.runs.judged.compared_problems import ComparedProblems
+from sim.engine.setup import GroupChange
 from sim.trace.timeline import Timeline
 from tests.support.engine_runs import program_setup, run_lesson, run_to_end
 
@@ -31,6 +34,56 @@ def test_a_deadlock_is_gone_or_still_there_or_new() -> None:
     assert told(well, stuck) == "Run B has a deadlock that run A has not."
     assert told(well, well) == ""
     assert told(stuck, run_of("lock_across_callbacks")) == "The deadlock is gone, but run B has another one."
+
+
+TWO_CALLS = """
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+
+class Asker(Node):
+    def __init__(self):
+        super().__init__("asker")
+        self.create_service(Trigger, "answer", self.answer, callback_group=MutuallyExclusiveCallbackGroup())
+        for name in ("low", "high"):
+            group = MutuallyExclusiveCallbackGroup()
+            client = self.create_client(Trigger, "answer", callback_group=group)
+            setattr(self, f"client_{name}", client)
+            self.create_timer(1.0, getattr(self, name), callback_group=group)
+
+    def answer(self, request, response):
+        return response
+
+    def low(self):
+        self.client_low.call(Trigger.Request())
+
+    def high(self):
+        self.client_high.call(Trigger.Request())
+
+
+def main():
+    rclpy.init()
+    executor = MultiThreadedExecutor(num_threads=4)
+    executor.add_node(Asker())
+    executor.spin()
+
+
+main()
+"""
+
+
+def test_of_several_deadlocks_some_may_be_gone(tmp_path: Path) -> None:
+    path = tmp_path / "two_calls.py"
+    path.write_text(TWO_CALLS)
+    setup = program_setup(path, 6.0)
+    both = run_to_end(setup).timeline
+    one = run_to_end(replace(setup, groups=(GroupChange("", "low", "own"),))).timeline
+    assert told(both, one) == "Of 2 deadlocks one is gone in run B."
+    assert told(both, both) == "The deadlock is still there."
+    assert told(one, both) == "The deadlock is still there."
 
 
 def test_a_wait_without_end_that_is_no_deadlock_is_a_hang() -> None:

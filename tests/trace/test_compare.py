@@ -35,6 +35,7 @@ from sim.trace.figures.comparison_rows import (
     verdict,
 )
 from sim.trace.figures.comparison_text import comparison_lines, comparison_text
+from sim.trace.figures.comparison_wording import CALLS
 from sim.trace.incremental import run_to_end
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -445,6 +446,8 @@ def test_what_differs_by_noise_on_the_real_clock_is_about_the_same() -> None:
     assert rows["lost"] == rows["wait med/max"] == ("about the same", Assessment.SAME)
     calls, *_ = sections(compare(starved_for_real(0), starved_for_real(2), window))[0].rows
     assert (calls.label, calls.difference) == ("calls", "2 more")
+    assert CALLS.is_noise(2, 4)
+    assert not CALLS.is_noise(1, 5)
     compared = compare(on_the_real_clock(1.0, 69), on_the_real_clock(1.0, 20), window)
     assert verdict(compared).startswith(f"run B is better: losses of {ODOM}")
 

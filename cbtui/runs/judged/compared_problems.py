@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 
 from cbtui.runs.judged.cures import NOTICED, Problem, name_of, problem_of
 from sim.diagnosis import Diagnoses, Weight, sentence
+from sim.quantities.plural import counted
 from sim.trace.figures.comparison import unlike_commands
 from sim.trace.figures.comparison_rows import RUNS
 from sim.trace.model import Nanoseconds
@@ -73,7 +74,12 @@ class ComparedProblems:
         if not first:
             is_new = second and _has_come_to(self.first, *second.values())
             return sentence(f"{RUNS[1]} has a {name} that {RUNS[0]} has not") if is_new else ""
-        if first.keys() & second.keys():
+        still, gone = first.keys() & second.keys(), first.keys() - second.keys()
+        is_sure = still == second.keys() and gone and _has_come_to(self.second, *map(first.__getitem__, gone))
+        if still and is_sure:
+            number = "one is" if len(gone) == 1 else f"{len(gone)} are"
+            return f"Of {counted(len(first), name)} {number} gone in {RUNS[1]}."
+        if still:
             return f"The {name} is still there."
         if second:
             return f"The {name} is gone, but {RUNS[1]} has another one."

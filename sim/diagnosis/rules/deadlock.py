@@ -292,12 +292,12 @@ def _deadlocks(
     view: TimelineView,
 ) -> Iterator[tuple[Sequence[StuckCallback], Nanoseconds, frozenset[EntityId]]]:
     """Yield the sets of callbacks that wait for each other, the ends of their waits, and all stuck ones."""
-    seen: set[tuple[Nanoseconds, ...]] = set()
+    seen: set[tuple[tuple[EntityId, Nanoseconds], ...]] = set()
     for moment, until in _moments(view):
         graph = WaitForGraph(view.timeline, moment)
         stuck = frozenset(each.entity for each in graph.stuck.values() if each.entity)
         for deadlock in graph.deadlocks():
-            key = tuple(each.since for each in deadlock)
+            key = tuple((each.entity, each.since) for each in deadlock)
             if key not in seen:
                 seen.add(key)
                 yield deadlock, until, stuck

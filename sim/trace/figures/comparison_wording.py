@@ -10,8 +10,8 @@ class Wording(NamedTuple):
     """How to format figures of a kind, and to word and assess a difference.
 
     ``noise`` is by how much they may differ on the real clock though nothing was changed, and a tenth of the
-    figure in any case; with 0 every difference counts. ``none_differs``: none at all is never about the same
-    as several.
+    figure in any case; with 0 every difference counts. ``twice_differs``: more than twice as many is never
+    about the same.
     """
 
     format: Callable[[float], str]
@@ -19,7 +19,7 @@ class Wording(NamedTuple):
     lower: str
     more_is_worse: bool = False
     noise: float = 0
-    none_differs: bool = False
+    twice_differs: bool = False
 
     def on(self, *, is_real: bool) -> "Wording":
         """Return the wording for runs on the real clock, or on virtual time, which has no noise."""
@@ -27,7 +27,7 @@ class Wording(NamedTuple):
 
     def is_noise(self, first: float, second: float) -> bool:
         """Whether two figures are about the same."""
-        if self.none_differs and min(first, second) == 0 and max(first, second) > 1:
+        if self.twice_differs and max(first, second) > 2 * min(first, second):
             return False
         return self.noise > 0 and abs(second - first) < max(self.noise, max(first, second) / 10)
 
@@ -42,7 +42,7 @@ def metres(metres: float) -> str:
 
 
 COUNTS = Wording("{:.0f}".format, "more", "fewer")
-CALLS = COUNTS._replace(noise=5, none_differs=True)
+CALLS = COUNTS._replace(noise=5, twice_differs=True)
 FLAWS = COUNTS._replace(more_is_worse=True)
 ERRORS = FLAWS._replace(noise=1)
 LOSSES = FLAWS._replace(noise=5)
