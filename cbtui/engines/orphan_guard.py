@@ -9,12 +9,10 @@ import signal
 from multiprocessing.connection import Connection
 from typing import NoReturn
 
-from cbtui.engines.process_tree import ProcessTree
+from cbtui.engines.process_tree import ProcessTree, become_guard
 
 _MOST_FILES = 1 << 16
 """More descriptors than a starting engine has open."""
-_NUMBER = 8
-"""Bytes of a process's number."""
 ENDED_NORMALLY = b"."
 """What the console writes after a normal end of the engine."""
 
@@ -22,21 +20,16 @@ ENDED_NORMALLY = b"."
 def start_orphan_guard(tree: ProcessTree, console: Connection) -> None:
     """Start the process that waits until ``console``, a pipe that only the console writes to, is closed.
 
-    Called first of all in an engine, before it has threads; ``tree`` is told the process. It is forked twice,
-    so that no program can wait for it as its child, and closes all inherited descriptors.
+    Called first of all in an engine, before it has threads. It is forked twice, so that no program can wait
+    for it as its child, and closes all inherited descriptors.
     """
     if not hasattr(os, "fork"):
         return
-    reads, writes = os.pipe()
     between = os.fork()
     if between:
         os.waitpid(between, 0)
-        tree.guard = int.from_bytes(os.read(reads, _NUMBER))
-        for end in (reads, writes):
-            os.close(end)
         console.close()
-    elif guard := os.fork():
-        os.write(writes, guard.to_bytes(_NUMBER))
+    elif os.fork():
         os._exit(0)
     else:
         _wait(tree, console.fileno())
@@ -44,6 +37,7 @@ def start_orphan_guard(tree: ProcessTree, console: Connection) -> None:
 
 def _wait(tree: ProcessTree, console: int) -> NoReturn:
     try:
+        become_guard()
         os.setsid()
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         _close_all_but(console)

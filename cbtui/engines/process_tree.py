@@ -26,6 +26,9 @@ _SWEEPS = 20
 """How often to look for processes that were started while others were being ended."""
 _PR_SET_CHILD_SUBREAPER = 36
 """Of Linux's ``prctl``: orphans below the caller become its children."""
+_PR_SET_NAME = 15
+"""Of Linux's ``prctl``: the caller's name in lists of processes, of 15 bytes at most."""
+_GUARD = "cbtui-guard"
 _CHILDREN_LISTED = Path(f"/proc/self/task/{threading.get_native_id()}/children").exists()
 """Whether the kernel lists the children of each thread."""
 _ENDED = {psutil.STATUS_ZOMBIE, psutil.STATUS_DEAD}
@@ -37,11 +40,6 @@ class ProcessTree:
 
     def __init__(self, pid: int, mark: str) -> None:
         self.pid = pid
-        self.guard = 0
-        """The process that ends the tree once the console is gone, if the caller is the engine.
-
-        An engine that ends at the same time spares it: each would stop the other, and both stood for ever.
-        """
         self._mark = mark
         self._seen: list[Process] = []
 
@@ -80,11 +78,14 @@ class ProcessTree:
         system._exit = end_tree_on_exit
 
     def end(self) -> None:
-        """Kill all but the caller and the guard; each is stopped first, so that none can start another."""
+        """Kill all but the caller and the guard; each is stopped first, so that none can start another.
+
+        The guard goes on until the console has ended, be it in the middle of this: it ends what is stopped.
+        """
         stopped: set[Process] = set()
         for _ in range(_SWEEPS):
-            spared = {Process(), *_processes([self.guard])}
-            found = {*self._seen, *self._marked(), *self.processes()} - stopped - spared
+            found = {*self._seen, *self._marked(), *self.processes()} - stopped - {Process()}
+            found = {process for process in found if not _is_guard(process)}
             if not found:
                 break
             for process in found:
@@ -109,6 +110,18 @@ class ProcessTree:
             with suppress(psutil.Error, OSError):
                 if os.getsid(process.pid) == self.pid or process.environ().get(MARK) == self._mark:
                     yield process
+
+
+def become_guard() -> None:
+    """Make the calling process the guard of a tree, which ends it once the console is gone."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_NAME, _GUARD.encode(), 0, 0, 0)
+
+
+def _is_guard(process: Process) -> bool:
+    with suppress(psutil.Error):
+        return process.name() == _GUARD
+    return False
 
 
 def resident(process: Process) -> int:

@@ -56,6 +56,31 @@ print(ended)
 session.stop()
 """
 """A console whose engine is a copy of a prepared process; it ends when its input does."""
+ENDS_HALF_WAY = """\
+import os
+from pathlib import Path
+from time import sleep
+from psutil import Process
+from cbtui.engines.session import ProcessSession
+from sim.engine.setup import ProgramSetup, RunSetup
+
+if __name__ == "__main__":
+    setup = RunSetup(title="", programs=(ProgramSetup("node.py"),), clock="real")
+    session = ProcessSession(setup, len, print)
+    session.start()
+    while not list(Path().glob("reached-*")):
+        sleep(0.01)
+    Process.kill = lambda process: os._exit(0)
+    session._tree.end()
+"""
+"""A console that ends while it ends its engine: what it had stopped is still to be killed."""
+GUARDS = """\
+import time
+from cbtui.engines.process_tree import become_guard
+
+become_guard()
+time.sleep(300)
+"""
 AN_HOUR = 3_600_000_000_000
 """In nanoseconds."""
 SET_AGAIN = f"""\
@@ -189,17 +214,26 @@ def test_a_console_that_is_killed_takes_its_engine_and_what_it_started_along(
     assert "breaks off" in recording.damage
 
 
-def test_an_engine_that_ends_spares_the_process_that_ends_it_with_the_console() -> None:
+def test_whoever_ends_an_engine_spares_the_process_that_ends_it_with_the_console() -> None:
     sleep, marked = ["sleep", "300"], os.environ | {MARK: "mine"}
-    engine, started, guard = (subprocess.Popen(sleep, env=marked, start_new_session=True) for _ in range(3))
-    tree = ProcessTree(engine.pid, "mine")
-    tree.guard = guard.pid
-    tree.end()
+    guards = [sys.executable, "-c", GUARDS]
+    engine, started, guard = (
+        subprocess.Popen(each, env=marked, start_new_session=True) for each in (sleep, sleep, guards)
+    )
+    assert comes_true(lambda: "guard" in Path(f"/proc/{guard.pid}/comm").read_text())
+    ProcessTree(engine.pid, "mine").end()
     assert (engine.wait(), started.wait()) == (-signal.SIGKILL, -signal.SIGKILL)
     assert guard.poll() is None
     assert not is_stopped(guard.pid)
     guard.kill()
     guard.wait()
+
+
+def test_a_console_that_ends_while_it_ends_its_engine_leaves_nothing_stopped(folder: Path) -> None:
+    (folder / "node.py").write_text(SLEEPS)
+    (folder / "console.py").write_text(ENDS_HALF_WAY)
+    with nothing_left():
+        subprocess.run([sys.executable, "console.py"], cwd=folder, check=True)
 
 
 def test_a_console_that_is_killed_leaves_what_others_run(folder: Path) -> None:
