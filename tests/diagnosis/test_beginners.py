@@ -94,6 +94,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("qos_mismatch", "qos-mismatch", "self.create_subscription(", "the same QoSProfile"),
         ("rate_sleep", "self-made-deadlock", "self.rate.sleep()", "num_threads=2"),
         ("wrong_arity", "program-raised", "def on_chatter(self):", "def on_chatter(self, message)"),
+        ("no_self", "program-raised", "def on_chatter():", "def on_chatter(self, message)"),
         ("function_called", "program-raised", "self.create_timer(", "without calling it"),
         ("class_for_group", "program-raised", "callback_group=", "such as ReentrantCallbackGroup()"),
         ("wrong_arity_of_timer", "program-raised", "def tick(self, event):", "def tick(self)"),

@@ -172,6 +172,12 @@ _KNOWN = tuple(
             r"write a float: 1.0 in place of 1, or float(...)",
         ),
         (
+            r"TypeError: 'NoneType' object does not support the context manager protocol",
+            r"what this with statement is given is None; rclpy.init() returns nothing up to Jazzy",
+            r"if this is with rclpy.init(), call it alone, and rclpy.shutdown() at the end; as it is, it "
+            r"works from Kilted on (--distro kilted)",
+        ),
+        (
             r"TypeError: Node\.__init__\(\) missing 1 required positional argument: 'node_name'",
             r"a node has a name, by which others know it",
             r"give it one: super().__init__('my_node')",

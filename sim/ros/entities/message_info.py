@@ -2,6 +2,7 @@
 
 import inspect
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, TypedDict
 
 
@@ -19,17 +20,11 @@ def wants_message_info(callback: Callable[..., Any]) -> bool:
 
     Raises:
         RuntimeError: the callback is not callable with one or two arguments.
+        ValueError: it has no signature, as a method without ``self``, or some functions in C.
     """
-    if callable(callback):
-        try:
-            signature = inspect.signature(callback)
-        except ValueError:  # some functions in C have no signature
-            return False
-        for count in (1, 2):
-            try:
-                signature.bind(*[None] * count)
-            except TypeError:
-                continue
+    for count in (1, 2):
+        with suppress(TypeError):
+            inspect.signature(callback).bind(*[None] * count)
             return count == 2
     raise RuntimeError(
         "Subscription.__init__(): callback should be either be callable with one argument"

@@ -250,6 +250,6 @@ def _takes(callback: Callable[..., Any], arguments: int) -> bool:
     """Whether a subscription's callback accepts so many arguments, by rclpy's own test."""
     try:
         inspect.signature(callback).bind(*[object()] * arguments)
-    except TypeError:
+    except (TypeError, ValueError):
         return False
     return True

@@ -38,8 +38,11 @@ def culprit_of(error: BaseException, is_own: IsOwn) -> tuple[str, int, str] | No
     That is a callback with wrong parameters, or what hides a name of ``Node`` that rclpy uses.
     """
     frames = list(walk_tb(error.__traceback__))
-    if not frames or not isinstance(error, (TypeError, AttributeError, RuntimeError)):
+    if not frames or not isinstance(error, (TypeError, AttributeError, RuntimeError, ValueError)):
         return None
+    if str(error) == "invalid method signature":  # of inspect, on a method without self
+        handed_over = (each for each, _ in reversed(frames) if "callback" in each.f_locals)
+        return next((_unfit(each.f_locals["callback"], "subscription") for each in handed_over), None)
     if is_own(frames[-1][0]):
         return _hiding_attribute(error, *frames[-1])
     return _rejected_callback(error, frames[-1][0]) or _hiding(frames, is_own)
@@ -57,6 +60,11 @@ def _rejected_callback(error: BaseException, frame: FrameType) -> tuple[str, int
     kind = getattr(caller, "kind", _KINDS.get(number, "subscription"))
     if callback is None and _calls_with_future(caller):
         callback, kind = getattr(caller, "_handler", None), "client"
+    return _unfit(callback, kind)
+
+
+def _unfit(callback: Any, kind: str) -> tuple[str, int, str] | None:
+    """File and line of a callback that takes other arguments than one of its kind, and how to define it."""
     callback = inspect.unwrap(callback)
     code = getattr(callback, "__code__", None)
     if code is None:
