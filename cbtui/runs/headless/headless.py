@@ -71,7 +71,9 @@ def run_headless(
         try:
             run = _Headless(setup, file, recorder, chains)
             code = run.run()
-            return code if summary_path is None else max(code, run.save_summary(Path(summary_path)))
+            if summary_path is None or code == 2:
+                return code
+            return max(code, run.save_summary(Path(summary_path)))
         except (BrokenPipeError, CannotSayError):
             raise  # warns about standard output, not about the run
         except OSError as error:

@@ -115,10 +115,24 @@ def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
 
 
 def misnames(setup: RunSetup, timeline: Timeline) -> bool:
-    """Whether a change is for a callback that the run lacks, and that is named nearly as another."""
+    """Whether a change is for a callback that the run lacks, and that no file of its programs mentions.
+
+    What a launch file starts is not known before it runs: there, another callback has nearly that name.
+    """
     names = {each for _, name in callbacks_of(timeline) for each in (name, short_name(name))}
     changed = [*(each.callback for each in setup.groups), *(each.callback for each in setup.periods)]
-    return any(name not in names and get_close_matches(name, names, 1, 0.75) for name in changed)
+    missing = [name for name in changed if name not in names]
+    if any(each.is_launch_file for each in setup.programs):
+        missing = [name for name in missing if get_close_matches(name, names, 1, 0.75)]
+    return any(not _is_mentioned(name, setup, timeline) for name in missing)
+
+
+def _is_mentioned(name: str, setup: RunSetup, timeline: Timeline) -> bool:
+    """Tell whether a callback of that name may still be made."""
+    made_in = (file for each in timeline.entities.values() for file in (each.file, each.made_at[0]))
+    word = re.compile(rf"\b{re.escape(name.rpartition('/')[2])}(_callback)?\b")
+    files = {*(each.path for each in setup.programs), *made_in}
+    return any(word.search(setup.texts.get(file) or "".join(linecache.getlines(file))) for file in files)
 
 
 def place_of(entity: EntityInfo, timeline: Timeline) -> CallbackPlace:

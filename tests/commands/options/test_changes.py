@@ -1,6 +1,7 @@
 """Changing a program's set-up from the command line: what runs, what is recorded, what is refused."""
 
 import json
+import time
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +20,26 @@ CHANGES = (
     *("--period", "timer_callback=0.5"),
     *("--sensor-rate", "5"),
 )
+
+LATER = """
+import rclpy
+from rclpy.node import Node
+
+class Late(Node):
+    def __init__(self):
+        super().__init__('late')
+        self.timer = self.create_timer(0.5, self.tick)
+
+    def tick(self):
+        self.timer.cancel()
+        self.create_timer(0.5, self.ticks)
+
+    def ticks(self):
+        print('ticks')
+
+rclpy.init()
+rclpy.spin(Late())
+"""
 
 
 def starts(file: Path, callback: str) -> list[float]:
@@ -84,10 +105,30 @@ def test_a_callback_that_there_is_not_is_a_slip() -> None:
     assert not done.stdout
 
 
-def test_a_run_ends_as_soon_as_a_callback_proves_misspelt() -> None:
-    done = cbtui("run", "single-thread", "--clock", "real", "--for", "60", "--group", "scan_callbck=own")
-    assert (done.returncode, done.stdout) == (2, "")
-    assert "did you mean scan_callback?" in done.stderr
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (("--group", "scan_callbck=own"), "did you mean scan_callback?"),
+        (("--period", "nonsense=1"), "no timer callback is named nonsense; there is timer_callback"),
+    ],
+)
+def test_a_run_ends_as_soon_as_a_change_proves_to_be_for_no_callback(
+    change: tuple[str, str], told: str, tmp_path: Path
+) -> None:
+    begun, summary = time.monotonic(), tmp_path / "summary.json"
+    asked = ("single-thread", "--clock", "real", "--for", "60", "--json", str(summary))
+    done = cbtui("run", *asked, *change)
+    assert (done.returncode, done.stdout, summary.exists()) == (2, "", False)
+    assert told in done.stderr
+    assert time.monotonic() - begun < 50
+
+
+def test_a_callback_that_the_program_makes_later_is_waited_for(tmp_path: Path) -> None:
+    written = tmp_path / "later.py"
+    written.write_text(LATER)
+    done = cbtui("run", str(written), "--clock", "virtual", "--for", "3", "--group", "ticks=own")
+    assert (done.returncode, done.stderr) == (0, "")
+    assert "ticks" in done.stdout
 
 
 @pytest.mark.parametrize("command", ["run", "open"])
