@@ -16,7 +16,9 @@ def add_seed(parser: argparse.ArgumentParser) -> None:
         "--seed",
         metavar="S",
         type=values.schedule,
-        help="run in the order of threads that cbtui explore calls S; on the virtual clock",
+        help="what decides which thread goes on where several can, and which gets a lock, on the virtual "
+        "clock: 0, first come first served (0); a number, another order, each time the same; or what cbtui "
+        "explore names, such as pct:5 or moves:3=1; random numbers stay the same",
     )
 
 
