@@ -6,12 +6,20 @@ from pathlib import Path
 import pytest
 
 from sim.diagnosis import diagnose
+from sim.diagnosis.rule import Rule
+from sim.diagnosis.rules.services import ServiceFallsBehind
+from sim.diagnosis.rules.timing import FallsBehind
+from sim.diagnosis.timeline_view import TimelineView
+from sim.quantities.nanoseconds import SECOND
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
+from sim.trace.execution import Spans
+from sim.trace.figures.concurrency import Concurrency
+from sim.trace.model import Span, Window
 from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, executor_of, once, spin
 from tests.support.builder import ns
 from tests.support.engine_runs import program_setup, run_lesson, run_program, run_to_end
@@ -405,3 +413,43 @@ def test_a_service_that_answers_what_it_was_asked_in_turn_does_not_fall_behind(
         spin(node, 3)
 
     assert diagnosed(program).problems() == set()
+
+
+@pytest.mark.parametrize("rule", [ServiceFallsBehind(), FallsBehind()], ids=["service", "subscription"])
+def test_what_falls_behind_is_looked_for_in_the_latest_calls_alone(
+    rule: Rule, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        client = node.create_client(SetBool, "/own", callback_group=MutuallyExclusiveCallbackGroup())
+        publisher = node.create_publisher(Int32, "numbers", 1000)
+
+        def work(_: object) -> None:
+            simulation.sleep(1.2 if simulation.now > 100 else 0.3)
+
+        def serve(_: object, response: object) -> object:
+            work(response)
+            return response
+
+        def ask() -> None:
+            client.call_async(SetBool.Request())
+            publisher.publish(Int32())
+
+        groups = [MutuallyExclusiveCallbackGroup() for _ in range(3)]
+        node.create_service(SetBool, "/own", serve, callback_group=groups[0])
+        node.create_subscription(Int32, "numbers", work, 1000, callback_group=groups[1])
+        node.create_timer(0.5, ask, callback_group=groups[2])
+        spin(node, 4)
+
+    run = diagnosed(program, until=108.0).timeline
+    reads: list[int] = []
+    read_span = Spans.span
+
+    def span(spans: Spans, row: int) -> Span:
+        reads.append(row)
+        return read_span(spans, row)
+
+    monkeypatch.setattr(Spans, "span", span)
+    lately = Window(run.end - 3 * SECOND, run.end + 1)
+    assert list(rule.check(TimelineView(run, lately, Concurrency(run))))
+    assert len(reads) < 50

@@ -1,8 +1,7 @@
 """Rules on service calls that are never answered."""
 
 import re
-from collections.abc import Iterator, Sequence
-from itertools import pairwise
+from collections.abc import Iterator
 
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.functions import return_response
@@ -20,6 +19,7 @@ from sim.diagnosis.rule import (
 )
 from sim.diagnosis.rules.edits import edits_for_service
 from sim.diagnosis.rules.names import offer
+from sim.diagnosis.rules.timing import calls_outrun
 from sim.diagnosis.time_limits import time_limit
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, until_when, who
@@ -29,7 +29,7 @@ from sim.trace.events import EntityKind, ProgramAt
 from sim.trace.model import EntityInfo, Span, Window
 from sim.trace.timeline import Timeline
 
-_IN_TURN = 3
+_CALLS_IN_TURN = 3
 """The number of calls, one right after the other, that tell a habit."""
 
 _RETURNED = re.compile(r"got <class '(?:[\w<>]+\.)*(\w+)'>$")
@@ -106,12 +106,11 @@ class ServiceFallsBehind(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each call that took an old request, if it followed others at once that took younger ones."""
         for entity in view.entities(EntityKind.SERVICE):
-            late = {span.number for span in view.spans(entity.id) if span.age >= self.threshold}
-            every = view.timeline.spans_of(entity.id, Window(0, view.end + 1)) if late else ()
-            for place, span in enumerate(every):
-                calls = every[max(0, place + 1 - _IN_TURN) : place + 1]
-                if span.number in late and _is_outrun(entity, calls, view.timeline):
-                    before = calls[-2]
+            for span in view.spans(entity.id):
+                if span.age >= self.threshold and (
+                    calls := calls_outrun(entity, span, _CALLS_IN_TURN, view.timeline)
+                ):
+                    before = calls[-2]  # the last may still run
                     at, until = before.start, before.end_at(view.end)
                     yield Finding(self, at, until, entity.id, about=entity.name, size=span.age)
 
@@ -131,21 +130,6 @@ class ServiceFallsBehind(Rule):
             line_of(found.subject, Window(found.at, found.until), timeline)
             or place_of(found.subject, timeline),
         )
-
-
-def _is_outrun(entity: EntityInfo, calls: Sequence[Span], timeline: Timeline) -> bool:
-    """Whether calls followed each other at once, each with an older request, and left more of them."""
-    left = [timeline.queue(entity.id, each.start).depth for each in calls]
-    return (
-        len(calls) == _IN_TURN
-        and left[0] < left[-1]
-        and all(
-            one.end is not None
-            and 0 <= other.start - one.end <= (one.end - one.start) // 10
-            and other.age > one.age
-            for one, other in pairwise(calls)
-        )
-    )
 
 
 class NobodyOffers(Rule):

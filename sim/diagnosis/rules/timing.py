@@ -1,6 +1,6 @@
 """Rules on the duration of callbacks and its effects."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from sim.diagnosis.edits.profiles import set_depth
@@ -246,7 +246,7 @@ class FallsBehind(Rule):
         for entity in view.entities(EntityKind.SUBSCRIPTION):
             for span in view.spans(entity.id):
                 is_old = span.age >= self.threshold and span.end is not None
-                if is_old and _is_outrun(entity, span, view.timeline):
+                if is_old and calls_outrun(entity, span, _CALLS_IN_TURN, view.timeline):
                     yield Finding(self, span.start, span.end_at(view.end), entity.id, size=span.age)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
@@ -266,15 +266,16 @@ class FallsBehind(Rule):
         return None if timeline.losses_of(found.subject, Window(0, timeline.end + 1)) else Weight.PROBLEM
 
 
-def _is_outrun(entity: EntityInfo, last: Span, timeline: Timeline) -> bool:
-    """Whether the calls up to one followed each other at once, each with an older message, and left more.
+def calls_outrun(entity: EntityInfo, last: Span, number: int, timeline: Timeline) -> Sequence[Span]:
+    """Return the ``number`` calls up to one if they followed each other at once, each with an older message,
+    and left more; else none.
 
     Of a burst of messages each is older, too, but fewer and fewer are left.
     """
-    calls = timeline.spans_of(entity.id, Window(0, last.start + 1))[-_CALLS_IN_TURN:]
+    calls = timeline.spans_of(entity.id, Window(0, last.start + 1))[-number:]
     left = [timeline.queue(entity.id, each.start).depth for each in calls]
-    return (
-        len(calls) == _CALLS_IN_TURN
+    outrun = (
+        len(calls) == number
         and left[0] < left[-1]
         and all(
             one.end is not None
@@ -283,3 +284,4 @@ def _is_outrun(entity: EntityInfo, last: Span, timeline: Timeline) -> bool:
             for one, other in pairwise(calls)
         )
     )
+    return calls if outrun else ()
