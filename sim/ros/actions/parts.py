@@ -53,6 +53,13 @@ class PartProbe(SilentProbe):
         self._program.dropped(self._owner, self._owner.queued, message)
 
 
+class LatestProbe(PartProbe):
+    """The probe of a part that keeps the latest message alone: it loses nothing to a newer one."""
+
+    def dropped(self, entity: TracedEntity, depth: int, message: int) -> None:
+        """Record nothing: the newer message took the place of the older one."""
+
+
 class Part(Entity):
     """An entity that is served as part of a waitable."""
 
@@ -122,4 +129,4 @@ class SubscriptionPart(Part, Subscription):
         silent = SubscriptionEventCallbacks(use_default_callbacks=False)
         group = owner.parts_group
         super().__init__(owner.node, msg_type, name, callback, group, qos_profile, event_callbacks=silent)
-        self._probe = PartProbe(owner)
+        self._probe = LatestProbe(owner) if self.depth == 1 else PartProbe(owner)
