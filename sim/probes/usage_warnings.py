@@ -98,6 +98,11 @@ class UsageWarnings:
             if self._here.entity and is_written(file):
                 problem = f"{function} calls {name}() without await, so nothing of {name} runs"
                 advice = f"put await before {name}(), in an async def {function}"
+                if function == "<lambda>":
+                    problem = f"a lambda returns {name}(), which nobody awaits, so nothing of {name} runs"
+                    advice = (
+                        f"hand over an async def, or a functools.partial of {name}: rclpy awaits no other"
+                    )
                 self._tell_of((file, line), NoticeKind.NEVER_AWAITED, problem, advice)
                 return True
         return False

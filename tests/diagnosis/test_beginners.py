@@ -73,6 +73,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "let tick ask again only when the reply is there",
         ),
         ("late_bound_lambda", "slip", "lambda: self.blink(colour)", "lambda colour=colour: …"),
+        (
+            "lambda_returns_coroutine",
+            "slip",
+            "lambda message: self.ask(message.data)",
+            "hand over an async def, or a functools.partial of ask",
+        ),
         ("never_awaited", "slip", "self.is_well()", "put await before is_well(), in an async def tick"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("calls_of_two_peers", "self-made-deadlock", "self.client.call(", "num_threads=3"),

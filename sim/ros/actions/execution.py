@@ -14,6 +14,7 @@ from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.ros.scheduling.entity import Entity, TakenData
 from sim.ros.scheduling.executors import Executor
+from sim.ros.scheduling.task import makes_coroutines
 from sim.trace.events import EntityKind
 
 
@@ -63,7 +64,7 @@ class _GoalRun:
         self._runner.show(self._execution)
         try:
             outcome = callback(goal)
-            if inspect.iscoroutine(outcome):
+            if inspect.iscoroutine(outcome) and makes_coroutines(callback):
                 outcome = yield from self._drive(outcome)
         except GeneratorExit:
             raise  # the task was cancelled while it was suspended: the trace has its suspension already

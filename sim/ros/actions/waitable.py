@@ -6,7 +6,6 @@ which the parts were added: rclpy's ``is_ready`` remembers these parts for ``tak
 EventsExecutor, each arrival takes from one part only (``HandleWaitableReady``).
 """
 
-import inspect
 from collections.abc import Callable, Container
 from typing import Any, ClassVar, NamedTuple
 
@@ -19,6 +18,7 @@ from sim.ros.node.node import Node
 from sim.ros.qos.qos import QoSProfile
 from sim.ros.scheduling.callback_groups import CallbackGroup, ReentrantCallbackGroup
 from sim.ros.scheduling.entity import Entity, TakenData
+from sim.ros.scheduling.task import makes_coroutines
 from sim.ros.scheduling.waitable import NumberOfEntities
 from sim.trace.events import EntityKind
 
@@ -166,9 +166,9 @@ class ActionWaitable(Entity):
 
 
 async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
-    """Call a function, and await its result if that is a coroutine."""
+    """Call a function, and await its result if it is a coroutine function."""
     outcome = callback(*args)
-    return await outcome if inspect.iscoroutine(outcome) else outcome
+    return await outcome if makes_coroutines(callback) else outcome
 
 
 def _full_name(node: Node, action_name: str) -> str:

@@ -4,7 +4,6 @@ The simulated network never loses a message, so the "message lost" event never o
 message that a full queue drops, or whose lifespan is over.
 """
 
-import inspect
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
@@ -15,6 +14,7 @@ from sim.ros.logging.logger import get_logger
 from sim.ros.qos.policies import QoSPolicyKind
 from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import NEVER, Entity, OwnerNode, TakenData
+from sim.ros.scheduling.task import makes_coroutines
 from sim.trace.events import EntityKind
 
 EventCallback = Callable[[Any], Any]
@@ -172,7 +172,7 @@ class EventHandler(Entity):
     async def invoke(self, taken: TakenData) -> None:
         """Call the callback with the state."""
         outcome = self.callback(taken.data)
-        if inspect.iscoroutine(outcome):
+        if makes_coroutines(self.callback):
             await outcome
 
 

@@ -292,20 +292,14 @@ class EventsExecutor(Executor):
                 _log(error, entity.node.get_logger(), _PLURALS.get(entity.kind, _TASK))
             raise
 
-    @sends_responses
     def _coroutine_returned(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
         """A callback has returned a coroutine."""
         runs_all = self._profile.events_executor_runs_coroutines
         if runs_all or entity.kind not in (EntityKind.SUBSCRIPTION, EntityKind.SERVICE):
             self._postponed = True
             self._runner.postpone(entity, coroutine, outer)
-        elif entity.kind is EntityKind.SERVICE:
-            coroutine.close()
-            error = TypeError("a service's callback returned a coroutine, which is no response")
-            self._runner.fail(entity, error, outer)
-            raise error
         else:
-            self._runner.end(entity, outer)
+            self._runner.drop(entity, coroutine, outer)
 
     def _step(self, task: Task[Any]) -> None:
         """Run a task up to its next await; what it awaits queues it again."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 from sim.interpreter.function_marks import calls_the_program
 from sim.ros.scheduling.cycle import Cycle, Work
 from sim.ros.scheduling.entity import Entity, TakenData
-from sim.ros.scheduling.handlers import Handler
+from sim.ros.scheduling.handlers import Handler, awaits, discard
 from sim.ros.scheduling.task import Task
 from sim.trace.events import Reason
 
@@ -125,8 +125,20 @@ class CallbackRunner:
             self.end(entity, outer)
 
     def drive(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
-        """Run a callback's coroutine up to its next await; it continues as a task."""
-        self._step(self._task_of(entity, coroutine), entity, outer)
+        """Run a callback's coroutine up to its next await, if it is awaited; it continues as a task."""
+        if awaits(entity):
+            self._step(self._task_of(entity, coroutine), entity, outer)
+        else:
+            self.drop(entity, coroutine, outer)
+
+    def drop(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
+        """A callback has returned a coroutine that nobody awaits, and so has ended."""
+        try:
+            discard(entity, coroutine)
+        except TypeError as error:
+            self.fail(entity, error, outer)
+            raise
+        self.end(entity, outer)
 
     def postpone(self, entity: Entity, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
         """Start a callback's coroutine as a task."""

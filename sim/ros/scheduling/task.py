@@ -175,7 +175,7 @@ class Task(Future[T]):
         self.number = next(_numbers)
         """The number of the task in the order of creation."""
         arguments, named = args or (), kwargs or {}
-        if _makes_coroutines(handler):
+        if makes_coroutines(handler):
             handler = handler(*arguments, **named)
             arguments, named = (), {}
         self._handler: Any = handler
@@ -273,7 +273,7 @@ _Listener: TypeAlias = Callable[[Future[T]], object] | Task[Any] | AsyncioWaiter
 """What is notified when a future is done: a callback, or an awaiting task."""
 
 
-def _makes_coroutines(handler: object) -> TypeGuard[Callable[..., Coroutine[Any, Any, Any]]]:
+def makes_coroutines(handler: object) -> TypeGuard[Callable[..., Coroutine[Any, Any, Any]]]:
     """As ``inspect.iscoroutinefunction``, but much faster for functions and methods."""
     code = getattr(handler, "__code__", None)
     if isinstance(code, CodeType):

@@ -2,6 +2,8 @@
 
 import asyncio
 import threading
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 import pytest
@@ -30,6 +32,13 @@ def spin(node: Node, threads: int | None = None) -> Executor:
     executor.add_node(node)
     executor.spin()
     return executor
+
+
+def returned_by_a_function(function: Callable[..., Any]) -> Callable[..., Any]:
+    def returns(*arguments: object) -> object:
+        return function(*arguments)
+
+    return returns
 
 
 BOTH = pytest.mark.parametrize("threads", [None, 2], ids=["single", "multi"])
@@ -185,6 +194,50 @@ def test_a_service_handler_may_be_a_coroutine() -> None:
         spin(node)
 
     assert simulate(program, until=4.0).said() == ["late"]
+
+
+@BOTH
+@pytest.mark.parametrize(
+    ("wrapped", "runs"),
+    [
+        (lambda function: function, True),
+        (partial, True),
+        (returned_by_a_function, False),
+    ],
+    ids=["function", "partial", "returned"],
+)
+def test_what_a_callback_returns_is_awaited_if_it_is_a_coroutine_function(
+    threads: int | None, wrapped: Callable[[Any], Any], runs: bool
+) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        async def says(*_: object) -> None:
+            node.get_logger().info("runs")
+
+        node.create_timer(1.0, wrapped(says))
+        if runs:
+            spin(node, threads)
+            return
+        with pytest.warns(RuntimeWarning, match="was never awaited"):
+            spin(node, threads)
+
+    assert simulate(program, until=2.5).said() == (["runs", "runs"] if runs else [])
+
+
+def test_a_service_whose_function_returns_a_coroutine_does_not_answer() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        async def serve(_: object, response: object) -> object:
+            return response
+
+        node.create_service(SetBool, "own", returned_by_a_function(serve))
+        node.create_client(SetBool, "own").call_async(SetBool.Request())
+        with pytest.raises(TypeError), pytest.warns(RuntimeWarning, match="was never awaited"):
+            spin(node)
+
+    simulate(program, until=2.0)
 
 
 def test_asyncio_sleep_in_a_callback_finds_no_running_event_loop() -> None:
