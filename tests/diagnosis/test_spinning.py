@@ -6,6 +6,7 @@ import pytest
 
 from lessons.checks import never_stuck
 from sim.diagnosis import Finding, Weight, diagnose
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import Printed, ProgramAt, SpinClashed
 from tests.support.daily import first_row_daily
 from tests.support.engine_runs import Run, run_program
@@ -304,9 +305,10 @@ RARELY = (
 
 def test_a_loop_that_spins_too_rarely_is_told_with_its_line(tmp_path: Path) -> None:
     run = run_lines(tmp_path, *RARELY, "    rclpy.spin_once(node)", "    time.sleep(1.3)", seconds=6.4)
-    told = {each.rule.id: each.explained(run.timeline) for each in diagnose(run.timeline)}
-    never = told["node-never-spins"]
+    [found] = [each for each in diagnose(run.timeline) if each.rule.id == "node-never-spins"]
+    never = found.rule.explain(found, run.timeline)
     assert never.what.endswith("does not run: the program is in the loop of line 8, and spins too rarely")
+    assert found.at < 2 * SECOND  # when it began, not when it was worst
     assert str(never.place) == "node.py:8"
 
 

@@ -36,7 +36,7 @@ from sim.diagnosis.words import (
 from sim.quantities.durations import duration, timestamp
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import node_name
-from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
+from sim.trace.events import EntityId, EntityKind, GroupKind, NodeId, Reason
 from sim.trace.model import AWAIT, EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -233,6 +233,7 @@ class NodeNeverSpins(Rule):
 
     id = "node-never-spins"
     summary = "callbacks are ready and nobody spins their node"
+    dated_by_first = True
     threshold = SECOND
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
@@ -243,8 +244,19 @@ class NodeNeverSpins(Rule):
             since = wait.parts[-1].start
             is_long = view.end - since >= self.threshold
             if is_long and node not in taken and raised_last(node, view.timeline) is None:
-                yield Finding(self, since, view.end, wait.entity, about=name, size=view.end - since)
+                first, size = self._first_of(node, view), view.end - since
+                yield Finding(self, first, view.end, wait.entity, about=name, size=size)
         yield from () if view.unspun else self._in_loop(view)
+
+    def _first_of(self, node: NodeId, view: TimelineView) -> Nanoseconds:
+        """When the first wait of a node began that lasted as long."""
+        waits = [wait for each in view.entities() if each.node == node for wait in view.waits(each.id)]
+        return min(
+            part.start
+            for wait in waits
+            for part in wait.because(Reason.NOBODY_SPINS)
+            if wait.length(part) >= self.threshold
+        )
 
     def _in_loop(self, view: TimelineView) -> Iterator[Finding]:
         """Yield a callback that is not ready, if the program has been in one loop all the time lately."""
@@ -303,9 +315,7 @@ class NodeNeverSpins(Rule):
             what = f"the program waits in Rate.sleep() at line {loop.first_line}, and nothing spins"
             why = "a rate's timer is a callback too: callbacks run only inside spin()"
             remedies = by_edit(loop, "spin the node in a thread beside the loop", spin_beside)
-        ready = (
-            f"has been ready for {duration(found.lasted)} and does not run" if found.size else "cannot run"
-        )
+        ready = f"has been ready for {duration(found.size)} and does not run" if found.size else "cannot run"
         if found.about not in subject:
             subject = f"{subject} of {found.about}"
         return Explanation(
