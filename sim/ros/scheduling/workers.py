@@ -322,8 +322,8 @@ class WorkerPool:
                 # worker has taken over work that others were called for before.
                 waited_for = worker.began_in == self._clock.turn and not self._claimed()
                 self.error_surfaces |= waited_for or self._only_asks_again()
-        except (KeyboardInterrupt, SystemExit):
-            return  # lost, as in rclpy: a thread of a pool ends silently
+        except BaseException:  # noqa: BLE001 -- lost, as in rclpy: the pool keeps it in a future
+            return
         finally:
             worker.began_in = -1
 

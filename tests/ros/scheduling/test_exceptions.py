@@ -8,7 +8,7 @@ from sim.interfaces import message
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.trace.events import CallbackFailed
+from sim.trace.events import CallbackFailed, CallbackStarted
 from tests.ros.scheduling.test_multi_threaded import spin
 from tests.support.simulation import Simulation, simulate
 
@@ -158,6 +158,27 @@ def test_after_an_exception_a_multi_threaded_executor_can_be_spun_again() -> Non
         executor.spin()
 
     assert simulate(program, until=3.5).times("<lambda>") == [1.0, 2.0, 3.0]
+
+
+class Halted(BaseException):
+    """No exception of the usual kind."""
+
+
+@pytest.mark.parametrize("kind", [SystemExit, KeyboardInterrupt, Halted])
+def test_what_is_no_usual_exception_is_lost_on_a_worker_which_runs_the_next_callback(
+    kind: type[BaseException],
+) -> None:
+    def halt() -> None:
+        raise kind
+
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(1.0, halt)
+        spin(node, 2)
+
+    trace = simulate(program, until=4.5)
+    assert trace.times("halt") == [1.0, 2.0, 3.0, 4.0]
+    assert len({each.thread for each in trace.of(CallbackStarted)}) <= 2
 
 
 def test_after_an_exception_the_group_is_free() -> None:
