@@ -58,6 +58,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "await self.ready",
             "give tick a callback group of its own, and let on_start complete it",
         ),
+        ("await_in_own_group", "overrun-timer", "await self.ready", "let on_start complete it"),
         ("wait_for_event", "endless-wait", "self.opened.wait()", "give go a callback group of its own"),
         (
             "semaphore_in_reentrant_group",
@@ -213,6 +214,13 @@ def test_a_beginners_mistake_is_one_problem_at_its_line(
     assert told.place.file == str(path)
     assert culprit in path.read_text().splitlines()[told.place.first_line - 1]
     assert cure in told.cure
+
+
+@pytest.mark.parametrize("program", ["await_in_vain", "await_in_own_group"])
+def test_an_await_in_vain_is_told_with_what_is_awaited(program: str) -> None:
+    timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 4.0)).timeline
+    [told] = [each.rule.explain(each, timeline).what for each in diagnose(timeline)]
+    assert "tick awaits self.ready, which has not come since 0.500 s" in told
 
 
 @pytest.mark.parametrize(

@@ -46,6 +46,13 @@ def enders(source: SourceEditor, line: int) -> tuple[tuple[str, str, int], ...]:
     )
 
 
+@asked_of_file
+def awaited_at(source: SourceEditor, line: int) -> str:
+    """Return the one expression that a line awaits; "" if there is none, or another, or it is a call."""
+    there = [each.value for each in source.nodes(ast.Await) if each.lineno <= line <= (each.end_lineno or 0)]
+    return ast.unparse(there[0]) if len(there) == 1 and isinstance(there[0], ast.Attribute | ast.Name) else ""
+
+
 def _does(source: SourceEditor, function: ast.FunctionDef, calls: set[str]) -> bool:
     return any(ast.unparse(each.func) in calls for each in source.nodes(ast.Call, function))
 

@@ -20,6 +20,7 @@ from sim.diagnosis.rule import (
     place_of,
 )
 from sim.diagnosis.rules.edits import edits_for_rounds
+from sim.diagnosis.rules.waiting import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import awaited_lock, lock_keeper, lock_taker, often, threads_for, who, with_threads
 from sim.quantities.durations import duration
@@ -30,6 +31,8 @@ from sim.trace.timeline import Timeline
 
 _HABIT = 3
 """The number of overruns from which on their share counts."""
+_IN_VAIN = 3 * SECOND
+"""How long an await that keeps nobody else waiting lasts before it is told."""
 _CALLS_IN_TURN = 5
 """The number of calls, one right after the other, that tell a habit."""
 
@@ -132,6 +135,9 @@ class OverrunTimer(Rule):
         ticks = "1 tick" if missed == 1 else f"{missed} ticks"
         subject, during = who(found.subject, timeline), Window(found.at, found.until)
         place = line_of(found.subject, during, timeline)
+        if (since := awaits_in_vain_since(found.subject, during, timeline)) is not None:
+            why = "a timer is not called again before its callback is over"
+            return Explanation(awaits_in_vain(subject, place, since), why, let_complete(place), place)
         locks = [each for each in timeline.positions_of(found.subject, during) if each.waits_for_lock]
         why = "the timer is not called again before its callback is over; missed ticks are not made up for"
         cure = f"let {subject} return sooner: do long work step by step, or in a callback of another group"
@@ -165,8 +171,13 @@ class OverrunTimer(Rule):
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """A problem if most calls overrun, else a remark.
 
-        A timer that was called once has missed nothing: its callback may cancel it.
+        A timer that was called once has missed nothing: its callback may cancel it. What it awaits in vain is
+        told where others wait for it.
         """
+        if awaits_in_vain_since(found.subject, Window(found.at, found.until), timeline) is not None:
+            waits = timeline.moment(found.until).waiting.values()
+            keeps = any(each.holder == found.subject != each.entity for each in waits)
+            return None if keeps or found.lasted < _IN_VAIN else Weight.PROBLEM
         calls = timeline.calls_of(found.subject, Window(0, timeline.end + 1))
         if calls < 2:
             return None

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
-from sim.diagnosis.edits.flags import event_setters
+from sim.diagnosis.edits.flags import awaited_at, event_setters
 from sim.diagnosis.edits.spins import spin_beside, spins_in_turn, started_late, taken_away
 from sim.diagnosis.rule import (
     CodeLocation,
@@ -139,20 +139,31 @@ class GroupStarvation(_KeptWaiting):
             is_only = threads_for([found.culprit], found.until, timeline) == 1
             busy = f", on {only_thread(timeline)}" if is_only else ", and all threads were busy"
         held = f"{group} was held by {culprit}{busy}"
-        if (since := _awaits_in_vain_since(found, timeline)) is not None:
-            held = f"{culprit} awaits what has not come since {timestamp(since)}, and keeps {group} meanwhile"
+        window = Window(found.at, found.until)
+        if (since := awaits_in_vain_since(found.culprit, window, timeline)) is not None:
+            held = f"{awaits_in_vain(culprit, place, since)}, and keeps {group} meanwhile"
             room = Remedy((found.culprit,))
-            completes = (
-                f"let {listed(setters)} complete it" if setters else "make sure that something completes it"
-            )
-            cure = f"{room.words(timeline)}, and {completes}"
+            cure = f"{room.words(timeline)}, and {let_complete(place)}"
         return self._explained(found, timeline, held, why, cure, room)
 
 
-def _awaits_in_vain_since(found: Finding, timeline: Timeline) -> Nanoseconds | None:
-    """When the culprit began an await that lasts, of a future that is not the reply to a call of its."""
-    last = timeline.positions_of(found.culprit, Window(found.at, found.until + 1))[-1:]
-    asks = any(each.caller == found.culprit for each in timeline.moment(found.until).pending_calls)
+def awaits_in_vain(subject: str, place: CodeLocation | None, since: Nanoseconds) -> str:
+    """Return a clause on an await of a future that does not come."""
+    future = awaited_at(place.file, place.first_line) if place else ""
+    awaits = f"{future}, which" if future else "what"
+    return f"{subject} awaits {awaits} has not come since {timestamp(since)}"
+
+
+def let_complete(place: CodeLocation | None) -> str:
+    """Return what to do about the future that is awaited at a place."""
+    setters = event_setters(place.file, place.first_line) if place else ()
+    return f"let {listed(setters)} complete it" if setters else "make sure that something completes it"
+
+
+def awaits_in_vain_since(entity: EntityId, window: Window, timeline: Timeline) -> Nanoseconds | None:
+    """When a callback began an await that lasts, of a future that is not the reply to a call of its."""
+    last = timeline.positions_of(entity, Window(window.start, window.end + 1))[-1:]
+    asks = any(each.caller == entity for each in timeline.moment(window.end).pending_calls)
     return next((each.start for each in last if each.call == AWAIT and each.end is None and not asks), None)
 
 
