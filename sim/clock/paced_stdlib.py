@@ -22,6 +22,7 @@ from sim.quantities.nanoseconds import wait_ns
 _allocate_lock = threading.Lock
 _RLock: Any = type(threading.RLock())
 _thread_join = threading.Thread.join
+_active_threads: dict[int, threading.Thread] = threading._active  # type: ignore[attr-defined]
 _LIBRARY = {threading.__file__, queue.__file__}
 _PASSED = {*_LIBRARY, __file__}
 
@@ -131,8 +132,7 @@ class PacedRLock(_RLock):  # type: ignore[misc]
 def _note_taking(lock: PacedLock | PacedRLock, frame: FrameType, clock: PacedClock) -> None:
     """Record which thread took a lock, during what, and where: the first frame outside the library."""
     lock.holder_ident = ident = get_ident()
-    active: Any = threading
-    lock.taken_by = active._active.get(ident)
+    lock.taken_by = _active_threads.get(ident)
     lock.taken_during = clock.activity()
     while frame.f_code.co_filename in _PASSED and frame.f_back is not None:
         frame = frame.f_back

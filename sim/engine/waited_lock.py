@@ -45,7 +45,7 @@ def waited_lock(
     for lock in objects:
         if ident := getattr(lock, "holder_ident", 0):
             now, then = running.get(ident), getattr(lock, "taken_during", None)
-            keeper = then.entity if isinstance(then, RunningCallback) and then != now else 0
+            keeper = then[0] if isinstance(then, tuple) and then != now else 0
             thread = None if now or keeper else getattr(lock, "taken_by", None)
             file, _, line = taking(lock, own)
             by, is_left = ("", False) if thread is None else (thread.name, not thread.is_alive())
