@@ -306,7 +306,7 @@ RARELY = (
 def test_a_loop_that_spins_too_rarely_is_told_with_its_line(tmp_path: Path) -> None:
     run = run_lines(tmp_path, *RARELY, "    rclpy.spin_once(node)", "    time.sleep(1.3)", seconds=6.4)
     [found] = [each for each in diagnose(run.timeline) if each.rule.id == "node-never-spins"]
-    never = found.rule.explain(found, run.timeline)
+    never = found.explained(run.timeline)
     assert never.what.endswith("does not run: the program is in the loop of line 8, and spins too rarely")
     assert found.at < 2 * SECOND  # when it began, not when it was worst
     assert str(never.place) == "node.py:8"
