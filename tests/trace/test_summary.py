@@ -202,6 +202,16 @@ def test_two_turns_right_after_each_other_are_two_also_in_a_window_that_begins_i
     assert (robot.turns, round(robot.turned, 9)) == (2, 0.4)
 
 
+def test_a_turn_that_begins_before_the_first_pose_counts_from_a_robot_at_rest() -> None:
+    run, _, _, _ = small_run()
+    run.velocity(0.0, 0.0, 0.2)
+    run.robot(1.0, turned=0.2)
+    run.robot(5.0, turned=1.0)
+    robot = summary_of(run).robot
+    assert robot is not None
+    assert (robot.turns, robot.turned) == (1, 1.0)
+
+
 def test_a_pose_is_never_minus_zero() -> None:
     run, _, _, _ = small_run()
     run.robot(1.0, x=-0.001, y=-0.0, yaw=-0.001)

@@ -173,7 +173,8 @@ def robot_incrementally(timeline: Timeline, window: Window) -> Incremental[Robot
     commands = yield from collect(timeline.commands(window))
     begun = [turn.start for turn in turns_among(commands, timeline.command(window.start), window)]
     poses = [timeline.robot(at) for at in (*begun, window.end)]
-    turned = sum(abs(after.turned - before.turned) for before, after in pairwise(filter(None, poses)))
+    angles = [0.0 if pose is None else pose.turned for pose in poses]  # before its first pose it stands
+    turned = sum(abs(after - before) for before, after in pairwise(angles))
     return RobotFigures(len(begun), turned, last.travelled, last.x, last.y, last.yaw)
 
 
