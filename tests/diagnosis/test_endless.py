@@ -16,6 +16,7 @@ from sim.trace.events import (
     CallbackEnded,
     CallbackStarted,
     Doing,
+    Logged,
     Notice,
     NoticeKind,
     Reason,
@@ -236,3 +237,57 @@ def test_calls_that_wait_beside_each_other_and_keep_nobody_from_running_are_told
     assert "ready.set() in release (node.py:14) would end it" in told.what
     assert "can run only" not in told.what
     assert "give work a MutuallyExclusiveCallbackGroup" in told.cure
+
+
+TAKES_JOBS = """\
+import queue
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+
+rclpy.init()
+node, jobs = Node("n"), queue.Queue()
+
+def work():
+    while True:
+        jobs.get()
+
+def feed():
+    jobs.put(1)
+
+node.create_timer(1.0, work, callback_group=MutuallyExclusiveCallbackGroup())
+node.create_timer({period}, feed)
+executor = MultiThreadedExecutor(2)
+executor.add_node(node)
+executor.spin()
+"""
+
+
+@pytest.mark.parametrize(("period", "told"), [(0.5, 0), (4.5, 0), (60.0, 1)])
+def test_a_worker_that_gets_its_next_job_now_and_then_does_not_stand_still(
+    period: float, told: int, tmp_path: Path
+) -> None:
+    timeline = run_program(tmp_path, TAKES_JOBS.format(period=period), 12.0).timeline
+    problems = [
+        each.rule.id for each in diagnose(timeline) if each.rule.weigh(each, timeline) is Weight.PROBLEM
+    ]
+    assert problems.count("endless-wait") == told
+    assert "stays-in-loop" not in problems
+
+
+@pytest.mark.parametrize("sign", ["a log line", "another line", "none", "a log line of another"])
+def test_a_wait_in_a_loop_is_over_when_its_call_is_seen_to_go_on(sign: str) -> None:
+    frames = (("node.py", "callback", 63),)
+    at = CallbackAt(ns(0.2), 1, 1, Doing.WAITS, "Queue.get", frames, loop=("node.py", 62))
+    problem = "has not come back for 1.5 s"
+    notice = Notice(ns(1.5), Severity.WARN, "words", 1, kind=NoticeKind.NO_PROGRESS, problem=problem)
+    later: dict[str, AnyEvent] = {
+        "a log line": Logged(ns(2.0), Severity.INFO, "n", "job 1", 1, 1),
+        "another line": _in_a_loop(2.0, line=64),
+        "a log line of another": Logged(ns(2.0), Severity.INFO, "n", "job 1", 2, 2),
+    }
+    signs = [later[sign]] if sign in later else []
+    begun = CallbackStarted(5, 1, 1, 0, 0, 0)
+    found = explained(begun, at, notice, *signs, TimePassed(ns(9.0)))
+    assert bool(found) is (sign not in ("a log line", "another line"))

@@ -7,7 +7,7 @@ from sim.diagnosis.cures import Remedy, remedy_for_waits
 from sim.diagnosis.edits.flags import enders, event_setters, setters, sleeps
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_location, line_of
 from sim.diagnosis.rules.edits import beside_others, edits_for_reply, edits_for_waiting
-from sim.diagnosis.time_limits import ends_by_itself, time_limit
+from sim.diagnosis.time_limits import ends_by_itself, goes_on, time_limit
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import awaited_lock, listed, must_answer, often, threads_for, who
 from sim.quantities.durations import duration
@@ -60,6 +60,9 @@ class EndlessWait(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each wait that the engine reported."""
         for notice in _on_waits(view.timeline):
+            at = view.timeline.positions_of(notice.entity, Window(notice.t, notice.t + 1))
+            if any(goes_on(each, view.timeline) for each in at) and not _is_deadlock(notice):
+                continue
             if notice.kind is not NoticeKind.NO_PROGRESS or not _computes(notice, view):
                 stuck, until = frozenset([notice.entity]), _until(notice, view)
                 yield Finding(self, notice.t, until, notice.entity, event=notice, stuck=stuck)
@@ -280,8 +283,12 @@ class StaysInLoop(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Irrelevant if it left the loop after all."""
-        return self.weight if found.until >= timeline.end else None
+        """Irrelevant if it left the loop after all, a remark if it goes on there and keeps nobody waiting."""
+        if found.until < timeline.end:
+            return None
+        at = timeline.positions_of(found.subject, Window(found.until, found.until + 1))
+        is_worker = all(goes_on(each, timeline) for each in at) and not _kept_waiting(found, timeline)
+        return Weight.REMARK if is_worker else self.weight
 
 
 def _in_loop_since(span: Span, view: TimelineView, least: int) -> int | None:
