@@ -83,6 +83,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("never_awaited", "slip", "self.is_well()", "put await before is_well(), in an async def tick"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("calls_of_two_peers", "self-made-deadlock", "self.client.call(", "num_threads=3"),
+        ("calls_back_and_forth", "self-made-deadlock", "self.other.call(", "group of its own, and give "),
         ("call_in_script", "self-made-deadlock", "client.call(", "give ask a callback group of its own"),
         ("call_in_subscription", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("wait_for_future", "self-made-deadlock", "time.sleep(0.1)", "add_done_callback"),

@@ -113,6 +113,15 @@ FIT = "define it with the parameters it is called with (diff)"
                 AWAIT.format("tick (/left)"),
             ],
         ),
+        (
+            "calls_back_and_forth",
+            [
+                "give begin a callback group of its own, and give on_ask a callback group of its own, and "
+                "spin with MultiThreadedExecutor(num_threads=3)",
+                f"{DONE[:-7]}, and give on_ask a callback group of its own (diff)",
+                f"{AWAIT.format('begin')[:-7]}, and give on_ask a callback group of its own (diff)",
+            ],
+        ),
         ("call_in_service", [APART.replace("tick", "cook"), AWAIT.format("cook")]),
         ("spin_in_service", [AWAIT.format("cook")]),
         ("wait_for_future", [APART, DONE, AWAIT.format("tick")]),

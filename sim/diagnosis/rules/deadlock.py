@@ -43,7 +43,7 @@ from sim.diagnosis.words import (
     who,
     with_threads,
 )
-from sim.trace.events import EntityId, EntityKind, Reason
+from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import AWAIT, Blocked, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -75,7 +75,8 @@ class SelfMadeDeadlock(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
-        apart = f"give {subject} a callback group of its own"
+        both = _need_own_groups(found, timeline)
+        apart = Remedy(both).words(timeline)
         stands = timeline.positions_of(found.subject, Window(found.at, found.until + 1))
         about = _OWN_LOCK if found.about == WaitedFor.LOCK and found.size == 1 else found.about
         if about == _OWN_LOCK and stands[-1].keeper:
@@ -97,6 +98,7 @@ class SelfMadeDeadlock(Rule):
             cure = apart if answers else later + apart
             if _keeps_lock(stands[-1].file, stands[-1].line):
                 cure = f"let go of the lock before the await, and {apart}"
+        cure = apart if len(both) > 1 else cure
         if not cure and answers:
             cure = f"after call_async() {awaiting(subject)}; to wait inside it, {apart}"
         if not cure:
@@ -117,7 +119,8 @@ class SelfMadeDeadlock(Rule):
 
     def _remedies(self, found: Finding, threads: int, timeline: Timeline) -> tuple[Remedy, ...]:
         place = _line_of(found.subject, found, timeline)
-        apart = Remedy((found.subject,), threads)
+        both = _need_own_groups(found, timeline)
+        apart = Remedy(both, threads)
         if found.about == WaitedFor.RATE:
             room = apart if _shares_group(found.subject, timeline) else Remedy(threads=threads)
             return *_without_rate(place, found.subject, timeline), room
@@ -125,7 +128,8 @@ class SelfMadeDeadlock(Rule):
             return *edits_for_steps(place, found.subject, timeline), apart
         if WaitedFor.LOCK not in found.waited_for:
             held = (replace(apart, edit=each.edit) for each in _letting_go(place))
-            return apart, *edits_for_reply(place, found.subject, timeline), *held
+            edits = edits_for_reply(place, found.subject, timeline)
+            return apart, *(replace(each, own_groups=both[1:]) for each in edits), *held
         if WaitedFor.REPLY in found.waited_for:
             lines = _lines_of((found.subject, found.culprit), found, timeline)
             return tuple(each for line in lines for each in _letting_go(line))
@@ -249,6 +253,21 @@ def _keeps_every_thread(found: Finding, timeline: Timeline) -> bool:
     mine = thread_of(found.subject, found.until, timeline)
     kept = {each.id for each in threads if each and mine and each.executor == mine.executor}
     return len(kept) >= threads_for([found.subject], found.until, timeline)
+
+
+def _need_own_groups(found: Finding, timeline: Timeline) -> tuple[EntityId, ...]:
+    """Return the subject, and the other callback of a cycle if it keeps its own reply from coming as well."""
+    other = timeline.entities.get(found.culprit)
+    blocked = timeline.moment(found.until - 1).blocked.values()
+    services = {each.service for each in blocked if other is not None and each.entity == other.id}
+    if other is None or other.id == found.subject or WaitedFor.LOCK in found.waited_for:
+        return (found.subject,)
+    keeps = any(
+        each.kind is EntityKind.CLIENT and each.name in services and each.node == other.node
+        for each in timeline.group_members(other.group)
+    )
+    is_exclusive = timeline.groups[other.group].kind is GroupKind.EXCLUSIVE
+    return (found.subject, other.id) if keeps and is_exclusive else (found.subject,)
 
 
 def _shares_group(entity: EntityId, timeline: Timeline) -> bool:
