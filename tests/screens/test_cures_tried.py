@@ -19,8 +19,8 @@ from cbtui.screens.windows.diagnoses import (
     ChosenStep,
     DiagnosesScreen,
     NextStep,
-    cure_details,
 )
+from cbtui.screens.windows.finding_texts import cure_details
 from lessons.catalogue import find
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import CodeEdit
@@ -155,7 +155,9 @@ async def test_that_no_cure_helps_is_told_with_what_was_tried(answer: Verdict, t
         await app.push_screen(DiagnosesScreen(findings, Charset.BRAILLE, InVain()))
         await app.workers.wait_for_complete()
         await pilot.pause()
-        assert f"· {told}" in " ".join(line.strip("│ ") for line in text_of(app).splitlines())
+        shown = " ".join(line.strip("│ ") for line in text_of(app).splitlines())
+        assert f"· {told}" in shown
+        assert ("→ by itself not enough here: " in shown) == (answer.helps is False)
 
 
 async def test_where_the_code_is_of_no_simple_shape_it_is_told_that_no_cure_is_offered() -> None:

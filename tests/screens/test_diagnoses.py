@@ -19,11 +19,9 @@ from cbtui.screens.linear.narrative import told_finding
 from cbtui.screens.replay import ReplayScreen
 from cbtui.screens.windows.diagnoses import (
     DiagnosesScreen,
-    details_of,
     problems_note,
-    row_of,
-    title_of,
 )
+from cbtui.screens.windows.finding_texts import details_of, row_of, title_of
 from cbtui.screens.windows.prediction import PredictionExit
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.diagnosis_line import DiagnosisLine

@@ -20,21 +20,23 @@ from cbtui.keys.keymap import Keymap
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.judged.cures import Cure, Verdict, tried_in_vain
 from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
+from cbtui.screens.windows.finding_texts import (
+    cure_details,
+    details_of,
+    row_of,
+    step_row,
+    title_of,
+)
 from cbtui.screens.windows.window import PlainOptionList, WindowScreen
-from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
 from lessons.lesson import Lesson
-from sim.diagnosis import location_text, sentence, with_stop
-from sim.quantities.durations import timestamp
 from sim.quantities.nanoseconds import SECOND
-from sim.quantities.plural import counted
 from sim.trace.model import Nanoseconds
 
 _ALL_IS_WELL = "No rule has found a problem so far. What a program should do and does not, no rule can know."
 _NOT_SIMPLE = (
     "No cure can be offered here: cbtui only makes small changes by itself, and this needs one by you."
 )
-_TIME = 10
 _LEAST_WIDE = 120
 """The width of the window on a wide screen, unless a row needs more."""
 _FRAME = 7
@@ -278,8 +280,14 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         if chosen.cure is not None:
             details = cure_details(chosen.cure, self._charset)
         else:
-            details = details_of(self._findings[chosen.place], self._charset, self._about_trial(chosen.place))
+            found, place = self._findings[chosen.place], chosen.place
+            in_vain = self._untried[place] == 0 and {each.helps for each in self._of(place)} == {False}
+            details = details_of(found, self._charset, self._about_trial(place), in_vain=in_vain)
         self.query_one(".told", Static).update(details)
+
+    def _of(self, place: int) -> list[Verdict]:
+        """The verdicts on the cures of a finding."""
+        return [verdict for about, _, verdict in self._verdicts if about == place]
 
     def _about_trial(self, place: int) -> str:
         """The sentence on the trial of a finding's cures, or on why there is none; "" if one simply helps."""
@@ -295,7 +303,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         tried = [(cure, verdict) for about, cure, verdict in self._verdicts if about == place]
         if tried and not any(verdict.helps for _, verdict in tried):
             return tried_in_vain(tried)
-        helpful = [verdict for _, verdict in tried if verdict.helps]
+        helpful = [verdict for verdict in self._of(place) if verdict.helps]
         if helpful and helpful[0].instead:
             return f"A cure was tried: {helpful[0].exchange}."
         found = self._findings[place]
@@ -331,65 +339,6 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
 
 def _problems(findings: Sequence[ExplainedFinding]) -> frozenset[object]:
     return frozenset(each.finding.key for each in findings if each.is_problem)
-
-
-def title_of(findings: Sequence[ExplainedFinding]) -> str:
-    """Return the heading: ``Diagnoses: 2 problems, 1 remark``."""
-    problems = sum(each.is_problem for each in findings)
-    counts = ((problems, "problem"), (len(findings) - problems, "remark"))
-    words = [counted(count, name) for count, name in counts if count]
-    return f"Diagnoses: {', '.join(words)}" if words else "Diagnoses"
-
-
-def row_of(each: ExplainedFinding, charset: Charset) -> Content:
-    """Return a finding's line: ``!`` for a problem, ``·`` for a remark; when; what."""
-    sign, style = ("!", "bold $text-warning") if each.is_problem else ("·", "$text-muted")
-    time = "" if each.at is None else timestamp(each.at)
-    return Content.assemble(
-        (f"{sign} ", style), (f"{time:>{_TIME}}  ", "$text-muted"), visible(each.explanation.what, charset)
-    )
-
-
-def step_row(text: str, charset: Charset) -> Content:
-    """Return the line of a step below its finding: ``→ try it: …``."""
-    return Content.assemble((" " * (_TIME + 4) + "→ ", "bold"), (visible(text, charset), "$text-success"))
-
-
-def details_of(each: ExplainedFinding, charset: Charset, about_trial: str = "") -> Content:
-    """Return what happened, the sentence on trials of cures, why, what to do, and where and when."""
-    explained = each.explanation
-    parts = [(visible(with_stop(explained.what), charset), "bold")]
-    if about_trial:
-        parts.append((f"\n· {about_trial}", ""))
-    parts += [
-        (f"\n{visible(sentence(explained.why), charset)}", ""),
-        (f"\n→ {visible(with_stop(explained.cure), charset)}", "$text-success"),
-    ]
-    where = location_text(each.finding, explained)
-    if where:
-        parts.append((f"\n{visible(where, charset)}", "$text-muted"))
-    return Content.assemble(*parts)
-
-
-_DIFF_STYLES = {"+": "$text-success", "-": "$text-error", "@": "$text-muted"}
-
-
-def cure_details(cure: Cure, charset: Charset) -> Content:
-    """Return what a cure changes: in words, the lines that it edits, as far left as they can be, and code."""
-    parts = [(visible(sentence(cure.words), charset), "bold")]
-    if cure.diff:
-        parts.append(("\nYour file stays as it is; a copy is run, with these lines:", ""))
-    edited = [(line[0], line[1:]) for line in cure.diff.splitlines()[2:]]
-    code = [text for sign, text in edited if sign != "@" and text.strip()]
-    indent = min((len(text) - len(text.lstrip()) for text in code), default=0)
-    for sign, text in edited:
-        shown = visible(sign + (text if sign == "@" else text[indent:]), charset)
-        parts.append((f"\n{shown}", _DIFF_STYLES.get(sign, "")))
-    if cure.code:
-        parts.append(("\nYour file stays as it is; to have this in it, write:", ""))
-        lines = (line for each in cure.code for line in each.splitlines())
-        parts += [(f"\n{visible(each, charset)}", "$text-success") for each in lines]
-    return Content.assemble(*parts)
 
 
 def problems_note(findings: Sequence[ExplainedFinding], keymap: Keymap, charset: Charset) -> str:

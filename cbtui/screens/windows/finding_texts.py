@@ -1,0 +1,80 @@
+"""The texts of the diagnosis window: the rows of its list, and the details of a finding or a cure."""
+
+from collections.abc import Sequence
+
+from textual.content import Content
+
+from cbtui.looks.theme import Charset
+from cbtui.runs.judged.cures import Cure
+from cbtui.runs.live.findings import ExplainedFinding
+from cbtui.text.cells import visible
+from sim.diagnosis import location_text, sentence, with_stop
+from sim.quantities.durations import timestamp
+from sim.quantities.plural import counted
+
+_IN_VAIN = "by itself not enough here: "
+_TIME = 10
+
+
+def title_of(findings: Sequence[ExplainedFinding]) -> str:
+    """Return the heading: ``Diagnoses: 2 problems, 1 remark``."""
+    problems = sum(each.is_problem for each in findings)
+    counts = ((problems, "problem"), (len(findings) - problems, "remark"))
+    words = [counted(count, name) for count, name in counts if count]
+    return f"Diagnoses: {', '.join(words)}" if words else "Diagnoses"
+
+
+def row_of(each: ExplainedFinding, charset: Charset) -> Content:
+    """Return a finding's line: ``!`` for a problem, ``·`` for a remark; when; what."""
+    sign, style = ("!", "bold $text-warning") if each.is_problem else ("·", "$text-muted")
+    time = "" if each.at is None else timestamp(each.at)
+    return Content.assemble(
+        (f"{sign} ", style), (f"{time:>{_TIME}}  ", "$text-muted"), visible(each.explanation.what, charset)
+    )
+
+
+def step_row(text: str, charset: Charset) -> Content:
+    """Return the line of a step below its finding: ``→ try it: …``."""
+    return Content.assemble((" " * (_TIME + 4) + "→ ", "bold"), (visible(text, charset), "$text-success"))
+
+
+def details_of(
+    each: ExplainedFinding, charset: Charset, about_trial: str = "", *, in_vain: bool = False
+) -> Content:
+    """Return what happened, the sentence on trials of cures, why, what to do, and where and when.
+
+    ``in_vain``: what to do was tried, and is not enough.
+    """
+    explained = each.explanation
+    parts = [(visible(with_stop(explained.what), charset), "bold")]
+    if about_trial:
+        parts.append((f"\n· {about_trial}", ""))
+    parts += [
+        (f"\n{visible(sentence(explained.why), charset)}", ""),
+        (f"\n→ {_IN_VAIN * in_vain}{visible(with_stop(explained.cure), charset)}", "$text-success"),
+    ]
+    where = location_text(each.finding, explained)
+    if where:
+        parts.append((f"\n{visible(where, charset)}", "$text-muted"))
+    return Content.assemble(*parts)
+
+
+_DIFF_STYLES = {"+": "$text-success", "-": "$text-error", "@": "$text-muted"}
+
+
+def cure_details(cure: Cure, charset: Charset) -> Content:
+    """Return what a cure changes: in words, the lines that it edits, as far left as they can be, and code."""
+    parts = [(visible(sentence(cure.words), charset), "bold")]
+    if cure.diff:
+        parts.append(("\nYour file stays as it is; a copy is run, with these lines:", ""))
+    edited = [(line[0], line[1:]) for line in cure.diff.splitlines()[2:]]
+    code = [text for sign, text in edited if sign != "@" and text.strip()]
+    indent = min((len(text) - len(text.lstrip()) for text in code), default=0)
+    for sign, text in edited:
+        shown = visible(sign + (text if sign == "@" else text[indent:]), charset)
+        parts.append((f"\n{shown}", _DIFF_STYLES.get(sign, "")))
+    if cure.code:
+        parts.append(("\nYour file stays as it is; to have this in it, write:", ""))
+        lines = (line for each in cure.code for line in each.splitlines())
+        parts += [(f"\n{visible(each, charset)}", "$text-success") for each in lines]
+    return Content.assemble(*parts)
