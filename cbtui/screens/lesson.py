@@ -206,6 +206,8 @@ class LessonScreen(RunScreen[LiveRun]):
 
     def on_unmount(self) -> None:
         """Leave no engine behind."""
+        if self.selection.cures is not None:
+            self.selection.cures.leave()
         if self._predictions is not None:
             self.console.end_later(self._predictions.leave())
 

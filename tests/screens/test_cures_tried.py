@@ -1,8 +1,10 @@
 """The cures that the window of findings offers: tried beforehand, and shown with what they edit."""
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from threading import Event
+from time import sleep
 from types import SimpleNamespace
 from typing import Any, cast
 
@@ -12,7 +14,9 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.judged.cures import Cure, TriedRun, Verdict, problem_of
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.lesson_setup import RunRequest
 from cbtui.runs.setup.shown_program import ShownProgram
+from cbtui.screens.parts import cures
 from cbtui.screens.parts.cures import CureTrial, CureTrials
 from cbtui.screens.windows import diagnoses
 from cbtui.screens.windows.diagnoses import (
@@ -48,9 +52,7 @@ class Trial:
     def cures(self, told: ExplainedFinding) -> Sequence[Cure]:
         return (APART, EDIT) if told.is_problem and not self.refusal else ()
 
-    def judge(
-        self, _told: ExplainedFinding, cure: Cure, _given_up: Event, note: Callable[[int], object]
-    ) -> Verdict:
+    def judge(self, _told: ExplainedFinding, cure: Cure, note: Callable[[int], object]) -> Verdict:
         self.tried.append(cure)
         note(40)
         return Verdict(cure is EDIT)
@@ -88,29 +90,27 @@ async def test_the_key_bar_tells_what_enter_does_on_each_row() -> None:
 
 async def test_beside_a_cure_that_helps_another_one_is_being_tried() -> None:
     class EndlessSecond(Trial):
-        def judge(
-            self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
-        ) -> Verdict:
-            return Verdict(cure is APART or given_up.wait(10))
+        def judge(self, told: ExplainedFinding, cure: Cure, note: Callable[[int], object]) -> Verdict:
+            return Verdict(cure is APART or over.wait(10))
 
+    over = Event()
     async with console() as (app, pilot):
         screen = DiagnosesScreen(told_of(shared_group_run().until(TURNED)), Charset.BRAILLE, EndlessSecond())
         await app.push_screen(screen)
         await until(pilot, lambda: "→ tried, it helps: spin with two" in text_of(app))
         await until(pilot, lambda: "· Another cure is being tried, for " in text_of(app))
+        over.set()
         await press(pilot, "escape")
 
 
 async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
     class Endless(Trial):
-        def judge(
-            self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
-        ) -> Verdict:
+        def judge(self, told: ExplainedFinding, cure: Cure, note: Callable[[int], object]) -> Verdict:
             started.wait(10)
             note(40)
-            return Verdict(given_up.wait(10))
+            return Verdict(over.wait(10))
 
-    now, started = [100.0], Event()
+    now, started, over = [100.0], Event(), Event()
     monkeypatch.setattr(diagnoses, "monotonic", lambda: now[0])
     async with console() as (app, pilot):
         screen = DiagnosesScreen(told_of(shared_group_run().until(TURNED)), Charset.BRAILLE, Endless())
@@ -120,6 +120,7 @@ async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.M
         await until(pilot, lambda: "A cure is being tried, for 0 s now: 20 %." in text_of(app))
         now[0] += 7
         await until(pilot, lambda: "A cure is being tried, for 7 s now: 20 %." in text_of(app))
+        over.set()
         await press(pilot, "escape")
 
 
@@ -145,9 +146,7 @@ async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.M
 )
 async def test_that_no_cure_helps_is_told_with_what_was_tried(answer: Verdict, told: str) -> None:
     class InVain(Trial):
-        def judge(
-            self, told: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
-        ) -> Verdict:
+        def judge(self, told: ExplainedFinding, cure: Cure, note: Callable[[int], object]) -> Verdict:
             return answer
 
     async with console() as (app, pilot):
@@ -235,8 +234,45 @@ def test_what_was_tried_for_a_run_is_not_tried_again_when_the_window_is_opened_a
     runs: Any = SimpleNamespace(timeline=timeline, run=SimpleNamespace(timeline=timeline))
     trials = CureTrials(runs, restarts, cast("ShownProgram", None), lambda: None)
     for _ in range(2):
-        assert trials.begin().judge(found, APART, Event()).helps
+        assert trials.begin().judge(found, APART).helps
     assert tried == [Changes(), APART.changes]
     runs.run = SimpleNamespace(timeline=timeline)
-    assert trials.begin().judge(found, APART, Event()).helps
+    assert trials.begin().judge(found, APART).helps
     assert len(tried) == 4
+
+
+def test_a_trial_goes_on_when_its_window_is_left_and_tells_its_progress_to_the_next_one(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    events, timeline = shared_group_run().until(TURNED), Timeline()
+    timeline.extend(events)
+    (found, *_) = told_of(events)
+    problem, begun, reopened, told = problem_of(found.finding, timeline), Event(), Event(), list[int]()
+    tried: list[bool] = []
+
+    def try_run(_setup: object, until: int, given_up: Event, note: Callable[[int], object]) -> TriedRun:
+        tried.append(given_up.is_set())
+        begun.set()
+        reopened.wait(10)
+        note(until)
+        return TriedRun({problem: False} if len(tried) == 1 else {}, end=timeline.end)
+
+    monkeypatch.setattr(cures, "try_run", try_run)
+    monkeypatch.setattr(CureTrial, "inputs", ())
+    restarts: Any = SimpleNamespace(changes=Changes())
+    runs: Any = SimpleNamespace(timeline=timeline, run=SimpleNamespace(timeline=timeline))
+    subject: Any = SimpleNamespace(set_up=lambda *_: RunRequest(lesson=find("shared-group")).setup())
+    trials = CureTrials(runs, restarts, subject, lambda: None)
+    with ThreadPoolExecutor() as pool:
+        first = pool.submit(trials.begin().judge, found, APART, lambda _: pytest.fail("its window is left"))
+        begun.wait(10)
+        second = pool.submit(trials.begin().judge, found, APART, told.append)
+        while trials.begin()._note != told.append:
+            sleep(0.01)
+        reopened.set()
+        assert first.result(10).helps
+        assert second.result(10).helps
+    assert (tried, told) == ([False, False], [50, 100])
+    trial = trials.begin()
+    trials.leave()
+    assert trial.given_up.is_set()

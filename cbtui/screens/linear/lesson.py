@@ -2,9 +2,9 @@
 
 import asyncio
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
-from threading import Event, Thread
+from threading import Thread
 from typing import TypeAlias
 
 from cbtui.engines.session import Deliver, Ended, OpenSession
@@ -105,7 +105,7 @@ class LessonConsole(LinearConsole[LiveRun]):
         try:
             return super().run()
         finally:
-            self._cures.given_up.set()
+            self._cures.trials.leave()
 
     def greet(self) -> Dialogue:
         """Print what is run, ask for predictions, and start it."""
@@ -205,7 +205,6 @@ class CuresByNumber(ScreenPart):
 
     host: LessonConsole
     trials: CureTrials
-    given_up: Event = field(default_factory=Event)
 
     def action_diagnoses(self) -> None:
         """Print the findings, and ask which cure to try."""
@@ -234,7 +233,7 @@ class CuresByNumber(ScreenPart):
         def try_out() -> None:
             tried: list[tuple[Cure, Verdict]] = []
             for each in offered:
-                tried.append((each, trial.judge(found, each, self.given_up)))
+                tried.append((each, trial.judge(found, each)))
                 if tried[-1][1].helps:
                     break
             self.host.post(

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain, takewhile
-from threading import Event
+from threading import Event, Lock
 
 from cbtui.engines.follow import GivenUpError
 from cbtui.runs.judged.cures import (
@@ -55,8 +55,14 @@ class CureTrials:
         """Return a trial of cures for the run on screen so far, or that which was begun for it before."""
         latest = self._latest
         if latest is None or latest.run is not self.runs.run or latest.changes != self.restarts.changes:
+            self.leave()
             latest = self._latest = self._anew()
         return latest
+
+    def leave(self) -> None:
+        """Give up the trial that was begun; for the end of the screen, too."""
+        if self._latest is not None:
+            self._latest.given_up.set()
 
     def _anew(self) -> "CureTrial":
         return CureTrial(self, self.runs.run, self.restarts.changes, self.until())
@@ -67,21 +73,25 @@ class CureTrials:
 
     async def run(self, cure: Cure) -> None:
         """Run again with a cure and the same inputs, and compare with the run before."""
+        self.leave()
         await self.restarts.again(cure.changes, self._anew().inputs)
         self.compare()
 
 
 @dataclass
 class CureTrial:
-    """Tries several cures of a run up to a moment; ``judge`` is used on one thread, which may be another.
+    """Tries several cures of a run up to a moment.
 
-    What it has found out it keeps, so that it can be asked again.
+    What it has found out it keeps, so that it can be asked again. ``given_up`` ends what it tries.
     """
 
     trials: CureTrials
     run: LiveRun
     changes: Changes
     until: Nanoseconds
+    given_up: Event = field(default_factory=Event)
+    _trying: Lock = field(default_factory=Lock)
+    _note: Note = lambda _: None
     _before: TriedRun | None = None
     _verdicts: dict[tuple[Problem, str], Verdict] = field(default_factory=dict)
 
@@ -102,32 +112,33 @@ class CureTrial:
             for each in cures_of(found.explanation, self.changes, timeline)
         )
 
-    def judge(
-        self, found: ExplainedFinding, cure: Cure, given_up: Event, note: Note = lambda _: None
-    ) -> Verdict:
+    def judge(self, found: ExplainedFinding, cure: Cure, note: Note = lambda _: None) -> Verdict:
         """Tell whether a cure ends a finding; takes two runs, for further cures of a finding one.
 
+        Who asks while another thread does waits for that one, and is told the progress in its place.
         Unknown if the run without a cure does not show the finding in time: then no cure is tried.
         """
         problem = problem_of(found.finding, self.run.timeline)
-        if (known := self._verdicts.get((problem, cure.key))) is not None:
-            return known
-        try:
-            before = self._without(problem, given_up, lambda done: note(done // 2))
-            if problem not in before.problems:
+        self._note = note
+        with self._trying:
+            if (known := self._verdicts.get((problem, cure.key))) is not None:
+                return known
+            try:
+                before = self._without(problem)
+                if problem not in before.problems:
+                    return Verdict(None)
+                after = self._try(cure.changes, 50)
+            except (GivenUpError, OSError, UnknownInputError):
                 return Verdict(None)
-            after = self._try(cure.changes, given_up, lambda done: note(50 + done // 2))
-        except (GivenUpError, OSError, UnknownInputError):
-            return Verdict(None)
-        return self._verdicts.setdefault((problem, cure.key), judged(problem, before, after))
+            return self._verdicts.setdefault((problem, cure.key), judged(problem, before, after))
 
-    def _without(self, problem: Problem, given_up: Event, note: Note) -> TriedRun:
+    def _without(self, problem: Problem) -> TriedRun:
         """Return the run without a cure; another one up to now, if the one before does not show a problem."""
         before, now = self._before, self.trials.until()
         if before is None or (problem not in before.problems and now > self.until):
             self.until, self._before = now, None
             vars(self).pop("inputs", None)
-            before = self._before = self._try(self.changes, given_up, note)
+            before = self._before = self._try(self.changes)
         return before
 
     @cached_property
@@ -137,7 +148,13 @@ class CureTrial:
         given = inputs_of(takewhile(lambda event: event.t <= self.until, events))
         return tuple(each for each in given if not stops(each))
 
-    def _try(self, changes: Changes, given_up: Event, note: Note) -> TriedRun:
+    def _try(self, changes: Changes, done: int = 0) -> TriedRun:
+        """Make the half of the trial's work that follows when so much per cent is done."""
         setup = changes.applied(self.trials.subject.set_up(changes.threads, None))
         until = self.until
-        return try_run(with_inputs(setup, self.inputs), until, given_up, lambda end: note(100 * end // until))
+        return try_run(
+            with_inputs(setup, self.inputs),
+            until,
+            self.given_up,
+            lambda end: self._note(done + 50 * end // until),
+        )

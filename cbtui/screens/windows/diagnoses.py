@@ -55,12 +55,10 @@ class Trial(Protocol):
     def cures(self, found: ExplainedFinding) -> Sequence[Cure]:
         """Return the cures of a finding that can be tried."""
 
-    def judge(
-        self, found: ExplainedFinding, cure: Cure, given_up: Event, note: Callable[[int], object]
-    ) -> Verdict:
+    def judge(self, found: ExplainedFinding, cure: Cure, note: Callable[[int], object]) -> Verdict:
         """Try a cure and tell whether it ends a finding; for a worker thread.
 
-        Returns soon after ``given_up`` is set. ``note`` gets the progress in per cent.
+        ``note`` gets the progress in per cent. The trial goes on if who asked does not wait for it.
         """
 
 
@@ -115,7 +113,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         self._lesson_on = lesson_on
         self._latest = latest
         self._as_of = as_of
-        self._given_up = Event()
+        self._outdated = Event()
         self._list(findings)
 
     def _list(self, findings: Sequence[ExplainedFinding]) -> None:
@@ -134,8 +132,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         """The progress of the current trial, by the index of its finding."""
         self._trying_since = monotonic()
         self._rows = tuple(self._list_rows())
-        self._given_up.set()
-        self._given_up = Event()
+        self._outdated.set()
+        self._outdated = Event()
         self._entitle()
 
     def _entitle(self) -> None:
@@ -164,7 +162,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         listed.highlighted = 0 if some else None
         self._widen()
         if self._trial is not None:
-            self.run_worker(partial(self._try_all, self._trial, self._given_up), thread=True)
+            self.run_worker(partial(self._try_all, self._trial, self._outdated), thread=True)
 
     def _check_for_new(self) -> None:
         findings = self._findings if self._latest is None else self._latest()
@@ -188,8 +186,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         self._tell_highlighted()
 
     def on_unmount(self) -> None:
-        """Stop trying cures."""
-        self._given_up.set()
+        """Begin no further trials."""
+        self._outdated.set()
 
     def _list_rows(self) -> Iterator[_Row]:
         for place, lesson in enumerate(self._lessons):
@@ -208,18 +206,18 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             else:
                 yield Option(row_of(self._findings[row.place], self._charset))
 
-    def _try_all(self, trial: Trial, given_up: Event) -> None:
+    def _try_all(self, trial: Trial, outdated: Event) -> None:
         findings = self._findings
         for place, cure in self._cures:
-            note = partial(self._note_progress, place, given_up)
-            if given_up.is_set():
+            note = partial(self._note_progress, place, outdated)
+            if outdated.is_set():
                 return
-            verdict = trial.judge(findings[place], cure, given_up, note)
-            if not given_up.is_set():
+            verdict = trial.judge(findings[place], cure, note)
+            if not outdated.is_set():
                 self.app.call_from_thread(self._note_tried, place, cure, verdict)
 
-    def _note_progress(self, place: int, given_up: Event, percent: int) -> None:
-        if percent != self._percent.get(place) and not given_up.is_set():
+    def _note_progress(self, place: int, outdated: Event, percent: int) -> None:
+        if percent != self._percent.get(place) and not outdated.is_set():
             self._percent[place] = percent
             self.app.call_from_thread(self._tell_highlighted)
 
