@@ -306,7 +306,7 @@ def test_of_runs_that_were_not_given_the_same_commands_neither_is_better() -> No
     def compared(first: Timeline, second: Timeline, end: float = 4.0) -> str:
         return verdict(compare(first, second, Window(0, ns(end))))
 
-    only = "only with as many in both can one be better"
+    only = "only with as many in both can one be better; cbtui compare --call SECONDS gives both the same"
     assert compared(thrice, after) == f"run A has 3 'call /turn true', run B has none: {only}"
     assert compared(after, thrice) == f"run A has no 'call /turn true', run B has 3: {only}"
     assert compared(once, thrice, end=1.0).startswith("Neither")

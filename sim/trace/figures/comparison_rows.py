@@ -111,7 +111,8 @@ def verdict(comparison: Comparison, *, is_cured: bool = False) -> str:
     if comparison.unlike_commands:
         text, one, other = comparison.unlike_commands[0]
         given = f"{RUNS[0]} has {one or 'no'} '{text}', {RUNS[1]} has {other or 'none'}"
-        return f"{given}: only with as many in both can one be better"
+        same = "; cbtui compare --call SECONDS gives both the same" if text.startswith("call ") else ""
+        return f"{given}: only with as many in both can one be better{same}"
     better: list[_FigureDifference] = []
     worse: list[_FigureDifference] = []
     for each in _differences(comparison):
