@@ -104,8 +104,7 @@ class CompareScreen(SizedScreen[None]):
         self._comparing = False
         self._rest_until = 0.0
         self._problems = ComparedProblems(first.timeline, second.timeline)
-        self._gone_or_new = ""
-        self._verdict = ""
+        self._gone_or_new = self._verdict = ""
         self._is_tie = False
         self._judged = Window(0, 0)
         self._ended_early = ""
@@ -164,6 +163,7 @@ class CompareScreen(SizedScreen[None]):
         for number, side in enumerate(self._sides):
             self.query_one(f"#run{number}", HeadingLine).words = _about(number, side)
             lanes = self._lanes(number)
+            lanes.styles.max_height = None if self.has_class(_LANES_ALONE) else (self.size.height - 1) // 4
             # Nothing is known of a run after its end, even of a callback that was still running.
             lanes.window, lanes.now = shown, min(at, side.timeline.end)
             lanes.whole = max(each.timeline.end for each in self._sides)
@@ -257,15 +257,14 @@ class CompareScreen(SizedScreen[None]):
             return f"{self._what}: nothing that both runs have; {_shorter(first, second)}", ()
         compared = yield from compare_incrementally(first.timeline, second.timeline, asked)
         self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
-        for number, unlike in enumerate(compared.unlike):
-            self._lanes(number).kept = unlike
+        for number, notable in enumerate(compared.notable):
+            self._lanes(number).kept = notable
         is_cured = False
         if self._whole:
             yield
             self._gone_or_new, is_cured = self._problems.told(), self._problems.is_cured()
         self._verdict, self._is_tie = verdict(compared, is_cured=is_cured), is_tie(compared)
-        self._judged = asked
-        self._ended_early = ended_early(compared)
+        self._judged, self._ended_early = asked, ended_early(compared)
         if self._whole:
             return self._extent(asked), sections(compared)
         cut = asked.end < min(self._asked.end, self._end)
@@ -369,6 +368,7 @@ class CompareScreen(SizedScreen[None]):
         """Let the table or the lanes fill the screen; "" for neither."""
         for name in (_TABLE_ALONE, _LANES_ALONE):
             self.set_class(name == alone, name)
+        self._drawn = ()
         more = () if alone == _LANES_ALONE else ("enlarge_lanes",)
         for lanes in self.query(Lanes):
             lanes.keys = lane_keys(keymap_of(self.app), Scope.COMPARE, self.charset, *more)

@@ -275,7 +275,17 @@ async def test_of_runs_in_which_the_service_was_not_called_alike_none_is_called_
     second.timeline.extend([CommandGiven(ns(7.0), "call /motor_power true", CommandKind.CALL)])
     async with compared(first, second) as (app, _):
         assert "run A has no 'call /motor_power true', run B has 1: only with as many" in verdict_of(app)
+        assert "cbtui compare --call SECONDS gives both the same" in verdict_of(app)
         assert "Gone" not in verdict_of(app)
+
+
+@pytest.mark.parametrize("size", [NARROW, (80, 28)])
+async def test_both_runs_show_the_same_lanes(size: tuple[int, int]) -> None:
+    async with compared(*sides(), size=size) as (app, _):
+        first, second = app.comparison.query(Lanes)
+        assert first.size == second.size
+        assert first.kept
+        assert first.kept == second.kept
 
 
 async def test_a_narrow_screen_names_the_key_that_lets_all_lanes_be_seen() -> None:

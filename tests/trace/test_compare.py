@@ -455,10 +455,10 @@ def test_what_differs_by_noise_on_the_real_clock_is_about_the_same() -> None:
 def test_a_callback_that_hardly_runs_in_one_of_the_runs_is_unlike() -> None:
     other = run([TIMER, ODOM], [*called(1, 1.0, 1.1), *called(1, 2.0, 2.1), *called(1, 3.0, 3.1)])
     compared = compare(healthy(), other, Window(0, ns(4.0)))
-    assert list(map(set, compared.unlike)) == [{1, 2}, {1, 2}]
-    assert not any(compare(healthy(), healthy(), Window(0, ns(4.0))).unlike)
+    assert list(map(set, compared.notable)) == [{1, 2}, {1, 2}]
+    assert not any(compare(healthy(), healthy(), Window(0, ns(4.0))).notable)
     alone = compare(healthy(), run([TIMER], called(1, 1.0, 1.1)), Window(0, ns(4.0)))
-    assert list(map(set, alone.unlike)) == [{2}, set()]
+    assert list(map(set, alone.notable)) == [{2}, set()]
 
 
 def test_the_compared_part_on_the_real_clock_begins_with_the_first_calls() -> None:

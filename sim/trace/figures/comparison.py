@@ -22,6 +22,9 @@ CallbackKey: TypeAlias = tuple[str, str, str, str, int]
 """Identifies a callback in any run: node, kind, callback, topic or service, and number among equals."""
 
 
+_LONG: Nanoseconds = 10_000_000
+
+
 @dataclass(frozen=True, slots=True)
 class WaitFigures:
     """The waits of a ready callback that reach into a window; ``why`` is the reason of most of its time.
@@ -64,6 +67,11 @@ class CallbackPair:
         """Whether it runs in one run only, or there more than twice as often."""
         calls = [0 if side is None else side.figures.calls for side in (self.first, self.second)]
         return max(calls) > 2 * min(calls)
+
+    @property
+    def waits(self) -> bool:
+        """Whether it waits long in a run."""
+        return any(side is not None and side.longest_wait >= _LONG for side in (self.first, self.second))
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,12 +118,12 @@ class Comparison:
     unlike_commands: tuple[CommandPair, ...] = ()
 
     @property
-    def unlike(self) -> tuple[frozenset[EntityId], frozenset[EntityId]]:
-        """The callbacks of each run that run much less often in one of them, if at all."""
-        unlike = [pair for pair in self.callbacks if pair.is_unlike]
+    def notable(self) -> tuple[frozenset[EntityId], frozenset[EntityId]]:
+        """The callbacks of each run that wait long in one of them, or run much less often, if at all."""
+        notable = [pair for pair in self.callbacks if pair.is_unlike or pair.waits]
         return (
-            frozenset(pair.first.figures.entity.id for pair in unlike if pair.first),
-            frozenset(pair.second.figures.entity.id for pair in unlike if pair.second),
+            frozenset(pair.first.figures.entity.id for pair in notable if pair.first),
+            frozenset(pair.second.figures.entity.id for pair in notable if pair.second),
         )
 
 
