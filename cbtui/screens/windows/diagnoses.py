@@ -223,6 +223,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
 
     def _note_tried(self, place: int, cure: Cure, verdict: Verdict) -> None:
         """Offer to try a cure if it helps; the highlight stays where it is."""
+        if not self.query(OptionList):
+            return  # the window is being closed
         chosen = self._chosen
         self._untried[place] -= 1
         self._percent[place] = 0
