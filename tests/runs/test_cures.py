@@ -221,6 +221,38 @@ def test_a_deadlock_is_the_same_whoever_of_two_was_the_last_to_wait() -> None:
     assert problem_of(turned, timeline) == problem_of(found, timeline)
 
 
+TAKES_JOBS = """\
+import queue
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+
+rclpy.init()
+node, jobs = Node("n"), queue.Queue()
+
+def work():
+    while jobs.get():
+        pass
+
+node.create_timer(0.5, lambda: None)
+node.create_timer(1.0, work)
+executor = MultiThreadedExecutor(3)
+executor.add_node(node)
+executor.spin()
+"""
+
+
+def test_a_wait_in_a_loop_is_one_problem_however_long_it_has_lasted(tmp_path: Path) -> None:
+    found = []
+    (tmp_path / "node.py").write_text(TAKES_JOBS)
+    for seconds in (3.0, 6.0):
+        timeline = run_to_end(program_setup(tmp_path / "node.py", seconds)).timeline
+        found += [(each.rule.id, problem_of(each, timeline)) for each in diagnose(timeline)[:1]]
+    (early, one), (late, other) = found
+    assert (early, late) == ("stays-in-loop", "endless-wait")
+    assert one == other
+
+
 def test_an_edited_copy_is_run_and_the_file_stays() -> None:
     before = (PROGRAMS / "qos_mismatch.py").read_text()
     assert helpful("qos_mismatch") == ["request no more than is offered (diff)"]

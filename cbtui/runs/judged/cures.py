@@ -20,7 +20,8 @@ from sim.engine.setup import RunSetup, TimedInput
 from sim.files.untrusted import MAX_PROGRAM_BYTES, read_text
 from sim.quantities.nanoseconds import SECOND
 from sim.quantities.plural import counted
-from sim.trace.model import Nanoseconds
+from sim.trace.events import Doing
+from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _LIMIT = 15.0
@@ -42,8 +43,7 @@ Problem: TypeAlias = tuple[str, str, str]
 """A rule's id, its subject and its culprit, by name: comparable between runs of a program."""
 
 _COMPUTES = "still-computing"
-_SAME = {"stays-in-loop": _COMPUTES}
-"""Rules that find one problem: which of them finds a loop without a wait depends on the clock."""
+_LOOPS, _WAITS = "stays-in-loop", "endless-wait"
 _CRASH = "program-raised"
 
 _NAMES = {
@@ -129,12 +129,18 @@ class Cure:
 
 
 def problem_of(found: Finding, timeline: Timeline) -> Problem:
-    """Return what identifies a finding in other runs; in a deadlock either side may be the subject."""
+    """Return what identifies a finding in other runs; in a deadlock either side may be the subject.
+
+    Which rule finds a call that stays in its loop depends on the clock, and on how long it has been there.
+    """
     one, other = sorted(
         known.spoken_name if (known := timeline.entities.get(each)) is not None else ""
-        for each in (found.subject, found.culprit)
+        for each in (found.subject, found.culprit or found.subject)
     )
-    return _SAME.get(found.rule.id, found.rule.id), one, other
+    if found.rule.id != _LOOPS:
+        return found.rule.id, one, other
+    at = timeline.positions_of(found.subject, Window(found.until, found.until + 1))
+    return _WAITS if any(each.doing is Doing.WAITS for each in at) else _COMPUTES, one, other
 
 
 def name_of(found: Finding, explained: Explanation) -> str:

@@ -34,6 +34,8 @@ from sim.trace.model import Nanoseconds
 
 _SHORTEST: Nanoseconds = 5 * SECOND
 _LONGEST: Nanoseconds = 40 * SECOND
+_SHOWS: Nanoseconds = 3 * SECOND
+"""How long a trial goes on after now: on virtual time a wait is told later than on the real clock."""
 
 _ONLY_ON_MODEL = "Cures are tried only on the model: open the program without --on ros2 to have them tried."
 
@@ -69,7 +71,7 @@ class CureTrials:
 
     def until(self) -> Nanoseconds:
         """Return the moment up to which a trial runs that begins now."""
-        return min(max(self.runs.timeline.end, _SHORTEST), _LONGEST)
+        return min(max(self.runs.timeline.end + _SHOWS, _SHORTEST), _LONGEST)
 
     async def run(self, cure: Cure) -> None:
         """Run again with a cure and the same inputs, and compare with the run before."""
