@@ -16,16 +16,15 @@ def draw_axis(
     row: CellRow,
     scale: TimeScale,
     cursor: int,
-    is_newest: bool,
+    name: str,
     marks: Iterable[AxisMark],
     calls: Iterable[Call],
 ) -> None:
     """Draw an axis, with the person's commands except the calls that a service's lane shows.
 
-    ``cursor`` is the cursor's column, which may lie outside the picture; ``is_newest`` tells whether nothing
-    of the run comes after it.
+    ``cursor`` is the cursor's column, which may lie outside the picture; ``name`` is what it is called.
     """
-    _draw_cursor(row, cursor, "now" if is_newest else "cursor")
+    _draw_cursor(row, cursor, name)
     shown = {scale.column_of(call.sent) for call in calls}
     commands = (mark for mark in marks if mark.kind is AxisMarkKind.COMMAND)
     _draw_commands(row, scale, (each for each in commands if scale.column_of(each.at) not in shown))

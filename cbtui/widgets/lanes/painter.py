@@ -291,7 +291,9 @@ class _LaneFrame:
         row = CellRow(self._layout.columns, self._charset)
         marks = self._timeline.marks(self._scale.window)
         column = self._column_at(self._now)
-        draw_axis(row, self._scale, column, self._now >= self._edge, marks, self._calls.latest)
+        newest = "now" if self._timeline.ended is None else "end"
+        cursor = "cursor" if self._now < self._edge else newest
+        draw_axis(row, self._scale, column, cursor, marks, self._calls.latest)
         name = more_lanes(hidden, self._painter.more_key, self._layout.names) if hidden else "seconds"
         unit = f"{duration(self._scale.per_column)}/col" if self._layout.statuses >= 15 else ""
         self._show_cursor(row)

@@ -104,6 +104,20 @@ def test_a_bars_name_is_kept_where_its_thread_stands_still_at_once() -> None:
     assert "%% blocked in call /x %%" in text.splitlines()[0]
 
 
+def test_the_cursor_stands_at_the_end_of_a_run_that_is_over_and_not_at_now() -> None:
+    run, thread, a, _ = small_run()
+    run.callback(a, thread, 1.0, 1.0)
+    going_on, over = told(run, until=10.0), Timeline()
+    run.stop(10.0)
+    over.extend(run.events)
+    for timeline, name in ((going_on, "now"), (over, "end")):
+        axis = plain(LanePainter().paint(timeline, *last(10, 10.0), 80, 8).rows).splitlines()[-1]
+        assert f" {name}▲" in axis
+        earlier = plain(LanePainter().paint(timeline, Window(0, ns(5)), ns(10), 80, 8).rows).splitlines()[-1]
+        assert f"{name}▸" in earlier
+    assert "cursor▲" in plain(LanePainter().paint(over, Window(0, ns(10)), ns(5), 80, 8).rows)
+
+
 def test_lost_messages_are_crosses_on_the_lane_of_their_queue() -> None:
     run, _, a, _ = small_run()
     for at in (1.0, 1.5, 5.0, 5.1):
