@@ -191,6 +191,8 @@ class Frame:
     line: int
 
 
+WAITING = (Doing.WAITS, Doing.CALLS_ROS, Doing.READS)
+"""What a line does that waits for something else than time."""
 AWAIT = "await"
 """What a position has in place of a function while its call is suspended."""
 
@@ -226,6 +228,11 @@ class Position(Lasting):
     """Whether that thread has ended without a release."""
     until: Nanoseconds = 0
     """When the timeout of its wait is over; 0 if it has none, or does not wait."""
+
+    @property
+    def waits(self) -> bool:
+        """Whether it waits: for another thread, for the keyboard, or in a function of rclpy."""
+        return self.doing in WAITING
 
     @property
     def waits_for_lock(self) -> bool:

@@ -8,6 +8,7 @@ from sim.trace.events import AnyEvent, EntityId, ExecutorId, GroupId, MessageId,
 from sim.trace.lazy import LazyMapping
 from sim.trace.makings import Making
 from sim.trace.model import (
+    WAITING,
     AxisMark,
     Blocked,
     Call,
@@ -33,8 +34,6 @@ __all__ = ["ShellEvent", "Timeline"]
 
 NOBODY: EntityId = 0
 """Code outside callbacks, such as a main thread that calls a service."""
-
-_WAITS = (ev.Doing.WAITS, ev.Doing.CALLS_ROS, ev.Doing.READS)
 
 
 class Timeline:
@@ -117,7 +116,7 @@ class Timeline:
         every, found = self._run.program_positions[0], list[Position]()
         for place in range(max(0, every.until(window.start) - 1), every.before(window.end)):
             at, following = every[place], every[place + 1 : place + 2]
-            if not at.frames or at.doing not in _WAITS or at.call == "Client.call":
+            if not at.frames or at.doing not in WAITING or at.call == "Client.call":
                 continue
             end = following[0].t if following else None
             called = self.spans_on(thread, Window(at.t, end or self.end + 1))[:1]

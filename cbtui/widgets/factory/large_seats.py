@@ -44,7 +44,7 @@ class LargeSeatPainter(SeatPainter):
     def _left(self, worker: FactoryWorker, line: int, rows: int) -> None:
         self._seat(self._start + 1, line)
         self._walker(worker, line)
-        self._words(finished_texts(worker, self._callback(worker)), line, FAINT)
+        self._words(finished_texts(worker, self._callback(worker), self._scene.timeline), line, FAINT)
 
     def _free(self, line: int, rows: int) -> None:
         self._seat(self._start + 1, line)

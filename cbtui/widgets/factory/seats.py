@@ -138,7 +138,7 @@ class SeatPainter:
         self._seat(self._start, line)
         self._walker(worker, line)
         room = self._end - self._start - 5
-        texts = finished_texts(worker, self._callback(worker))
+        texts = finished_texts(worker, self._callback(worker), self._scene.timeline)
         self._canvas.write(self._start + 4, line, first_fitting(texts, room) or texts[-1], FAINT, room)
 
     def _free(self, line: int, rows: int) -> None:

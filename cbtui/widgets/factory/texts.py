@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from cbtui.text.callback_names import short_name
 from cbtui.widgets.factory.scene import Area, Belt, FactoryScene, FactoryWorker, WorkerState
+from cbtui.widgets.lanes.details import time_waited
 from cbtui.widgets.lanes.names import short_thread, told_apart
 from sim.diagnosis.words import late_reply
 from sim.quantities.durations import duration
@@ -234,14 +235,16 @@ def crowd_texts(busy: int, blocked: int) -> tuple[str, ...]:
     return (f"{works}, {waits}" if works else waits, waits)
 
 
-def finished_texts(worker: FactoryWorker, callback: str) -> tuple[str, ...]:
+def finished_texts(worker: FactoryWorker, callback: str, timeline: Timeline) -> tuple[str, ...]:
     """Return what a worker who has just left a seat did there, from the longest text to the shortest."""
     span = worker.span
     length = 0 if span is None or span.end is None else span.end - span.start
     took = duration(length) if length else "no time"
+    waited = time_waited(timeline, span) if span is not None and length else 0
+    did = f"waited {duration(waited)}" if 2 * waited > length else f"took {took}"
     return (
-        f"{callback} took {took}  {worker.name}",
-        f"{callback} took {took}",
+        f"{callback} {did}  {worker.name}",
+        f"{callback} {did}",
         f"{callback} just ran",
         f"{short_name(callback)} just ran",
         f"{short_name(callback)} ran",

@@ -77,11 +77,7 @@ def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
         yield f"raised {span.error}"
     position = position_in(timeline, span, now)
     if position is not None:
-        at = f"at {Path(position.file).name}:{position.line}"
-        is_known = position.waits_for_lock and position.taken_at[0]
-        yield (
-            f"waits {at} for {awaited_lock(position, timeline)}" if is_known else f"{doing_of(position)} {at}"
-        )
+        yield _at_line(timeline, span, now, position)
     yield from _blocked(timeline, span, now)
     waits = _waits_before(timeline, span)
     if waits:
@@ -97,9 +93,36 @@ def position_in(timeline: Timeline, span: Span, now: Nanoseconds) -> Position | 
     until = timeline.end if span.end is None else span.end
     if span.start <= now < until or span.end is None:
         return timeline.position_on(span.thread, now)
-    positions = timeline.positions_of(span.entity, Window(span.start, until))
-    inside = (each for each in positions if each.thread == span.thread)
+    inside = _positions_in(timeline, span, until)
     return max(inside, key=lambda each: (each.end or until) - each.start, default=None)
+
+
+def _at_line(timeline: Timeline, span: Span, now: Nanoseconds, position: Position) -> str:
+    """What a call does at its line; of one that is over, how much of its time it waited there.
+
+    A wait in ``Client.call`` is left out: ``_blocked`` has it.
+    """
+    at = f"at {Path(position.file).name}:{position.line}"
+    is_known = position.waits_for_lock and position.taken_at[0]
+    does = f"waits {at} for {awaited_lock(position, timeline)}" if is_known else f"{doing_of(position)} {at}"
+    end = span.end
+    if end is None or span.start <= now < end or not position.waits or position.call == "Client.call":
+        return does
+    waited = duration(time_waited(timeline, span, position))
+    return f"{waited} of it {does.replace('waits', 'waiting', 1)}"
+
+
+def time_waited(timeline: Timeline, span: Span, there: Position | None = None) -> Nanoseconds:
+    """For how long a call that is over waited, at one line or at all."""
+    end = span.end_at(timeline.end)
+    positions = [each for each in _positions_in(timeline, span, end) if each.waits]
+    shown = [each for each in positions if there is None or each.frames == there.frames]
+    return sum(min(each.end_at(end), end) - max(each.start, span.start) for each in shown)
+
+
+def _positions_in(timeline: Timeline, span: Span, until: Nanoseconds) -> list[Position]:
+    positions = timeline.positions_of(span.entity, Window(span.start, until))
+    return [each for each in positions if each.thread == span.thread]
 
 
 def _blocked(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:

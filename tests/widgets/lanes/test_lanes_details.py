@@ -5,10 +5,11 @@ from cbtui.widgets.lanes.details import BarDetails, details_of, details_of_selec
 from cbtui.widgets.lanes.details_rows import details_rows
 from cbtui.widgets.lanes.rows import ThreadLane
 from cbtui.widgets.lanes.selection import Selection
-from sim.trace.events import Published, Reason, WaitEnded
+from sim.trace.events import CallbackAt, Doing, Published, Reason, WaitEnded
 from sim.trace.model import Span, Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run
+from tests.widgets.factory.test_factory_pictures import factory
 from tests.widgets.pictures import told
 
 ALL = Window(0, ns(1000))
@@ -115,6 +116,24 @@ def test_a_call_that_stood_still_tells_in_which_service() -> None:
     run.callback(a, thread, 1.0, 3.0)
     timeline = told(run)
     assert "stood 2.0 s in call /x" in details_of(timeline, span_of(timeline, "a_callback"), ns(9)).facts
+
+
+def test_a_call_that_mostly_waited_tells_how_long_and_for_what_in_its_details_and_at_its_seat() -> None:
+    run, thread, a, _ = two_callbacks()
+    run.start(a, thread, 1.0)
+    at = (("/home/ada/node.py", "a_callback", 12),)
+    run.add(CallbackAt(ns(1.1), a, thread, Doing.WAITS, "Event.wait", at))
+    run.add(CallbackAt(ns(6.0), a, thread, Doing.COMPUTES, "", at))
+    run.add(CallbackAt(ns(6.5), a, thread, Doing.WAITS, "Event.wait", at))
+    run.end(a, thread, 7.0)
+    run.stop(8.0)
+    timeline = told(run)
+    (span,) = timeline.spans_on(thread, Window(0, ns(8.0)))
+    assert "| took 6.0 s at 1.000 s | 5.4 s of it waiting in Event.wait() at node.py:12 |" in text_of(
+        details_of(timeline, span, ns(7.2))
+    )
+    assert "| waits in Event.wait() at node.py:12 |" in text_of(details_of(timeline, span, ns(5.0)))
+    assert "a_callback waited 5.4 s" in factory(timeline, 7.01, 140, 20)
 
 
 def test_that_no_thread_is_free_is_told_once() -> None:
