@@ -63,7 +63,7 @@ class FactoryWorker:
     span: Span | None = None
     step: int = 0
     blocked: Blocked | Position | None = None
-    """The service call in which it is blocked, or where it waits for a lock."""
+    """The service call in which it is blocked, or the line at which it waits for anything else."""
 
     @property
     def inside(self) -> bool:
@@ -211,7 +211,7 @@ class _SceneBuilder:
         span = self._moment.running.get(thread)
         if span is not None:
             since = self._now - span.start
-            blocked = self._moment.blocked.get(thread) or self._lock_awaited(thread)
+            blocked = self._moment.blocked.get(thread) or self._waits_inside(thread)
             if since < self._glance and blocked is None:
                 return FactoryWorker(name, WorkerState.COMES, span, self._step(since))
             return FactoryWorker(name, WorkerState.WORKS, span, blocked=blocked)
@@ -225,10 +225,10 @@ class _SceneBuilder:
         ran = ever_ran(self._timeline, thread, self._now)
         return FactoryWorker(name, WorkerState.IDLE if ran else self._before_work(thread))
 
-    def _lock_awaited(self, thread: ThreadId) -> Position | None:
-        """Where a thread waits for a lock."""
+    def _waits_inside(self, thread: ThreadId) -> Position | None:
+        """Where a thread's call waits at its line."""
         position = self._timeline.position_on(thread, self._now)
-        return position if position is not None and position.waits_for_lock else None
+        return position if position is not None and position.waits else None
 
     def _has_stopped(self, thread: ThreadId) -> bool:
         """Whether the run is over, or a thread, no worker, has raised and left a node that nobody spins."""

@@ -11,7 +11,7 @@ from cbtui.widgets.lanes.names import short_thread, told_apart
 from sim.diagnosis.words import late_reply
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted
-from sim.trace.descriptions import name_of
+from sim.trace.descriptions import doing_of, name_of
 from sim.trace.events import EntityKind, GroupKind, Reason
 from sim.trace.figures.waiting import waits_since
 from sim.trace.model import Blocked, EntityInfo, Nanoseconds, Position
@@ -91,12 +91,16 @@ def _trouble(scene: FactoryScene, *, is_brief: bool = False) -> str:
 
 def _calm(scene: FactoryScene) -> str:
     """Say what the belts and seats still tell of while no callback waits for another one."""
-    stuck = Counter(type(worker.blocked) for worker in scene.workers)
-    told = [f"{counted(stuck[Blocked], 'worker')} blocked in a call"] if stuck[Blocked] else []
-    if locked := stuck[Position]:
-        told.append(f"{counted(locked, 'worker')} {'waits' if locked == 1 else 'wait'} for a lock")
-    if told:
-        return ", ".join(told)
+    stuck = Counter(
+        "blocked in a call" if isinstance(worker.blocked, Blocked) else doing_of(worker.blocked)
+        for worker in scene.workers
+        if worker.blocked is not None
+    )
+    if stuck:
+        return ", ".join(
+            f"{counted(number, 'worker')} {does if number == 1 else does.replace('waits', 'wait', 1)}"
+            for does, number in stuck.items()
+        )
     if own := sum(1 for _ in scene.every_wait()):
         verb = "waits for its own last call" if own == 1 else "wait for their own last calls"
         return f"{counted(own, 'callback')} {verb}"
@@ -207,18 +211,21 @@ def _letter(worker: FactoryWorker, timeline: Timeline) -> str:
 
 
 def blocked_texts(worker: FactoryWorker, scene: FactoryScene, *, is_brief: bool = False) -> tuple[str, ...]:
-    """Return that a worker waits in a call or for a lock, from the longest text to the shortest; () if not.
+    """Return that a worker waits in its call, from the longest text to the shortest; () if not.
 
     Brief ones do not tell of the reply, or who has the lock.
     """
     blocked = worker.blocked
     if blocked is None:
         return ()
+    took = duration(scene.now - blocked.start)
     if isinstance(blocked, Position):
-        holder = scene.timeline.threads.get(blocked.holder)
-        who = () if is_brief or holder is None else (f"waits for a lock, {short_thread(holder.name)} has it",)
-        return (*who, "waits for a lock", "for a lock", "lock")
-    took, service = duration(scene.now - blocked.start), blocked.service
+        holder = scene.timeline.threads.get(blocked.holder) if blocked.waits_for_lock else None
+        does = doing_of(blocked)
+        why = does.removeprefix("waits ")
+        who = () if is_brief or holder is None else (f"{does}, {short_thread(holder.name)} has it",)
+        return (*who, does, why, why.partition(" ")[2], f"waits {took}", "waits")
+    service = blocked.service
     is_there = late_reply(blocked, scene.timeline.moment(scene.now), scene.timeline)
     why = "its reply not handed over" if is_there else f"no reply for {took}"
     full = (f"blocked in call of {service}, {why}", f"blocked in call of {service} {took}")

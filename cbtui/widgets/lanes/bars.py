@@ -22,6 +22,9 @@ from sim.trace.timeline import Timeline
 _WAIT_SHOWS_FROM = 2
 """Eighths of a column: shorter waits beside calls are not worth hatching."""
 
+_HALF = 4
+"""Eighths of a column."""
+
 _WORDS = Ink(Role.STRONG)
 _WARN = Ink(Role.WARN)
 _NUMBER = Ink(Role.MARK, selected=True)
@@ -96,25 +99,30 @@ class BarPainter:
             where = f"in call {stretch.top.service}"
             self._stands(row, stretch, (f"blocked {where}", where, "blocked"))
 
-    def locked(self, row: CellRow, columns: Sequence[LaneColumn[Position] | None]) -> None:
-        """Draw where a call waits for a lock, beside the name on its bar, or the program itself waits."""
+    def waiting(self, row: CellRow, columns: Sequence[LaneColumn[Position] | None]) -> None:
+        """Draw where a call waits at its line, beside the name on its bar, or the program itself waits."""
         for stretch in stretches(columns):
-            at = stretch.top
-            lock = at.lock or "a lock"
-            texts = (doing_of(at), f"for {lock}", lock) if at.entity else _texts_at(at)
+            doing = doing_of(stretch.top)
+            brief = doing.removeprefix("waits ")
+            texts = (doing, brief, brief.partition(" ")[2]) if stretch.top.entity else _texts_at(stretch.top)
             self._stands(row, stretch, texts)
 
     def _stands(
         self, row: CellRow, stretch: MergedColumns[Blocked] | MergedColumns[Position], texts: Sequence[str]
     ) -> None:
-        """Draw over a bar that its call stands still."""
+        """Draw over a bar that its call stands still, in the columns of which that is half or more."""
         if stretch.is_short:
             return
         ink = Ink(Role.HATCH, self._number(stretch.top.entity) if stretch.top.entity else -1)
-        free = [place for place, _ in stretch.places() if row.inks[place].role is not Role.LABEL]
-        for place in free:
-            row.put(place, self.glyphs.blocked, ink)
-        self._words(row, *_longest_part(free), texts)
+        free = {
+            place: column.eighths
+            for place, column in stretch.places()
+            if row.inks[place].role is not Role.LABEL
+        }
+        for place, eighths in free.items():
+            if eighths >= _HALF:
+                row.put(place, self.glyphs.blocked, ink)
+        self._words(row, *_longest_part([*free]), texts)
 
     def lost(self, row: CellRow, places: Sequence[int]) -> None:
         """Mark the columns in which a queue lost messages, except under text."""

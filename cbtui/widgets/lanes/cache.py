@@ -19,16 +19,17 @@ from sim.trace.timeline import Timeline
 class LaneSummary:
     """A lane's content, column by column.
 
-    ``locked`` are the columns in which a call waits for a lock, or the program itself waits; ``kept`` are the
-    stretches, by first column and the one after, in which a suspended call keeps the group; ``lasting`` are
-    the durations of what was not over yet, in words; ``unseen`` are the columns that are not aggregated yet.
+    ``blocks`` are the columns in which a call waits for a service, ``inside`` those in which it waits for
+    anything else, or the program itself waits; ``kept`` are the stretches, by first column and the one after,
+    in which a suspended call keeps the group; ``lasting`` are the durations of what was not over yet, in
+    words; ``unseen`` are the columns that are not aggregated yet.
     """
 
     scale: TimeScale
     calls: list[LaneColumn[Span] | None]
     waits: list[LaneColumn[Wait] | None]
     blocks: list[LaneColumn[Blocked] | None]
-    locked: list[LaneColumn[Position] | None]
+    inside: list[LaneColumn[Position] | None]
     losses: list[int]
     kept: list[tuple[int, int, EntityId]]
     lasting: tuple[str, ...]

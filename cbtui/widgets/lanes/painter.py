@@ -309,7 +309,7 @@ class _LaneFrame:
         calls = [] if isinstance(lane, ServiceLane) else self._summed(cache.spans(lane), unseen)
         waits: list[LaneColumn[Wait] | None] = []
         blocks: list[LaneColumn[Blocked] | None] = []
-        locked: list[LaneColumn[Position] | None] = []
+        inside: list[LaneColumn[Position] | None] = []
         losses: list[int] = []
         kept = self._bars.kept_columns(lane.group, self._scale) if isinstance(lane, GroupLane) else []
         match lane:
@@ -317,7 +317,10 @@ class _LaneFrame:
                 blocks = self._summed(cache.columns(timeline.blocks_on, thread.id), unseen)
                 lines = self._summed(cache.columns(timeline.positions_on, thread.id), unseen)
                 own = self._summed(cache.columns(timeline.program_waits_on, thread.id), unseen)
-                locked = [a if a and a.top.waits_for_lock else b for a, b in zip(lines, own, strict=True)]
+                inside = [
+                    at if at and at.top.waits and block is None else program
+                    for at, program, block in zip(lines, own, blocks, strict=True)
+                ]
             case MemberLane(entity) | SoleLane(entity):
                 waits = self._summed(cache.columns(timeline.waits_of, entity.id), unseen)
                 losses = cache.losses(entity).over(self._scale, self._edge)
@@ -329,7 +332,7 @@ class _LaneFrame:
         )
         lengths = tuple(duration(max(0, self._told - start)) for start in lasting)
         return LaneSummary(
-            self._scale, calls, waits, blocks, locked, losses, kept, lengths, tuple(sorted(unseen))
+            self._scale, calls, waits, blocks, inside, losses, kept, lengths, tuple(sorted(unseen))
         )
 
     def _summed(
@@ -346,7 +349,7 @@ class _LaneFrame:
             case ThreadLane():
                 self._bars.thread(row, sums.calls)
                 self._bars.blocked(row, sums.blocks)
-                self._bars.locked(row, sums.locked)
+                self._bars.waiting(row, sums.inside)
             case GroupLane(group):
                 self._bars.group(row, sums.calls, group)
                 self._bars.kept(row, sums.kept, group)

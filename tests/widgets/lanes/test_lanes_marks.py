@@ -18,6 +18,7 @@ from tests.support.runs import (
     ns,
     shared_group_run,
 )
+from tests.widgets.factory.test_factory_pictures import factory
 from tests.widgets.lanes.test_lanes_painter import small_run
 from tests.widgets.pictures import drawn, last, plain, told
 
@@ -76,6 +77,32 @@ def test_a_call_that_waits_for_a_lock_looks_unlike_one_that_sleeps() -> None:
     assert "░" not in keeps
     assert "A keeps" in keeps
     assert "B wants ░░ waits for a lock ░" in wants
+
+
+@pytest.mark.parametrize(
+    ("doing", "call", "told_so"),
+    [
+        (Doing.WAITS, "Event.wait", "waits in Event.wait()"),
+        (Doing.WAITS, "Queue.get", "waits in Queue.get()"),
+        (Doing.WAITS, "Semaphore.acquire", "waits in Semaphore.acquire()"),
+        (Doing.CALLS_ROS, "Rate.sleep", "in Rate.sleep()"),
+        (Doing.READS, "input", "waits for the keyboard"),
+    ],
+)
+def test_every_wait_inside_a_call_looks_unlike_work_at_every_size(
+    doing: Doing, call: str, told_so: str
+) -> None:
+    run, thread, a, _ = small_run()
+    run.start(a, thread, 1.0)
+    run.add(CallbackAt(ns(1.0), a, thread, doing, call, (("node.py", "a_callback", 12),)))
+    run.stop(10.0)
+    for width in (80, 140, 200):
+        lane = plain(LanePainter().paint(told(run), *last(10, 10.0), width, 6).rows).splitlines()[0]
+        assert f"░ {told_so} ░".removeprefix("░ waits " if width == 80 else "") in lane
+        assert "█" not in lane
+    seat = " ".join(factory(told(run), 9.0, 140, 20).split())
+    assert f"1 worker {told_so}" in seat
+    assert f"{told_so}┃" in seat.replace(" ┃", "┃")
 
 
 def test_a_program_that_waits_where_nothing_spins_is_on_its_main_threads_lane_until_a_callback_runs() -> None:
