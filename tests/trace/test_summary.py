@@ -122,6 +122,17 @@ def test_the_longest_of_several_waits_is_told() -> None:
     assert wait.length == ns(4.0)
 
 
+def test_a_timer_that_still_waits_at_the_end_is_as_late_as_it_has_waited() -> None:
+    run, thread, timer, odom = small_run()
+    run.callback(timer, thread, 1.0, 0.1, late=0.2)
+    run.wait(timer, 2.0, None, Reason.NO_FREE_WORKER)
+    run.wait(odom, 3.0, None, Reason.NO_FREE_WORKER)
+    run.robot(6.5)
+    assert [each.late for each in summary_of(run).callbacks] == [ns(4.5), 0]
+    row = plain_text(summary_of(run)).splitlines()[3]
+    assert row.split() == ["timer_callback", "A", "1", "1.5%", "4.5", "s", "-", "0"]
+
+
 def test_calls_after_calls_that_take_no_time_are_not_at_once() -> None:
     run, thread, timer, odom = small_run()
     other = run.thread("other")

@@ -47,7 +47,7 @@ def _cells(figures: CallbackFigures) -> tuple[str, ...]:
         figures.group,
         str(figures.calls),
         f"{figures.running:.1%}",
-        duration(figures.late) if figures.calls else "-",
+        duration(figures.late) if figures.calls or figures.late else "-",
         str(figures.drops) if figures.entity.depth else "-",
         str(figures.errors),
     )
