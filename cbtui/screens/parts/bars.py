@@ -39,8 +39,15 @@ class BarSelection(ScreenPart):
         self.select(message.selection, message.control)
         self.navigation.seek(message.at)
 
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer the way to a bar on the selected lane; without a selection, to any time before or after."""
+        is_back = action == "previous_event"
+        if self.selection is not None:
+            return self._chosen.bar_beside(-1 if is_back else 1) is not None
+        return self.navigation.now > 0 if is_back else self.navigation.now < self.navigation.end()
+
     def action_previous_event(self) -> None:
-        """Go back to the lane's previous bar the cursor."""
+        """Go back to the lane's previous bar before the cursor."""
         self._go(-1)
 
     def action_next_event(self) -> None:

@@ -62,6 +62,7 @@ class TimeNavigation(ScreenPart):
             "pan_later": playhead.follows or self.window.end > end,
             "step": playhead.at is None and (run is None or not run.can_step),
             "step_back": self.now == 0,
+            "earlier": self.now == 0,
             "live": playhead.follows or run is None,
             "to_end": playhead.follows or run is not None,
             "later": playhead.at is None,

@@ -67,6 +67,23 @@ async def test_up_and_down_go_from_lane_to_lane_and_stay_at_the_ends() -> None:
         assert isinstance(selection.lane, ThreadLane)
 
 
+async def test_the_way_to_another_bar_is_offered_where_there_may_be_one() -> None:
+    async with console() as (app, pilot):
+        screen = app.lesson_screen
+
+        def offered() -> list[bool]:
+            keys = ("previous_event", "next_event", "earlier")
+            return [screen.check_action(key, ()) is True for key in keys]
+
+        assert offered() == [True, False, True]
+        screen.navigation.seek(0)
+        assert offered() == [False, True, False]
+        screen.navigation.seek(ns(5.0))
+        assert offered() == [True, True, True]
+        await press(pilot, "enter")
+        assert offered() == [True, False, True]  # the timer runs up to the end
+
+
 @pytest.mark.slow
 async def test_the_arrows_belong_to_the_panes_until_the_lanes_are_gone_to() -> None:
     async with console() as (app, pilot):
