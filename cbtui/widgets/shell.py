@@ -1,12 +1,12 @@
 """The shell pane: ``ros2`` lines with their output, a prompt, and the keyboard of programs."""
 
 from bisect import bisect_right
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from os.path import commonprefix
 from typing import ClassVar, NamedTuple
 
-from rich.cells import cell_len
+from rich.cells import chop_cells
 from rich.segment import Segment
 from textual import on
 from textual.app import ComposeResult
@@ -58,14 +58,18 @@ class _OutputRow(NamedTuple):
 
 
 class ShellOutput(FollowingView):
-    """The lines that were run and their output, up to a moment."""
+    """The lines that were run and their output, up to a moment; long ones take several rows."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {"shell--given", "shell--said", "shell--error", "shell--status"}
 
     def __init__(self) -> None:
         super().__init__()
         self._timeline = Timeline()
+        self._lines: list[_OutputRow] = []
         self._rows: list[_OutputRow] = []
+        """The lines, in rows of ``_columns``."""
+        self._columns = 0
+        self._now = 0
         self._read = 0
         self._line_begun = False
 
@@ -73,24 +77,53 @@ class ShellOutput(FollowingView):
         """Show the lines and output of a timeline up to a moment."""
         if timeline is not self._timeline:
             self._timeline = timeline
+            self._lines.clear()
             self._rows.clear()
             self._read = 0
-            self._widest = 0
         new = timeline.shell[self._read :]
         self._read += len(new)
-        rows: list[_OutputRow] = []
+        lines: list[_OutputRow] = []
         for event in new:
             if isinstance(event, Typed) and self._line_begun:
-                begun = (rows or self._rows).pop()
-                rows.append(begun._replace(text=begun.text + _shown(event.text.removesuffix("\n"))))
+                begun = lines.pop() if lines else self._take_back()
+                lines.append(begun._replace(text=begun.text + _shown(event.text.removesuffix("\n"))))
             else:
-                rows += _rows_of(event)
+                lines += _lines_of(event)
             if isinstance(event, Printed | Typed):
                 self._line_begun = isinstance(event, Printed) and not event.ends
-        self._rows += rows
-        count = bisect_right(self._rows, now, key=lambda row: row.t)
-        if rows or count != self._count:
-            self.grow(count, max([self._widest, *(cell_len(row.text) for row in rows)]))
+        self._lines += lines
+        self._rows += self._in_rows(lines)
+        self._now = now
+        self._show_rows(bool(lines))
+
+    def on_resize(self) -> None:
+        """Break the lines anew, and stay at the end."""
+        columns = self.scrollable_content_region.width
+        if columns and columns != self._columns:
+            self._columns = columns
+            self._rows = self._in_rows(self._lines)
+            self._show_rows(True)
+        super().on_resize()
+
+    def _take_back(self) -> _OutputRow:
+        """Remove the last line, whose rest is typed now."""
+        line = self._lines.pop()
+        del self._rows[-len(self._in_rows([line])) :]
+        return line
+
+    def _in_rows(self, lines: Iterable[_OutputRow]) -> list[_OutputRow]:
+        """Break lines into rows, as a terminal does."""
+        columns = self._columns
+        return [
+            line._replace(text=part)
+            for line in lines
+            for part in (chop_cells(line.text, columns) if columns else ()) or (line.text,)
+        ]
+
+    def _show_rows(self, is_changed: bool) -> None:
+        count = bisect_right(self._rows, self._now, key=lambda row: row.t)
+        if is_changed or count != self._count:
+            self.grow(count, self._columns)
 
     def render_line(self, y: int) -> Strip:
         """Return one line of the view."""
@@ -99,12 +132,11 @@ class ShellOutput(FollowingView):
         if place >= self._count:
             return Strip.blank(width, self.in_class(""))
         row = self._rows[place]
-        left = self.scroll_offset.x
         text = Strip([Segment(row.text, self.in_class(row.component))])
-        return text.crop(left, left + width).adjust_cell_length(width, self.in_class(""))
+        return text.adjust_cell_length(width, self.in_class(""))
 
 
-def _rows_of(event: ShellEvent) -> Iterator[_OutputRow]:
+def _lines_of(event: ShellEvent) -> Iterator[_OutputRow]:
     match event:
         case LineGiven(t=t, text=text):
             for part in f"$ {text}".split("\n"):

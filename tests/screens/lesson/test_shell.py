@@ -8,7 +8,7 @@ from textual.pilot import Pilot
 
 from cbtui.widgets.shell import Prompt, ShellOutput
 from sim.engine.commands import CompleteLine, InterruptLine, RunLine
-from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineSaid
+from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineSaid, Printed, Typed
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.daily import first_daily
@@ -91,6 +91,28 @@ async def test_a_tab_that_a_line_wrote_is_shown_as_blanks() -> None:
         (first,) = (line for line in lines_of(app) if "float64 x" in line)
         (second,) = (line for line in lines_of(app) if "int32 sec" in line)
         assert second.index("int32") == first.index("float64") + 8
+
+
+async def test_a_long_line_goes_on_in_the_next_row_also_after_its_rest_was_typed_and_in_another_size() -> (
+    None
+):
+    long = " ".join(f"/topic_{number}" for number in range(30))
+    said: list[AnyEvent] = [
+        LineGiven(ns(1.0), 1, "ros2 node list"),
+        LineSaid(ns(1.0), 1, long, False),
+        Printed(ns(1.5), "answer> " * 10, False, False),
+        Typed(ns(1.6), long + "\n"),
+    ]
+    async with console() as (app, pilot):
+        await press(pilot, "6")
+        await deliver(app, pilot, said)
+        for size in ((96, 30), NARROW):
+            await pilot.resize_terminal(*size)
+            await settle(pilot)
+            app.screen.query_one(ShellOutput).scroll_home(animate=False)
+            await settle(pilot)
+            rows = "".join(line.strip("│ ▁▂▃▄▅▆▇█") for line in lines_of(app)).replace(" ", "")
+            assert rows.count(long.replace(" ", "")) == 2
 
 
 @pytest.mark.slow
