@@ -303,6 +303,7 @@ class CbtuiApp(EndingApp):
         from cbtui.screens.windows.help import HelpScreen
 
         if not isinstance(self.screen, HelpScreen):
+            self.clear_notifications()
             self.push_screen(HelpScreen(self.charset))
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:

@@ -46,7 +46,8 @@ class SizedScreen(Screen[Result]):
     def ask(
         self, question: Screen[ScreenResultType], take: ScreenResultCallbackType[ScreenResultType] | None
     ) -> None:
-        """Lay another screen over this one; ``take`` gets its result."""
+        """Lay another screen over this one, and no sentence over that; ``take`` gets its result."""
+        self.app.clear_notifications()
         if not isinstance(question, ModalScreen):
             say_at_once(self, "opening …")
         self.app.push_screen(question, take)

@@ -71,7 +71,6 @@ class ExerciseHelp(ScreenPart):
         exercise, progress = self._exercise, self.learning.progress
         if exercise is None:
             return
-        self.screen.app.clear_notifications()  # hints would cover the window
         if progress.solution:
             self._show_solution(True)
         else:

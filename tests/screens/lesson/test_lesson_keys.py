@@ -84,6 +84,18 @@ async def test_a_run_that_other_terminals_do_not_reach_says_so(monkeypatch: pyte
         assert "lines do not reach this run" in [each.message for each in app._notifications]
 
 
+@pytest.mark.parametrize("key", ["d", "question_mark"])
+async def test_no_sentence_lies_over_a_window_that_is_opened(key: str) -> None:
+    async with console() as (app, pilot):
+        lesson = app.lesson_screen
+        lesson.tell("The guide now tells what happened.")
+        await pilot.pause()
+        assert len(app._notifications) == 1
+        await press(pilot, key)
+        assert app.screen is not lesson
+        assert not app._notifications
+
+
 async def test_keys_reach_the_engine_as_commands() -> None:
     async with console() as (app, pilot):
         await press(pilot, "s", "S", "r", "plus", "minus", "minus", "space")

@@ -273,6 +273,8 @@ async def test_a_notification_hides_neither_the_diagnosis_nor_the_keys(size: tup
         assert notes(app) == ["everything is back to what the program says"]
         assert app.screen.query_one(Toast).region.bottom == app.screen.query_one(DiagnosisLine).region.y
         await press(pilot, "d")
+        app.notify("told while the window is open")
+        await pilot.pause()
         keys = next(bar for bar in app.screen.query(KeyBar) if bar.display)
         assert app.screen.query_one(Toast).region.bottom <= keys.region.y
 
