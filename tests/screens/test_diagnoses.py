@@ -3,12 +3,13 @@
 from collections.abc import AsyncIterator, Sequence
 from contextlib import asynccontextmanager
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from time import monotonic
 
 import pytest
 from textual.pilot import Pilot
-from textual.widgets import OptionList
+from textual.widgets import OptionList, Static
 
 from cbtui.app import CbtuiApp
 from cbtui.keys.keymap import STANDARD, Keymap
@@ -255,6 +256,26 @@ def test_the_note_names_the_key_in_force() -> None:
 def test_moments_of_findings_lie_in_the_run() -> None:
     told = told_of(run_lesson("shared-group", TURNED).events)
     assert all(each.at is not None and 0 < each.at <= ns(TURNED) for each in told)
+
+
+def test_a_problem_at_the_very_beginning_of_a_run_has_its_moment_in_the_list() -> None:
+    worst = told_of(shared_group_run().until(TURNED))[0]
+    at_once = replace(worst, finding=replace(worst.finding, at=0))
+    assert at_once.at == 0
+    assert "0.000 s" in row_of(at_once, Charset.BRAILLE).plain
+
+
+async def test_the_window_has_its_text_from_the_first_moment_on_and_no_two_rows_are_empty() -> None:
+    findings = told_of(shared_group_run().until(TURNED))
+    app = CbtuiApp()
+    async with app.run_test(size=NARROW) as pilot:
+        window = DiagnosesScreen(findings, Charset.BRAILLE)
+        await app.push_screen(window)
+        told = str(window.query_one(".told", Static).content)
+        assert findings[0].explanation.what in told
+        await settle(pilot)
+        inside = [line.strip("│ ") for line in lines_of(app) if line.startswith("│")]
+        assert not any(above == below == "" for above, below in pairwise(inside))
 
 
 async def test_what_there_is_to_say_is_whole_as_the_window_opens() -> None:

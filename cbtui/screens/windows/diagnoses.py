@@ -160,6 +160,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         listed, details = self.query_one(OptionList), self.query_one(VerticalScroll)
         listed.display, details.display, self.query_one(".well").display = some, some, not some
         listed.highlighted = 0 if some else None
+        self._tell_highlighted()
         self._widen()
         if self._trial is not None:
             self.run_worker(partial(self._try_all, self._trial, self._outdated), thread=True)
