@@ -10,13 +10,14 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
+from cbtui.text.callback_names import short_name
 from cbtui.widgets.lanes.service_calls import LatestCalls, unanswered
 from sim.diagnosis import CodeLocation
 from sim.diagnosis.words import late_reply, only_thread, thread_count, threads_needed
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import doing_of, name_of, waiting_name
-from sim.trace.events import Doing, EntityKind, KeyboardAsked, Notice, NoticeKind, Reason, Severity
+from sim.trace.events import Doing, EntityId, EntityKind, KeyboardAsked, Notice, NoticeKind, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.figures.waiting import (
     WORTH_TELLING,
@@ -321,14 +322,23 @@ def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosi
     what = waiting_name(longest.entity, Window(longest.since, moment.at + 1), timeline)
     waits_so = f"waits {duration(waited)}: {_why(longest, moment, timeline)}"
     level = DiagnosisLevel.TROUBLE if waited >= _SERIOUS else DiagnosisLevel.WAITS
-    brief = f"{name_of(longest.entity, timeline)} {waits_so}"
+    brief = f"{_with_lane(longest.entity, timeline)} {waits_so}"
+    what = what if "(" in what else _with_lane(longest.entity, timeline)
     return Diagnosis(brief, level, at_length=f"{what} {waits_so}{others}")
+
+
+def _with_lane(entity: EntityId, timeline: Timeline) -> str:
+    """The name of a callback, with its lane's in brackets where nothing shows that they are one."""
+    name, known = name_of(entity, timeline), timeline.entities.get(entity)
+    if known is None or short_name(name) in known.label or known.label in name:
+        return name
+    return f"{name} ({known.label})"
 
 
 def _why(wait: Wait, moment: Moment, timeline: Timeline) -> str:
     match wait.reason:
         case Reason.GROUP_HELD:
-            return f"{_group_of(wait, timeline)} is held by {name_of(wait.holder, timeline)}"
+            return f"{_group_of(wait, timeline)} is held by {_with_lane(wait.holder, timeline)}"
         case Reason.NO_FREE_WORKER | Reason.EVENT_QUEUE:
             return _busy_threads(wait, moment, timeline)
         case Reason.NOBODY_SPINS:

@@ -81,6 +81,24 @@ def test_a_wait_of_less_than_a_second_is_no_trouble_yet() -> None:
     assert said(shared_group_run(), 4.4).level is DiagnosisLevel.WAITS
 
 
+def test_where_a_callback_and_its_lane_have_names_unlike_each_other_the_line_tells_both_if_it_can() -> None:
+    run = Run()
+    group, thread = run.exclusive(run.node("/n")), run.thread("MainThread")
+    count = run.subscription(group, "/lock_boxes", "count_with_lock")
+    odom = run.subscription(group, "/odom", "odom_callback")
+    run.callback(count, thread, 1.0, 2.0)
+    run.wait(odom, 1.0, 3.0, Reason.GROUP_HELD, count)
+    run.callback(odom, thread, 3.0, 2.0)
+    run.wait(count, 3.0, 5.0, Reason.GROUP_HELD, odom)
+    run.stop(6.0)
+    told = said(run, 2.5)
+    assert told.text == "odom_callback waits 1.5 s: group A is held by count_with_lock (lock_boxes)"
+    told = said(run, 4.5)
+    assert told.text == "count_with_lock (lock_boxes) waits 1.5 s: group A is held by odom_callback"
+    narrow = diagnosis_row(told, (), "", 60)[0].text.rstrip()
+    assert narrow == " ! count_with_lock waits 1.5 s: group A is held by odom"
+
+
 def test_a_hand_over_is_neither_a_wait_nor_nothing_that_waits() -> None:
     told = said(shared_group_run(), 4.005)
     assert told.text == "odom_callback is ready; one thread does all the work"
