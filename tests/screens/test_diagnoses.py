@@ -258,9 +258,9 @@ def test_moments_of_findings_lie_in_the_run() -> None:
     assert all(each.at is not None and 0 < each.at <= ns(TURNED) for each in told)
 
 
-def test_a_problem_at_the_very_beginning_of_a_run_has_its_moment_in_the_list() -> None:
+def test_what_is_stuck_from_the_very_beginning_of_a_run_has_its_moment_in_the_list() -> None:
     worst = told_of(shared_group_run().until(TURNED))[0]
-    at_once = replace(worst, finding=replace(worst.finding, at=0))
+    at_once = replace(worst, finding=replace(worst.finding, at=0, stuck=frozenset([1])))
     assert at_once.at == 0
     assert "0.000 s" in row_of(at_once, Charset.BRAILLE).plain
 

@@ -48,8 +48,8 @@ class ExplainedFinding:
 
     @property
     def at(self) -> Nanoseconds | None:
-        """The moment of the finding; None for a remark about the whole run."""
-        return self.finding.at if self.finding.at or self.is_problem else None
+        """The moment of the finding; None if it is about the whole run, in which nothing is stuck."""
+        return self.finding.at if self.finding.at or self.finding.stuck else None
 
     @property
     def leads_somewhere(self) -> bool:
