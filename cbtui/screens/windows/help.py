@@ -221,7 +221,7 @@ def _lane_signs(charset: Charset) -> _Section:
             _HelpRow(glyphs.hatch[Reason.NO_FREE_WORKER] * 4, "a callback waits: every thread is busy"),
             _HelpRow(glyphs.hatch[Reason.EVENT_QUEUE] * 4, "a callback waits: others came before it"),
             _HelpRow(glyphs.hatch[Reason.NOBODY_SPINS] * 4, "a callback waits: nobody spins its node"),
-            _HelpRow(glyphs.blocked * 4, "a thread is blocked in a call, or by a lock"),
+            _HelpRow(glyphs.blocked * 4, "a thread waits inside a callback: for a reply, a lock, an event"),
             _HelpRow(glyphs.inner, "a callback runs inside that of the bar, which spins"),
             _HelpRow(
                 f"{glyphs.point} {line * 4}", "a callback holds its group, for a moment or for long; or runs"
