@@ -269,9 +269,7 @@ def test_a_worker_that_gets_its_next_job_now_and_then_does_not_stand_still(
     period: float, told: int, tmp_path: Path
 ) -> None:
     timeline = run_program(tmp_path, TAKES_JOBS.format(period=period), 12.0).timeline
-    problems = [
-        each.rule.id for each in diagnose(timeline) if each.rule.weigh(each, timeline) is Weight.PROBLEM
-    ]
+    problems = [each.rule.id for each in diagnose(timeline) if each.weight_in(timeline) is Weight.PROBLEM]
     assert problems.count("endless-wait") == told
     assert "stays-in-loop" not in problems
 
