@@ -8,6 +8,7 @@ from time import sleep
 from types import SimpleNamespace
 from typing import Any, cast
 
+import msgspec
 import pytest
 
 from cbtui.looks.theme import Charset
@@ -28,6 +29,7 @@ from cbtui.screens.windows.finding_texts import cure_details
 from lessons.catalogue import find
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import CodeEdit
+from sim.trace.events import RunStarted
 from sim.trace.timeline import Timeline
 from tests.screens.test_diagnoses import TURNED, console, press, told_of
 from tests.support.exercises import until
@@ -241,6 +243,28 @@ def test_what_was_tried_for_a_run_is_not_tried_again_when_the_window_is_opened_a
     assert len(tried) == 4
 
 
+def test_what_virtual_time_does_not_show_is_tried_on_the_real_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    started, *events = shared_group_run().until(TURNED)
+    assert isinstance(started, RunStarted)
+    timeline = Timeline()
+    timeline.extend([msgspec.structs.replace(started, clock="real"), *events])
+    (found, *_) = told_of([started, *events])
+    problem, tried = problem_of(found.finding, timeline), list[tuple[str, bool]]()
+
+    def run_with(_: CureTrial, changes: Changes, clock: str, *_rest: object) -> TriedRun:
+        tried.append((clock, changes == APART.changes))
+        shows = clock == "real" and changes != APART.changes
+        return TriedRun({problem: False} if shows else {}, end=timeline.end)
+
+    monkeypatch.setattr(CureTrial, "_try", run_with)
+    restarts: Any = SimpleNamespace(changes=Changes())
+    runs: Any = SimpleNamespace(timeline=timeline, run=SimpleNamespace(timeline=timeline))
+    trial = CureTrials(runs, restarts, cast("ShownProgram", None), lambda: None).begin()
+    assert trial.judge(found, APART).helps
+    assert trial.judge(found, APART).helps
+    assert tried == [("virtual", False), ("real", False), ("real", True)]
+
+
 def test_a_trial_goes_on_when_its_window_is_left_and_tells_its_progress_to_the_next_one(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
@@ -250,7 +274,9 @@ def test_a_trial_goes_on_when_its_window_is_left_and_tells_its_progress_to_the_n
     problem, begun, reopened, told = problem_of(found.finding, timeline), Event(), Event(), list[int]()
     tried: list[bool] = []
 
-    def try_run(_setup: object, until: int, given_up: Event, note: Callable[[int], object]) -> TriedRun:
+    def try_run(
+        _setup: object, until: int, given_up: Event, note: Callable[[int], object], **_: str
+    ) -> TriedRun:
         tried.append(given_up.is_set())
         begun.set()
         reopened.wait(10)

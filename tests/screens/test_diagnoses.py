@@ -110,6 +110,21 @@ async def test_enter_goes_to_the_moment_the_lane_and_the_code(size: tuple[int, i
         assert "time.sleep" in text_of(app)
 
 
+async def test_a_callback_that_runs_is_gone_to_there_and_not_where_its_next_call_waits() -> None:
+    app = RecordedConsole("shared-group", run_lesson("shared-group", TURNED).events, 12.5)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        lesson = app.lesson_screen
+        moment = lesson.runs.timeline.moment(lesson.navigation.now)
+        (running,) = moment.running.values()
+        assert running.entity in moment.waiting
+        lesson.selection.pick_callback(CodeView.CallbackPicked(running.entity, leaves=False))
+        await settle(pilot)
+        selection = app.screen.query_one(Lanes).selection
+        assert selection is not None
+        assert selection.bar == running
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("key", ["escape", "q"])
 async def test_closing_leaves_everything_as_it_is(key: str) -> None:

@@ -223,7 +223,12 @@ def tried_in_vain(tried: Sequence[tuple[Cure, Verdict]]) -> str:
 
 
 def try_run(
-    setup: RunSetup, until: Nanoseconds, given_up: Event, note: Callable[[Nanoseconds], object] = lambda _: 0
+    setup: RunSetup,
+    until: Nanoseconds,
+    given_up: Event,
+    note: Callable[[Nanoseconds], object] = lambda _: 0,
+    *,
+    clock: str = "virtual",
 ) -> TriedRun:
     """Make a run and return its problems. ``note`` gets its progress in nanoseconds.
 
@@ -232,7 +237,7 @@ def try_run(
         OSError: the engine could not be started.
     """
     timeline = Timeline(until_ending=True)
-    unwatched = msgspec.structs.replace(setup, clock="virtual", speed=None, until=until)
+    unwatched = msgspec.structs.replace(setup, clock=clock, speed=None, until=until)
     is_cut = False
     with FollowedRun(unwatched, ProcessSession, given_up) as run, suppress(EngineLostError):
         try:

@@ -1,6 +1,7 @@
 """Tries cures of findings in the background, and compares a run with a cure to the one before."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain, takewhile
@@ -34,6 +35,7 @@ from sim.trace.model import Nanoseconds
 
 _SHORTEST: Nanoseconds = 5 * SECOND
 _LONGEST: Nanoseconds = 40 * SECOND
+_LONGEST_REAL: Nanoseconds = 8 * SECOND
 _SHOWS: Nanoseconds = 3 * SECOND
 """How long a trial goes on after now: on virtual time a wait is told later than on the real clock."""
 
@@ -94,7 +96,8 @@ class CureTrial:
     given_up: Event = field(default_factory=Event)
     _trying: Lock = field(default_factory=Lock)
     _note: Note = lambda _: None
-    _before: TriedRun | None = None
+    _before: dict[str, TriedRun] = field(default_factory=dict)
+    """The runs without a cure, by the clock."""
     _verdicts: dict[tuple[Problem, str], Verdict] = field(default_factory=dict)
 
     @property
@@ -118,29 +121,40 @@ class CureTrial:
         """Tell whether a cure ends a finding; takes two runs, for further cures of a finding one.
 
         Who asks while another thread does waits for that one, and is told the progress in its place.
-        Unknown if the run without a cure does not show the finding in time: then no cure is tried.
+        Unknown if the run without a cure does not show the finding in time: then no cure is tried. What a run
+        on the real clock shows, and one on virtual time does not, such as a long computation, is tried on the
+        real clock too.
         """
         problem = problem_of(found.finding, self.run.timeline)
         self._note = note
         with self._trying:
             if (known := self._verdicts.get((problem, cure.key))) is not None:
                 return known
-            try:
-                before = self._without(problem)
-                if problem not in before.problems:
-                    return Verdict(None)
-                after = self._try(cure.changes, 50)
-            except (GivenUpError, OSError, UnknownInputError):
-                return Verdict(None)
-            return self._verdicts.setdefault((problem, cure.key), judged(problem, before, after))
+            verdict = Verdict(None)
+            with suppress(GivenUpError, OSError, UnknownInputError):
+                for clock in ("virtual", "real") if self.run.timeline.is_real else ("virtual",):
+                    verdict = self._judged(problem, cure, clock)
+                    if verdict.helps is not None:
+                        break
+                if verdict != Verdict(None):
+                    self._verdicts[problem, cure.key] = verdict
+            return verdict
 
-    def _without(self, problem: Problem) -> TriedRun:
+    def _judged(self, problem: Problem, cure: Cure, clock: str) -> Verdict:
+        before = self._without(problem, clock)
+        if problem not in before.problems:
+            return Verdict(None)
+        return judged(problem, before, self._try(cure.changes, clock, 50))
+
+    def _without(self, problem: Problem, clock: str) -> TriedRun:
         """Return the run without a cure; another one up to now, if the one before does not show a problem."""
-        before, now = self._before, self.trials.until()
-        if before is None or (problem not in before.problems and now > self.until):
-            self.until, self._before = now, None
+        before, now = self._before.get(clock), self.trials.until()
+        if before is not None and problem not in before.problems and now > self.until:
+            self.until, before = now, None
+            self._before.clear()
             vars(self).pop("inputs", None)
-            before = self._before = self._try(self.changes)
+        if before is None:
+            before = self._before[clock] = self._try(self.changes, clock)
         return before
 
     @cached_property
@@ -150,13 +164,14 @@ class CureTrial:
         given = inputs_of(takewhile(lambda event: event.t <= self.until, events))
         return tuple(each for each in given if not stops(each))
 
-    def _try(self, changes: Changes, done: int = 0) -> TriedRun:
+    def _try(self, changes: Changes, clock: str, done: int = 0) -> TriedRun:
         """Make the half of the trial's work that follows when so much per cent is done."""
         setup = changes.applied(self.trials.subject.set_up(changes.threads, None))
-        until = self.until
+        until = self.until if clock == "virtual" else min(self.until, _LONGEST_REAL)
         return try_run(
             with_inputs(setup, self.inputs),
             until,
             self.given_up,
             lambda end: self._note(done + 50 * end // until),
+            clock=clock,
         )

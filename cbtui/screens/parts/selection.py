@@ -171,11 +171,13 @@ class LaneSelection(ScreenPart):
             self._lanes.focus()
 
     def _last_of(self, entity: EntityId) -> Selection | None:
-        """The lane of a callback, and its last bar up to the moment on screen."""
+        """The lane of a callback, and its call at the moment on screen, or its last bar up to then."""
         timeline = self.runs.timeline
         lanes = all_lanes(timeline, self.subject.service)
         lane = next((lane for lane in lanes if Selection(lane).entity == entity), None)
         if lane is None:
             return None
-        after = min(self.navigation.now + 1, timeline.end)
-        return Selection(lane, neighbouring_bar(timeline, lane, after, -1))
+        now = self.navigation.now
+        running = (span for span in timeline.moment(now).running.values() if span.entity == entity)
+        after = min(now + 1, timeline.end)
+        return Selection(lane, next(running, None) or neighbouring_bar(timeline, lane, after, -1))
