@@ -167,7 +167,8 @@ class _Maker:
         """Have a callback called twice a second that does nothing."""
 
         def beat() -> None:
-            self._fate.heart_beats = self._simulation.now > SECONDS - 2
+            # A worker that is ended in its work begins other work before it ends.
+            self._fate.heart_beats = SECONDS - 2 < self._simulation.now < SECONDS
 
         self._node.create_timer(0.5, beat, group)
 

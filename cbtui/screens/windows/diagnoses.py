@@ -10,6 +10,7 @@ from typing import Protocol
 
 from textual import on
 from textual.app import ComposeResult
+from textual.await_complete import AwaitComplete
 from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import OptionList, Static
@@ -186,6 +187,11 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         self._entitle()
         self._tell_highlighted()
 
+    def dismiss(self, result: ChosenStep | None = None) -> AwaitComplete:
+        """Close the window, and begin no further trials."""
+        self._outdated.set()
+        return super().dismiss(result)
+
     def on_unmount(self) -> None:
         """Begin no further trials."""
         self._outdated.set()
@@ -214,18 +220,20 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             if outdated.is_set():
                 return
             verdict = trial.judge(findings[place], cure, note)
-            if not outdated.is_set():
-                self.app.call_from_thread(self._note_tried, place, cure, verdict)
+            self._tell_from_thread(outdated, self._note_tried, place, cure, verdict)
 
     def _note_progress(self, place: int, outdated: Event, percent: int) -> None:
         if percent != self._percent.get(place) and not outdated.is_set():
             self._percent[place] = percent
-            self.app.call_from_thread(self._tell_highlighted)
+            self._tell_from_thread(outdated, self._tell_highlighted)
+
+    def _tell_from_thread(self, outdated: Event, tell: Callable[..., None], *told: object) -> None:
+        """Let the screen's thread tell something, unless the window is being closed there."""
+        if not outdated.is_set():
+            self.app.call_from_thread(lambda: None if outdated.is_set() else tell(*told))
 
     def _note_tried(self, place: int, cure: Cure, verdict: Verdict) -> None:
         """Offer to try a cure if it helps; the highlight stays where it is."""
-        if not self.query(OptionList):
-            return  # the window is being closed
         chosen = self._chosen
         self._untried[place] -= 1
         self._percent[place] = 0
