@@ -25,6 +25,7 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from cbtui.screens.menu import MenuScreen
 from cbtui.terminal.ending import EndingApp
+from cbtui.terminal.textual_internals import clear_hints
 from cbtui.text.ascii_filter import AsciiFilter
 from cbtui.text.harmless_filter import HarmlessFilter
 from cbtui.widgets.key_bar import say_at_once
@@ -303,7 +304,7 @@ class CbtuiApp(EndingApp):
         from cbtui.screens.windows.help import HelpScreen
 
         if not isinstance(self.screen, HelpScreen):
-            self.clear_notifications()
+            clear_hints(self)
             self.push_screen(HelpScreen(self.charset))
 
     def get_system_commands(self, screen: Screen[Any]) -> Iterable[SystemCommand]:

@@ -9,6 +9,7 @@ from textual.screen import ModalScreen, Screen, ScreenResultCallbackType, Screen
 from textual.widgets import Static
 
 from cbtui.screens.layout import Layout, layout_for, too_small
+from cbtui.terminal.textual_internals import clear_hints
 from cbtui.widgets.key_bar import say_at_once
 
 Result = TypeVar("Result")
@@ -46,8 +47,8 @@ class SizedScreen(Screen[Result]):
     def ask(
         self, question: Screen[ScreenResultType], take: ScreenResultCallbackType[ScreenResultType] | None
     ) -> None:
-        """Lay another screen over this one, and no sentence over that; ``take`` gets its result."""
-        self.app.clear_notifications()
+        """Lay another screen over this one, and no hint over that; ``take`` gets its result."""
+        clear_hints(self.app)
         if not isinstance(question, ModalScreen):
             say_at_once(self, "opening …")
         self.app.push_screen(question, take)

@@ -6,7 +6,7 @@ part; ``tests/terminal/test_textual_internals.py`` checks that, and fails for a 
 code that it depends on changes: then check whether the workaround can be removed.
 """
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from textual._styles_cache import StylesCache
 from textual.app import App
@@ -47,6 +47,12 @@ def is_mounted(app: App[None]) -> bool:
 def is_being_removed(widget: Widget) -> bool:
     """Whether a widget is being removed, perhaps with its whole screen."""
     return widget._pruning
+
+
+def clear_hints(app: App[Any]) -> None:
+    """Take away the sentences that lie over the screen, unless one of them warns."""
+    if all(each.severity == "information" for each in app._notifications):
+        app.clear_notifications()
 
 
 def paint_now(widget: Widget) -> None:

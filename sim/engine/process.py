@@ -241,10 +241,12 @@ class Engine:
 
     def _look_at_waits(self) -> int | None:
         assert self._endless is not None
-        self._endless.look()
+        due = self._endless.look()
         self._positions.look()
         self._program_position.look()
-        return None if self._shutdown.has_begun else self._host.explain_waits()
+        if self._shutdown.has_begun:
+            return None
+        return min((each for each in (due, self._host.explain_waits()) if each is not None), default=None)
 
     def _look_at_waits_of_real_time(self) -> None:
         if not isinstance(self._clock, VirtualClock) and not self._shutdown.has_begun:

@@ -84,6 +84,7 @@ WORKAROUNDS: dict[str, tuple[str, list[Callable[..., Any]]]] = {
         "56fa711aecd9",
         [type(vars(Widget)["border_title"]).__set__],
     ),
+    "textual_internals.clear_hints": ("68eb0959a230", [App.clear_notifications]),
     "textual_internals.is_being_removed": ("be1dc93ca461", [App._prune]),
     "textual_internals.forget_drawn_styles": ("d2509f3e7966", [StylesCache.get_inner_outer.__wrapped__]),
     "widgets.options: paging fails where no line is visible": ("85f7f3300576", [OptionList._move_page]),

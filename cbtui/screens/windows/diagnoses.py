@@ -242,6 +242,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             self._helpful.append((place, cure))
         self._rows = tuple(self._list_rows())
         self._show_options().highlighted = 0 if chosen is None else self._rows.index(chosen)
+        self._tell_highlighted()
         self.call_after_refresh(self.query_one(KeyBar).changed)
 
     def _show_options(self) -> OptionList:

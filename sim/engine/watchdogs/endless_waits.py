@@ -61,14 +61,21 @@ class EndlessWaits:
         if lasts(cycle):
             self._tell_of_deadlock(wait, cycle)
 
-    def look(self) -> None:
-        """Check the waits; call it whenever time is about to pass."""
+    def look(self) -> int | None:
+        """Check the waits; call it whenever time is about to pass.
+
+        Returns when the next one will have lasted long, if it is not over by then; None for none.
+        """
+        due = []
         for wait in self._standing():
             if (wait.entity or not self._deadlocked) and self._is_last(wait):
                 self._tell_of_deadlock(wait, cycle_of(wait.thread))
-            elif wait.entity and not wait.told and self._lasted(wait) >= _PATIENCE:
+            elif wait.entity and not wait.told and self._lasted(wait) < _PATIENCE:
+                due.append(wait.since + _PATIENCE)
+            elif wait.entity and not wait.told:
                 wait.told = True
                 self._record(long_wait(wait.thread, wait.since).notice(self._clock.now(), wait.entity))
+        return min(due, default=None)
 
     def finish(self) -> None:
         """Check the waits for the last time, at the end of the run."""

@@ -223,6 +223,11 @@ def test_a_lock_taken_twice_and_an_event_that_nobody_sets_are_told_with_their_pl
     assert [what.partition(": ")[0] for what in found(run)] == ["wait stands still"]
 
 
+def test_a_wait_is_told_when_it_has_lasted_long_also_if_nothing_else_happens(tmp_path: Path) -> None:
+    run = run_node(tmp_path, "wait")
+    assert [each.t for each in run.events if isinstance(each, Notice)] == [3_100_000_000]
+
+
 def test_the_advice_on_a_lock_whose_holder_waits_itself_is_not_to_take_it_by_with(tmp_path: Path) -> None:
     (_, event), (_, lock) = told(run_node(tmp_path, "hold", "again"))
     assert "waits in Event.wait(), since 0.100 s; wait with a timeout" in event
