@@ -9,6 +9,7 @@ from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.callback_overrides import overrides_of
 from sim.engine.setup import GroupChange, PeriodChange, RunSetup
+from sim.ros.middleware.callback_overrides import CallbackOverrides, GroupChoice
 from sim.trace.events import GroupKind, NodeAppeared, RunEnded
 from sim.trace.timeline import Timeline
 from tests.support.engine_runs import SECOND, Run, run_to_end
@@ -89,6 +90,14 @@ def test_a_change_for_a_node_goes_before_one_for_any_node() -> None:
     assert groups_of(run.timeline)["odom_callback"][1] is GroupKind.REENTRANT
 
 
+def test_of_a_node_that_lacks_a_callback_its_own_are_told_and_which_node_has_that_one() -> None:
+    overrides = CallbackOverrides({("/lidar", "on_control"): GroupChoice.OWN})
+    for node, callback in (("/lidar", "on_sweep"), ("/control", "on_control")):
+        overrides.group_choice(node, callback)
+    (told,) = overrides.unmatched()
+    assert told == "no callback is named on_control in /lidar; there is on_sweep; /control has it"
+
+
 def test_callbacks_that_there_are_not_are_told_of_at_the_end() -> None:
     run = overridden(
         "split-groups",
@@ -100,7 +109,7 @@ def test_callbacks_that_there_are_not_are_told_of_at_the_end() -> None:
         "no callback is named odo; there are odom_callback, scan_callback, timer_callback; "
         "did you mean odom?",
         "no callback is named odom_callback in /other; "
-        "there are odom_callback, scan_callback, timer_callback",
+        "there are odom_callback, scan_callback, timer_callback; /sub_node has it",
         "no timer callback is named odom_callback; there is timer_callback",
     ]
     assert isinstance(run.events[-1], RunEnded)

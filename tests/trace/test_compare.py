@@ -438,6 +438,24 @@ def test_runs_on_the_real_clock_are_compared_from_their_first_calls_on() -> None
     assert run_to_end(first_difference(early, late, Window(0, ns(2.6)))) is None
 
 
+def test_a_client_is_named_after_the_reply_and_a_service_below_its_node_by_its_name_alone() -> None:
+    timeline = run([TIMER], [])
+    server, client = EntityKind.SERVICE, EntityKind.CLIENT
+    made = ((2, server, "/node/ask", "on_ask"), (3, server, "/ask", "on_ask"), (4, client, "/node/ask", ""))
+    timeline.extend(
+        EntityAppeared(0, number, 1, 1, kind, name, callback, "node.py", 1, 2, 0, 0)
+        for number, kind, name, callback in made
+    )
+    for number in (2, 3, 4):
+        timeline.extend(called(number, number, number + 0.1))
+    pairs = compare(timeline, timeline, Window(0, ns(6.0))).callbacks
+    assert [each.name for each in pairs] == [
+        "on_ask (/node/ask)",
+        "on_ask (/node /ask)",
+        "reply of /node/ask",
+    ]
+
+
 def test_what_differs_by_noise_on_the_real_clock_is_about_the_same() -> None:
     window = Window(0, ns(4.0))
     compared = compare(on_the_real_clock(1.0, 69, wait=0.03), on_the_real_clock(1.0, 74), window)

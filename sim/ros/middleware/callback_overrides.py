@@ -75,10 +75,11 @@ def _unmatched(
     for node, callback in overrides:
         if (node, callback) in there or (not node and callback in spellings):
             continue
-        is_elsewhere = node and callback in spellings
-        place = f" in {node}" if is_elsewhere else ""
-        are = "is" if len(names) == 1 else "are"
-        known = f"there {are} {', '.join(names)}" if names else f"there was no {kind} at all"
-        near = [] if is_elsewhere else get_close_matches(callback, sorted(spellings), 1, 0.75)
-        meant = f"; did you mean {near[0]}?" if near else ""
+        owners = [at for at, name in present if node and callback in _names(name)]
+        here = dict.fromkeys(name for at, name in present if name and at == node) or names
+        place = f" in {node}" if owners else ""
+        are = "is" if len(here) == 1 else "are"
+        known = f"there {are} {', '.join(here)}" if here else f"there was no {kind} at all"
+        near = [] if owners else get_close_matches(callback, sorted(spellings), 1, 0.75)
+        meant = f"; did you mean {near[0]}?" if near else "".join(f"; {owner} has it" for owner in owners[:1])
         yield f"no {kind} is named {callback}{place}; {known}{meant}"

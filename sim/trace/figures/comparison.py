@@ -9,7 +9,7 @@ from operator import attrgetter
 from typing import NamedTuple, TypeAlias
 
 from sim.trace.descriptions import why_waiting
-from sim.trace.events import EntityId
+from sim.trace.events import EntityId, EntityKind
 from sim.trace.figures.concurrency import threads_incrementally
 from sim.trace.figures.statistics import CallbackStatistics, statistics_incrementally, with_calls_at_start
 from sim.trace.figures.summary import RobotFigures, robot_incrementally, trail_in_parts
@@ -273,12 +273,14 @@ def _partners(first: Iterable[CallbackKey], second: Iterable[CallbackKey]) -> di
 
 def _short_name(key: CallbackKey) -> str:
     _, kind, callback, name, _ = key
+    if kind == EntityKind.CLIENT and name and not callback:
+        return f"reply of {name}"  # as everywhere: it is not the service
     return callback or name or kind
 
 
 def _long_name(key: CallbackKey) -> str:
     node, _, _, name, number = key
-    place = " ".join(part for part in (node, name) if part)
+    place = name if name.startswith(f"{node}/") else " ".join(part for part in (node, name) if part)
     return f"{_short_name(key)} ({place}{f' #{number}' if number > 1 else ''})"
 
 
