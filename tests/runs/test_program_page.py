@@ -4,10 +4,12 @@ from pathlib import Path
 
 import pytest
 
+from cbtui.runs.setup.changeable import misnamed
+from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.program_page import page_of_program
 from sim.diagnosis import CodeLocation, Explanation
 from sim.trace.timeline import Timeline
-from tests.support.engine_runs import run_program
+from tests.support.engine_runs import program_setup, run_program
 
 _NODE = """
 import rclpy
@@ -67,3 +69,17 @@ def test_a_problem_that_ends_in_a_question_gets_no_full_stop() -> None:
 def test_a_problem_of_a_lambda_names_it() -> None:
     page = page_of_program("node.py", "virtual", Timeline(), [Explanation("<lambda> waits", "", "", None)])
     assert r"- \<lambda\> waits. `d` says what to do." in page["tries"].splitlines()
+
+
+def test_a_change_for_a_callback_that_there_is_not_is_told_of(tmp_path: Path) -> None:
+    run = run_program(tmp_path, _NODE.format(_TRIGGER))
+    path = tmp_path / "node.py"
+    path.write_text(_NODE.format(_TRIGGER))
+    changes = Changes().with_group(("", "pushed"), "own").with_group(("", "press"), "own")
+    setup = changes.applied(program_setup(path, 1.0))
+    wrong = misnamed(setup, run.timeline)
+    page = page_of_program("node.py", "virtual", run.timeline, misnamed=wrong)
+    assert page["found"].splitlines()[-1] == (
+        "- no callback is named ``pushed``, so what was to change there did not"
+    )
+    assert page["found"].count("no callback is named") == 1

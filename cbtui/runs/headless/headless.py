@@ -13,7 +13,7 @@ from cbtui.runs.headless.deadlock_news import DeadlockNews
 from cbtui.runs.headless.program_log import ProgramLog
 from cbtui.runs.headless.standard_input import StandardInput
 from cbtui.runs.live.disk_space import DiskSpaceWatch
-from cbtui.runs.setup.changeable import misnames
+from cbtui.runs.setup.changeable import misnamed
 from cbtui.terminal.interrupts import deferred_interrupt, ending_signals
 from cbtui.text.output import CannotSayError, complain, say
 from sim.diagnosis import diagnose, findings_text
@@ -172,7 +172,7 @@ class _Headless:
         """Stop the run at its first callback if a change misspells one; the engine then tells which."""
         if self._has_changes and any(isinstance(each, CallbackStarted) for each in events):
             self._has_changes = False
-            if misnames(self._setup, self._timeline):
+            if misnamed(self._setup, self._timeline):
                 self._run.session.send(Stop())
 
     @property

@@ -114,8 +114,8 @@ def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
     return {place: replace(each, is_alone=names[each.name] == 1) for place, each in found.items()}
 
 
-def misnames(setup: RunSetup, timeline: Timeline) -> bool:
-    """Whether a change is for a callback that the run lacks, and that no file of its programs mentions.
+def misnamed(setup: RunSetup, timeline: Timeline) -> list[str]:
+    """Return for which callbacks there are changes that the run lacks, and no file of its programs mentions.
 
     What a launch file starts is not known before it runs: there, another callback has nearly that name.
     """
@@ -124,7 +124,7 @@ def misnames(setup: RunSetup, timeline: Timeline) -> bool:
     missing = [name for name in changed if name not in names]
     if any(each.is_launch_file for each in setup.programs):
         missing = [name for name in missing if get_close_matches(name, names, 1, 0.75)]
-    return any(not _is_mentioned(name, setup, timeline) for name in missing)
+    return [name for name in missing if not _is_mentioned(name, setup, timeline)]
 
 
 def _is_mentioned(name: str, setup: RunSetup, timeline: Timeline) -> bool:

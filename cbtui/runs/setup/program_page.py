@@ -34,22 +34,24 @@ def page_of_program(
     problems: Sequence[Explanation] = (),
     *,
     has_cures: bool = False,
+    misnamed: Sequence[str] = (),
 ) -> Mapping[str, str]:
     """Return the sections of the page; ``problems`` are what went wrong, the worst first.
 
-    ``has_cures``: whether the first problem has cures that can be tried.
+    ``has_cures``: whether the first problem has cures that can be tried; ``misnamed`` are the callbacks that
+    were to be changed, and that there are not.
     """
     tries = "\n".join(f"- {line}" for line in _tries(timeline, problems, has_cures=has_cures))
     return {
         "about": _ABOUT.format(name=name, clock=clock),
-        "found": f"## What was found\n\n{_found(timeline)}\n",
+        "found": f"## What was found\n\n{_found(timeline, misnamed)}\n",
         "tries": f"## What to try\n\n{tries}\n",
         "signs": _SIGNS,
     }
 
 
-def _found(timeline: Timeline) -> str:
-    """The nodes with their executors, and the groups with their callbacks."""
+def _found(timeline: Timeline, misnamed: Sequence[str]) -> str:
+    """The nodes with their executors, and the groups with their callbacks; what was to be changed in vain."""
     if not timeline.nodes:
         ended = timeline.ended
         return "No node yet: the program starts." if ended is None else f"It made no node: {ended.reason}"
@@ -61,6 +63,7 @@ def _found(timeline: Timeline) -> str:
         own = _listed(_callback(each) for each in timeline.group_members(group.id) if programs_own(each))
         if own:
             lines.append(f"- group {group.letter}, {group.kind.value}: {own}")
+    lines += (f"- no callback is named ``{name}``, so what was to change there did not" for name in misnamed)
     return "\n".join(lines)
 
 

@@ -10,6 +10,7 @@ from textual.screen import Screen
 from cbtui.runs.judged.cures import cures_of
 from cbtui.runs.live.file_watch import CANNOT_WATCH, content_of, contents
 from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.setup.changeable import misnamed
 from cbtui.runs.setup.program_page import MOST, page_of_program
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
@@ -58,7 +59,14 @@ class OwnFile(ScreenPart):
         problems = [each.explanation for each in self.runs.findings.findings if each.is_problem]
         cures = (cures_of(each, self.restarts.changes, run.timeline) for each in problems[:1])
         has_cures = run.setup.real is None and any(True for each in cures for _ in each)
-        return page_of_program(self.file.name, run.setup.clock, run.timeline, problems, has_cures=has_cures)
+        return page_of_program(
+            self.file.name,
+            run.setup.clock,
+            run.timeline,
+            problems,
+            has_cures=has_cures,
+            misnamed=misnamed(run.setup, run.timeline),
+        )
 
     def update_guide(self) -> None:
         """Write the guide again if the findings changed.
