@@ -119,8 +119,10 @@ def misnamed(setup: RunSetup, timeline: Timeline) -> list[str]:
 
     What a launch file starts is not known before it runs: there, another callback has nearly that name.
     """
-    names = {each for _, name in callbacks_of(timeline) for each in (name, short_name(name))}
     changed = [*(each.callback for each in setup.groups), *(each.callback for each in setup.periods)]
+    if not changed:
+        return []  # a program may have any number of callbacks, and this is asked again and again
+    names = {each for _, name in callbacks_of(timeline) for each in (name, short_name(name))}
     missing = [name for name in changed if name not in names]
     if any(each.is_launch_file for each in setup.programs):
         missing = [name for name in missing if get_close_matches(name, names, 1, 0.75)]
