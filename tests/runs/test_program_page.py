@@ -80,6 +80,6 @@ def test_a_change_for_a_callback_that_there_is_not_is_told_of(tmp_path: Path) ->
     wrong = misnamed(setup, run.timeline)
     page = page_of_program("node.py", "virtual", run.timeline, misnamed=wrong)
     assert page["found"].splitlines()[-1] == (
-        "- no callback is named ``pushed``, so what was to change there did not"
+        "- no callback is named ``pushed`` so far: nothing is changed there"
     )
     assert page["found"].count("no callback is named") == 1

@@ -63,7 +63,7 @@ def _found(timeline: Timeline, misnamed: Sequence[str]) -> str:
         own = _listed(_callback(each) for each in timeline.group_members(group.id) if programs_own(each))
         if own:
             lines.append(f"- group {group.letter}, {group.kind.value}: {own}")
-    lines += (f"- no callback is named ``{name}``, so what was to change there did not" for name in misnamed)
+    lines += (f"- no callback is named ``{name}`` so far: nothing is changed there" for name in misnamed)
     return "\n".join(lines)
 
 
