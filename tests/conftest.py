@@ -54,6 +54,14 @@ def engines_copied() -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def ros_without_shared_memory() -> Iterator[None]:
+    """Let real ROS 2 send by UDP: programs that find what an ended one left in shared memory print errors."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")
+        yield
+
+
 @pytest.fixture
 def fresh_engines(monkeypatch: pytest.MonkeyPatch) -> None:
     """Start engines as the console does, where the process itself is what is tested."""

@@ -17,6 +17,9 @@ from sim.real.wire import ProbeLine, Sent, decode_lines
 from sim.robot.names import NAMES
 from sim.trace.events import ArenaShown, EntityAppeared, EntityKind
 
+_GRACE = 1.0
+"""Seconds that a process has to end by itself."""
+
 
 class Companion:
     """A helper process, started at its first use at the latest. ``take`` gets the lines that it writes."""
@@ -70,12 +73,16 @@ class Companion:
             self._process.stdin.write(msgspec.json.encode(line) + b"\n")
 
     def stop(self) -> None:
-        """Kill it."""
+        """End it: by SIGTERM, at which rclpy takes its files out of shared memory, or else by force."""
         if self._process is not None:
             assert self._process.stdin is not None
             self._process.stdin.close()
-            self._process.kill()
-            self._process.wait()
+            self._process.terminate()
+            try:
+                self._process.wait(_GRACE)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
 
     def _ended(self) -> None:
         self.is_over = True

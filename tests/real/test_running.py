@@ -1,14 +1,20 @@
 """Programs on real rclpy show what the model shows."""
 
+import os
+import sys
+import time
 from pathlib import Path
+from selectors import DefaultSelector
 
 import msgspec
 import pytest
 
 from sim.diagnosis import diagnose
 from sim.diagnosis.rule import CodeLocation
-from sim.engine.setup import RealRos
+from sim.engine.setup import RealRos, RobotUse
 from sim.quantities.nanoseconds import SECOND
+from sim.real.companions import RunRobot, ServiceCaller
+from sim.real.programs import claimed_domain, unbootstrapped
 from sim.trace.events import (
     CallbackFailed,
     CallbackResumed,
@@ -375,3 +381,29 @@ def test_a_sleep_by_simulated_time_that_stops_its_clock_is_a_deadlock(tmp_path: 
     (found,) = (each for each in diagnose(timeline) if each.rule.id == "self-made-deadlock")
     assert found.rule.kind(found, timeline) == "deadlock-over-the-clock"
     assert "clock_callback" in {each.callback for each in timeline.entities.values()}
+
+
+def test_what_helps_a_run_leaves_nothing_in_shared_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("FASTDDS_BUILTIN_TRANSPORTS")
+    domain, claim = claimed_domain()
+    ports = {f"fastrtps_port{7400 + 250 * domain + place}" for place in range(250)}
+    deadline = time.monotonic() + 60
+
+    def left() -> set[str]:
+        return ports & set(os.listdir("/dev/shm"))  # noqa: PTH208
+
+    with claim, DefaultSelector() as selector:
+        environment = {**unbootstrapped(sys.executable), "ROS_DOMAIN_ID": str(domain)}
+        caller = ServiceCaller(selector, sys.executable, environment, print)
+        robot = RunRobot(RobotUse.ALWAYS, None, None, selector, environment, print).process
+        caller.start()
+        robot.start()
+        while len(left()) < 2:
+            assert time.monotonic() < deadline, "of each process a port"
+            time.sleep(0.05)
+        caller.stop()
+        robot.stop()
+        while selector.get_map():
+            for key, _ in selector.select():
+                key.data()
+    assert left() == set()

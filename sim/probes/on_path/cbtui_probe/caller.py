@@ -31,13 +31,19 @@ class _Caller:
         self._ids = Recorder()
         executor = SingleThreadedExecutor()
         executor.add_node(self._node)
-        threading.Thread(target=self._spin, args=(executor,), daemon=True).start()
+        self._spinning = threading.Thread(target=self._spin, args=(executor,), daemon=True)
+        self._spinning.start()
 
     def _spin(self, executor: Any) -> None:
         try:
             executor.spin()
         except (KeyboardInterrupt, ExternalShutdownException):
             return
+
+    def end(self) -> None:
+        """Leave the graph, and with it Fast DDS's shared memory."""
+        rclpy.try_shutdown()
+        self._spinning.join()
 
     def call(self, service_type: str, names: list[str], fields: dict[str, Any]) -> None:
         """Make one call, and report it and its reply."""
@@ -78,6 +84,7 @@ def main() -> None:
     caller = _Caller()
     for line in sys.stdin:
         caller.call(*json.loads(line))
+    caller.end()
 
 
 if __name__ == "__main__":
