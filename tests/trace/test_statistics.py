@@ -101,6 +101,24 @@ def test_a_timers_jitter_is_how_far_its_steps_are_off_the_period() -> None:
     assert (figures.late.most, figures.age) == (ns(3.1 % 1), None)
 
 
+def test_what_waits_as_the_window_ends_counts_as_late_or_old_as_it_is_by_then() -> None:
+    cast = Cast()
+    timer = cast.run.timer(cast.group, "tick", 1.0)
+    odom = cast.run.subscription(cast.group, "/odom", "odom_callback")
+    cast.run.message(odom, 0.5)
+    cast.run.callback(odom, cast.main, 0.5, 0.0)
+    cast.run.callback(timer, cast.main, 1.0, 1.0)
+    cast.run.message(odom, 1.5)
+    cast.run.wait(odom, 1.5, holder=timer)
+    cast.run.start(timer, cast.main, 2.0)
+    cast.run.wait(timer, 3.0, holder=timer)
+    cast.run.message(odom, 6.0)
+    assert of(cast.run, timer).late == Distribution(3, 0, 0, ns(3), ns(3))
+    assert of(cast.run, odom).age == Distribution(2, 0, 0, ns(4.5), ns(4.5))
+    assert of(cast.run, timer, Window(0, ns(3))).late == Distribution(2, 0, 0, 0, 0)
+    assert of(cast.run, odom, Window(ns(1), ns(3))).age == Distribution(1, *[ns(1.5)] * 4)
+
+
 def test_a_subscriptions_jitter_is_of_its_messages_and_not_of_its_calls() -> None:
     cast = Cast()
     odom = cast.run.subscription(cast.group, "/odom", "odom_callback")
@@ -205,7 +223,9 @@ def assert_as_naive(figures: CallbackStatistics, naive: Naive, entity: EntityId,
     assert figures.wait == naive_distribution(naive_waits(naive, calls, entity, window))
     assert figures.drops == naive.drops(window, entity)
     assert figures.errors == sum(bool(span.error) for span in stretches)
-    ages = naive_distribution([span.age for span in calls])
+    called = [span.age for span in calls]
+    pending = naive_pending(naive, entity, window)
+    ages = naive_distribution([*called, *(age for age in pending if age > max(called, default=0))])
     timer = KINDS[entity] is EntityKind.TIMER
     assert (figures.age, figures.late) == ((None, ages) if timer else (ages, None))
     assert figures.jitter == naive_jitter(calls, KINDS[entity])
@@ -240,6 +260,14 @@ def naive_length(naive: Naive, wait: Wait, end: int) -> int:
     if arrived is None:
         return end - wait.since
     return end - (arrived if wait.holder == wait.entity else min(arrived, wait.since))
+
+
+def naive_pending(naive: Naive, entity: EntityId, window: Window) -> list[int]:
+    """How late a timer's call is that waits as the window ends, or how old what another one waits for."""
+    end = min(window.end, max((event.t for event in naive.events), default=0))
+    if KINDS[entity] is EntityKind.TIMER:
+        return [end - wait.since for at, wait in naive.waiting(window.end - 1).items() if at == entity]
+    return [end - message.since for message in naive.queue(entity, window.end - 1).messages[:1]]
 
 
 def naive_jitter(calls: list[Span], kind: EntityKind) -> Distribution | None:

@@ -51,6 +51,8 @@ class CallbackStatistics:
     - ``drops``: messages that its queue lost in the window.
     - ``age``: age of the message, request or reply at the start of each call; None for timers.
     - ``late``: the lateness of each call of a timer; None for others.
+    - Of both, the call that still waits as the window ends counts as far as it is known by then, if it is
+      worse than all calls: only then is its rank certain.
     - ``errors``: calls that started in the window and raised.
     """
 
@@ -89,7 +91,7 @@ def statistics(timeline: Timeline, window: Window | None = None) -> Statistics:
     callbacks = (run_to_end(statistics_incrementally(timeline, each, asked)) for each in timeline.entities)
     return Statistics(
         asked,
-        tuple(each for each in callbacks if each.calls or each.drops or each.duration or each.wait),
+        tuple(each for each in callbacks if each.drops or each.duration or each.age or each.late),
         {thread: timeline.busy(thread, _known(timeline, asked)) for thread in timeline.threads},
         threads_at_once(timeline, asked),
     )
@@ -116,7 +118,8 @@ def statistics_incrementally(
         starts.extend(span.start for span in calls)
         ages.extend(span.age for span in calls)
         yield
-    of_ages = yield from _distributed(ages)
+    pending = _pending_age(timeline, known, window)
+    of_ages = yield from _distributed(ages, pending)
     return CallbackStatistics(
         entity=known,
         calls=len(starts),
@@ -130,13 +133,26 @@ def statistics_incrementally(
     )
 
 
+def _pending_age(timeline: Timeline, entity: EntityInfo, window: Window) -> Nanoseconds:
+    """The age of what a call is for that waits as the window ends, or how late it is then; 0 for none."""
+    end = min(window.end, timeline.end)
+    if entity.kind is not EntityKind.TIMER:
+        since = timeline.queue(entity.id, window.end - 1).oldest
+        return 0 if since is None else end - since
+    waits = timeline.waits_of(entity.id, Window(window.end - 1, window.end))
+    return max((end - wait.since for wait in waits if wait.end is None or wait.end >= window.end), default=0)
+
+
 def distribution(values: Iterable[Nanoseconds]) -> Distribution | None:
     """The distribution of values; None for none."""
     return run_to_end(_distributed(values))
 
 
-def _distributed(values: Iterable[Nanoseconds]) -> Incremental[Distribution | None]:
+def _distributed(values: Iterable[Nanoseconds], pending: Nanoseconds = 0) -> Incremental[Distribution | None]:
+    """The distribution of values, and of a pending one that exceeds them all."""
     ranked = yield from _ranked(values)
+    if pending > max([0, *ranked[-1:]]):
+        ranked = np.append(ranked, pending)
     if not len(ranked):
         return None
     least, median, p95, most = (percentile(ranked, per_cent) for per_cent in (0, 50, 95, 100))
