@@ -146,13 +146,12 @@ def compare_runs(
         return 2
     one, other = found.first, found.second
     compared = compare(one.timeline, other.timeline, found.window)
-    problems = ComparedProblems(one.timeline, other.timeline)
-    told, is_cured = problems.told(), problems.is_cured()
+    problems = ComparedProblems(one.timeline, other.timeline).compared()
     if in_lines:
-        lines = comparison_lines(compared, one.name, other.name, told, is_cured=is_cured)
+        lines = comparison_lines(compared, one.name, other.name, problems)
         say("".join(f"{line}\n" for line in lines))
     else:
-        say(comparison_text(compared, one.name, other.name, told, is_cured=is_cured))
+        say(comparison_text(compared, one.name, other.name, problems))
     failures = [side.failure for side in (one, other) if side.failure is not None]
     for sentence in dict.fromkeys([one.damage, other.damage, *failures]):
         if sentence is not None:

@@ -31,13 +31,13 @@ from cbtui.widgets.lanes.keys import lane_keys
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
 from sim.trace.figures.comparison import compare_incrementally, first_difference
-from sim.trace.figures.comparison_rows import (
-    RUNS,
-    Section,
+from sim.trace.figures.comparison_rows import RUNS, Section, sections
+from sim.trace.figures.comparison_sentences import (
+    NO_PROBLEMS,
+    capitalised,
     ended_early,
     extent,
     is_tie,
-    sections,
     stretch,
     verdict,
 )
@@ -104,7 +104,7 @@ class CompareScreen(SizedScreen[None]):
         self._comparing = False
         self._rest_until = 0.0
         self._problems = ComparedProblems(first.timeline, second.timeline)
-        self._gone_or_new = self._verdict = ""
+        self._told = self._verdict = ""
         self._is_tie = False
         self._judged = Window(0, 0)
         self._ended_early = ""
@@ -186,7 +186,7 @@ class CompareScreen(SizedScreen[None]):
         """Update what is gone or new, as a run goes on beyond the end of the other one; but rarely."""
         began = monotonic()
         if began >= self._rest_until and any(side.alive() for side in self._sides):
-            self._gone_or_new = self._problems.told()
+            self._told = self._problems.compared().told
             self._show_first_difference()
             self._rest_until = monotonic() + _REST_FACTOR * (monotonic() - began)
 
@@ -220,12 +220,12 @@ class CompareScreen(SizedScreen[None]):
         That is not done once the cursor was moved.
         """
         if not self._verdict:
-            self.query_one("#verdict", Static).update(self._gone_or_new)
+            self.query_one("#verdict", Static).update(self._told)
             return
         at = self._first_difference
         notably = " notably" if self._is_real else ""
         where = f"no call differs{notably}" if at is None else f"they differ from {timestamp(at)} on"
-        is_part = self._whole and (self._judged.end < self._end or self._bounds is not None)
+        is_part = self._whole and (self._judged.end < self._end or self._judged.start > 0)
         span = f"in {stretch(self._judged)} " if is_part else ""
         verdict = f"{where}; {span}{self._verdict[0].lower()}{self._verdict[1:]}"
         if not self._whole:
@@ -234,8 +234,8 @@ class CompareScreen(SizedScreen[None]):
             verdict = f"{self._ended_early}; {'until then ' if at is None else ''}{where}"
         elif self._is_tie and any(side.alive() for side in self._sides):
             verdict = f"{where} so far; neither run is better yet: {_shorter(*self._sides)}"
-        before = f"{self._gone_or_new} " if self._gone_or_new and self._whole else ""
-        verdict = f"{before}{verdict[0].upper()}{verdict[1:]}"
+        before = f"{self._told} " if self._told and self._whole else ""
+        verdict = before + capitalised(verdict)
         self.query_one("#verdict", Static).update(verdict)
         if at is not None and self._whole and not self._has_moved:
             self.navigation.seek(at)
@@ -259,11 +259,12 @@ class CompareScreen(SizedScreen[None]):
         self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
         for number, notable in enumerate(compared.notable):
             self._lanes(number).kept = notable
-        is_cured = False
+        problems = NO_PROBLEMS
         if self._whole:
             yield
-            self._gone_or_new, is_cured = self._problems.told(), self._problems.is_cured()
-        self._verdict, self._is_tie = verdict(compared, is_cured=is_cured), is_tie(compared)
+            problems = self._problems.compared()
+            self._told = problems.told
+        self._verdict, self._is_tie = verdict(compared, problems), is_tie(compared, problems)
         self._judged, self._ended_early = asked, ended_early(compared)
         if self._whole:
             return self._extent(asked), sections(compared)

@@ -24,7 +24,11 @@ def well_run() -> Timeline:
 
 
 def told(first: Timeline, second: Timeline) -> str:
-    return ComparedProblems(first, second).told()
+    return ComparedProblems(first, second).compared().told
+
+
+def speaks(first: Timeline, second: Timeline) -> int | None:
+    return ComparedProblems(first, second).compared().speaks
 
 
 def test_a_deadlock_is_gone_or_still_there_or_new() -> None:
@@ -93,7 +97,7 @@ def test_a_wait_without_end_that_is_no_deadlock_is_a_hang() -> None:
 
 def test_other_problems_are_gone_or_new_too() -> None:
     starved, deaf = run_of("held_group"), run_of("qos_mismatch")
-    assert told(starved, starved) == ""
+    assert told(starved, starved) == "Still in run B: group starvation."
     assert told(starved, deaf) == "Gone in run B: group starvation. New in run B: QoS mismatch."
     assert told(run_of("call_in_timer"), deaf) == "The deadlock is gone. New in run B: QoS mismatch."
 
@@ -103,13 +107,27 @@ def test_a_problem_is_called_by_what_a_learner_sees() -> None:
     assert told(well_run(), slow) == "New in run B: callback longer than its timer's period."
 
 
-def test_a_run_is_cured_if_problems_are_gone_and_none_is_new() -> None:
-    stuck, starved, well = run_of("call_in_timer"), run_of("held_group"), well_run()
-    assert ComparedProblems(stuck, well).is_cured()
-    assert not ComparedProblems(well, stuck).is_cured()
-    assert not ComparedProblems(stuck, stuck).is_cured()
-    assert not ComparedProblems(starved, run_of("qos_mismatch")).is_cured()
-    assert not ComparedProblems(stuck, run_of("sleep_in_service", seconds=0.2)).is_cured()
+def test_what_is_gone_speaks_for_a_run_and_what_is_new_against_it_and_a_hang_most() -> None:
+    stuck, starved, well, deaf = (
+        run_of("call_in_timer"),
+        run_of("held_group"),
+        well_run(),
+        run_of("qos_mismatch"),
+    )
+    assert speaks(stuck, well) == 1
+    assert speaks(well, stuck) == -1
+    assert speaks(stuck, stuck) is speaks(well, well) is speaks(starved, starved) is None
+    assert speaks(starved, deaf) == speaks(stuck, run_of("lock_across_callbacks")) == 0
+    assert speaks(stuck, deaf) == 1
+    assert speaks(stuck, run_of("sleep_in_service", seconds=0.2)) is None
+    assert [ComparedProblems(stuck, each).compared().stuck for each in (stuck, well)] == [True, False]
+
+
+def test_of_a_hang_shortly_before_the_end_of_the_runs_is_said_what_each_shows() -> None:
+    stuck, well = run_of("call_in_timer", 2.0), run_lesson("split-groups", 2.0).timeline
+    assert told(stuck, well) == "Run A has a deadlock, run B shows none up to 2.000 s."
+    assert told(well, stuck) == "Run B has a deadlock, run A shows none up to 2.000 s."
+    assert speaks(stuck, well) is None
 
 
 CAMERA = """
@@ -149,7 +167,7 @@ def test_what_was_an_effect_of_another_problem_before_is_not_new(tmp_path: Path)
     for group in ("None", "MutuallyExclusiveCallbackGroup()"):
         (tmp_path / "camera.py").write_text(CAMERA.replace("GROUP", group))
         runs.append(run_to_end(program_setup(tmp_path / "camera.py", 8.0)).timeline)
-    assert told(*runs) == "Gone in run B: group starvation."
+    assert told(*runs) == "Gone in run B: group starvation. Still in run B: dropped messages."
 
 
 def test_nothing_is_said_of_a_run_that_has_not_come_to_the_problem() -> None:
@@ -164,5 +182,5 @@ def test_of_runs_that_were_not_given_the_same_commands_nothing_is_gone_or_new() 
     uncalled = run_lesson("exclusive-2-threads", 12.0, threads=1).timeline
     again = run_lesson("exclusive-2-threads", 12.0, 2.0, 3.0).timeline
     assert told(called, uncalled) == ""
-    assert not ComparedProblems(called, uncalled).is_cured()
+    assert speaks(called, uncalled) is None
     assert told(called, again) == "Gone in run B: no free thread."

@@ -26,7 +26,7 @@ from cbtui.widgets.lanes import Lanes, start_of
 from sim.quantities.durations import timestamp
 from sim.trace.events import AnyEvent, CommandGiven, CommandKind, RobotMoved, RunEnded
 from sim.trace.figures.comparison import compare as figures_of
-from sim.trace.figures.comparison_rows import verdict
+from sim.trace.figures.comparison_sentences import verdict
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
@@ -151,7 +151,7 @@ async def test_it_opens_where_the_runs_first_differ_with_a_verdict() -> None:
 async def test_the_axis_goes_as_far_as_the_longer_run_and_the_table_as_far_as_the_shorter() -> None:
     async with compared(*sides()) as (app, _):
         assert lanes(app)[0].now == app.comparison._sides[0].timeline.end
-        assert "Whole runs, 0 to 9.4 s; run A goes on to 14 s" in title(app)
+        assert "Whole runs, 0 to 9.4 s; run A is 14 s long" in title(app)
 
 
 @pytest.mark.parametrize(
@@ -327,7 +327,7 @@ async def test_a_wide_screen_has_room_for_everything() -> None:
 
 async def test_what_is_asked_for_is_what_the_table_and_the_lanes_begin_with() -> None:
     async with compared(*sides(), bounds=Window(ns(2.0), ns(5.0))) as (app, _):
-        assert "As asked, 2 to 5 s; run A goes on to 14 s; run B goes on to 9.4 s" in title(app)
+        assert "As asked, 2 to 5 s; run A is 14 s long; run B is 9.4 s long" in title(app)
         shown = lanes(app)[0].window
         assert shown.start <= ns(2.0)
         assert shown.end >= ns(5.0)
@@ -372,11 +372,11 @@ async def test_a_run_that_an_exception_ended_early_is_not_judged_by_what_came_be
     growing.extend([event for event in events if event.t <= ns(6.0)])
     now = ComparedSide("now", growing, alive=lambda: True)
     async with compared(ComparedSide("failed", failed), now) as (app, pilot):
-        assert "Run A ended at 0.3 s with an exception; run B goes on" in text_of(app)
+        assert "Run A ended at 0.3 s with an exception; run B has none up to 6 s" in text_of(app)
         growing.extend([RunEnded(ns(7.0), "it raised too", failed=True)])
         await until(pilot, lambda: "with an exception, and run B at 7 s with one" in text_of(app))
         assert "is better" not in text_of(app)
-        assert "What both runs have, 0 to 0.3 s; run B goes on to" in title(app)
+        assert "What both runs have, 0 to 0.3 s; run B is" in title(app)
 
 
 async def test_verdict_and_table_are_about_the_same_span() -> None:

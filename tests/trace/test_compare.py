@@ -28,12 +28,9 @@ from sim.trace.figures.comparison import compare, first_difference
 from sim.trace.figures.comparison_rows import (
     Assessment,
     ComparisonRow,
-    ended_early,
-    extent,
-    is_tie,
     sections,
-    verdict,
 )
+from sim.trace.figures.comparison_sentences import Problems, ended_early, extent, is_tie, verdict
 from sim.trace.figures.comparison_text import comparison_lines, comparison_text
 from sim.trace.figures.comparison_wording import CALLS
 from sim.trace.incremental import run_to_end
@@ -228,7 +225,7 @@ def test_a_run_without_a_robot_has_no_figures_of_one() -> None:
 
 def test_a_run_that_goes_on_past_the_window_is_told_of() -> None:
     longer = run([ODOM], called(1, 19.0, 20.0))
-    assert extent(Window(0, ns(3.1)), starved().end, longer.end) == "0 to 3.1 s; run B goes on to 20 s"
+    assert extent(Window(0, ns(3.1)), starved().end, longer.end) == "0 to 3.1 s; run B is 20 s long"
     assert extent(Window(ns(0.0005), ns(3.1)), ns(3.1), ns(3.1)) == "0.001 to 3.1 s"
 
 
@@ -242,7 +239,7 @@ def test_two_runs_as_lines_name_the_run_of_each_figure() -> None:
     assert lines[:3] == [
         "run A: starved",
         "run B: healthy",
-        "run B is better: losses of odom_callback 0 instead of 2, and in 2 more ways.",
+        "Run B is better: losses of odom_callback 0 instead of 2, also longest wait of odom_callback.",
     ]
     assert "calls: run A 1, run B 2, 1 more" in lines
 
@@ -255,7 +252,8 @@ def test_two_runs_as_text_side_by_side() -> None:
 run A  starved
 run B  healthy
 0 to 4 s
-run B is better: losses of odom_callback 0 instead of 2, and in 2 more ways.
+Run B is better: losses of odom_callback 0 instead of 2, also longest wait of
+odom_callback.
 
                 run A          run B            B against A
 
@@ -285,8 +283,8 @@ def test_a_verdict_says_which_run_is_better_and_by_what() -> None:
         verdict(compare(starved(), healthy(), window)),
         verdict(compare(healthy(), starved(), window)),
     )
-    assert better == f"run B is better: losses of {ODOM} 0 instead of 2, and in 2 more ways"
-    assert worse == f"run B is worse: losses of {ODOM} 2 instead of 0, and in 2 more ways"
+    assert better == f"run B is better: losses of {ODOM} 0 instead of 2, also longest wait of {ODOM}"
+    assert worse == f"run B is worse: losses of {ODOM} 2 instead of 0, also longest wait of {ODOM}"
     assert verdict(compare(healthy(), healthy(), window)).startswith("Neither run is better")
 
 
@@ -356,16 +354,76 @@ def test_collisions_of_a_robot_that_drives_do_not_outweigh_what_was_cured() -> N
         "run B is better: subscriptions that hear nothing 0 instead of 1; but collisions 2 instead of 0"
     )
     cured = compare(run([ODOM], [*still]), clumsy, window)
-    assert verdict(cured, is_cured=True) == ("run B is better by what is gone; but collisions 2 instead of 0")
+    gone, new = Problems(speaks=1), Problems(speaks=-1)
+    assert verdict(cured, gone) == "run B is better by what is gone; but collisions 2 instead of 0"
+    assert verdict(cured, new) == verdict(cured)
     assert verdict(cured) == "run B is worse: collisions 2 instead of 0"
+
+
+def hanging(entity: int, since: float, at: float = 1.0) -> list[AnyEvent]:
+    """A callback that waits from a time on for a call that does not end."""
+    return [
+        CallbackStarted(ns(at), 3 - entity, 1, 0, 0, 0),
+        WaitStarted(ns(since), entity, ns(since), Reason.GROUP_HELD, 3 - entity, False),
+    ]
+
+
+def test_what_waits_for_ever_in_both_runs_speaks_for_none_however_long_it_has_waited() -> None:
+    window, cast = Window(0, ns(6.0)), [ODOM, TIMER]
+    early, late = (run(cast, [*hanging(1, since), moved(6.0, 0)]) for since in (1.0, 3.0))
+    compared = compare(early, late, window)
+    assert verdict(compared) == f"Neither run is better: in both {ODOM} still waits"
+    (waits,) = (row for row in sections(compared)[0].rows if row.label == "wait med/max")
+    assert (waits.figures, waits.difference) == (("- / 5.0 s", "- / 3.0 s"), "still waits in both")
+    other = compare(early, run(cast, [*hanging(2, 1.0), moved(6.0, 0)]), window)
+    assert "longest wait" in verdict(other)
+    assert verdict(other, Problems(stuck=True)) == "Neither run is better: both are stuck"
+
+
+def test_what_is_gone_or_new_decides_where_figures_do_not_and_there_is_no_tie() -> None:
+    same = compare(healthy(), healthy(), Window(0, ns(4.0)))
+    assert verdict(same, Problems(speaks=1)) == "run B is better by what is gone"
+    assert verdict(same, Problems(speaks=-1)) == "run B is worse by what is new"
+    assert verdict(same, Problems(speaks=0)) == "Neither run is better by its figures"
+    ties = [Problems(), Problems(speaks=0), Problems(speaks=1), Problems(stuck=True)]
+    assert [is_tie(same, each) for each in ties] == [True, False, False, False]
+    better = compare(starved(), healthy(), Window(0, ns(4.0)))
+    assert verdict(better, Problems(speaks=-1)).startswith(
+        f"run B is worse by what is new; but losses of {ODOM} 0 instead of 2"
+    )
+
+
+def test_further_differences_are_named_if_they_are_few_and_else_counted() -> None:
+    names = [ODOM, "scan_callback", "map_callback", "tf_callback", TIMER]
+
+    def waits(length: float, callbacks: int) -> Timeline:
+        waits = [
+            event
+            for entity in range(1, callbacks + 1)
+            for event in (
+                WaitStarted(ns(1.0), entity, ns(1.0), Reason.GROUP_HELD, 5, False),
+                WaitEnded(ns(1.0 + length / entity), entity),
+            )
+        ]
+        return run(names, sorted([*waits, *called(5, 0.5, 3.1)], key=lambda each: each.t))
+
+    def better(callbacks: int) -> str:
+        compared = compare(waits(2.0, callbacks), waits(0.0, callbacks), Window(0, ns(4.0)))
+        return verdict(compared).removeprefix(f"run B is better: longest wait of {ODOM} 0 s instead of 2.0 s")
+
+    ways = [better(callbacks) for callbacks in range(1, 5)]
+    assert ways[:2] == ["", ", also of scan_callback"]
+    assert ways[2:] == [", also of scan_callback and map_callback", ", and in 3 more ways"]
 
 
 def test_a_run_that_an_exception_ended_while_the_other_goes_on_is_told_instead_of_a_verdict() -> None:
     crash = RunEnded(ns(3.0), "the program raised", failed=True)
     fails, works = run([ODOM], [*called(1, 1.0, 1.1), crash]), run([ODOM], called(1, 5.0, 6.0))
     compared = compare(fails, works, Window(0, ns(3.0)))
-    assert ended_early(compared) == "Run A ended at 3 s with an exception; run B goes on"
-    assert "Run A ended at 3 s with an exception; run B goes on.\n" in comparison_text(compared, "a", "b")
+    assert ended_early(compared) == "Run A ended at 3 s with an exception; run B has none up to 6 s"
+    assert "Run A ended at 3 s with an exception; run B has none up to 6 s.\n" in comparison_text(
+        compared, "a", "b"
+    )
     assert ended_early(compare(works, works, Window(0, ns(3.0)))) == ""
 
 

@@ -1,32 +1,45 @@
 """Which problems of one of two runs are gone in the other, and which are new there."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 from cbtui.runs.judged.cures import NOTICED, Problem, name_of, problem_of
 from sim.diagnosis import Diagnoses, Weight, sentence
+from sim.quantities.durations import timestamp
 from sim.quantities.plural import counted
 from sim.trace.figures.comparison import unlike_commands
 from sim.trace.figures.comparison_rows import RUNS
+from sim.trace.figures.comparison_sentences import NO_PROBLEMS, Problems
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
+
+KeyT = TypeVar("KeyT")
 
 
 @dataclass(frozen=True)
 class _Known:
-    """A problem of a run: since when, what to call it, and whether something hangs for ever."""
+    """A problem of a run: since when, and what to call it."""
 
     at: Nanoseconds
     name: str
-    hangs: bool
+
+
+_Hangs = Mapping[Problem, _Known]
 
 
 @dataclass(frozen=True)
-class _Problems:
-    """The problems of a run, and the names of what is only an effect of one there."""
+class _Found:
+    """The problems of a run: what hangs for ever, the others by name, and the names of mere effects."""
 
-    known: Mapping[Problem, _Known]
+    hangs: _Hangs
+    others: Mapping[str, _Known]
     effects: frozenset[str]
+
+    @property
+    def names(self) -> frozenset[str]:
+        """What is no news in the other run."""
+        return self.effects | self.others.keys()
 
 
 @dataclass(frozen=True)
@@ -41,77 +54,82 @@ class ComparedProblems:
     second: Timeline
     _diagnoses: tuple[Diagnoses, Diagnoses] = field(default_factory=lambda: (Diagnoses(), Diagnoses()))
 
-    def told(self) -> str:
-        """Return sentences, on what hangs first; "" if nothing is gone or new.
+    def compared(self) -> Problems:
+        """Tell what is gone, new and still there in the second run, what hangs first.
 
-        Nothing is said of a problem which the other run has not come to.
+        Nothing is gone or new that the other run has not come to. What hangs weighs more than the rest.
         """
-        if self._are_unlike:
-            return ""
-        first, second = self._found()
-        return " ".join(filter(None, (self._hangs(first, second), *self._others(first, second))))
+        if unlike_commands(self.first, self.second, min(self.first.end, self.second.end)):
+            return NO_PROBLEMS
+        first, second = map(_found, (self.first, self.second), self._diagnoses)
+        gone = _missing(first.others, second.names, self.second)
+        new = _missing(second.others, first.names, self.first)
+        still = [each.name for name, each in second.others.items() if name in first.names]
+        told = [self._hangs(first.hangs, second.hangs)]
+        told += [
+            f"{what} in {RUNS[1]}: {', '.join(names)}."
+            for what, names in (("Gone", gone), ("New", new), ("Still", still))
+            if names
+        ]
+        of_hangs = (
+            len(_missing(first.hangs, second.hangs, self.second)),
+            len(_missing(second.hangs, first.hangs, self.first)),
+        )
+        speaks = of_hangs[0] - of_hangs[1] or bool(gone) - bool(new)
+        return Problems(
+            " ".join(filter(None, told)),
+            speaks if gone or new or any(of_hangs) else None,
+            bool(first.hangs and second.hangs),
+        )
 
-    def is_cured(self) -> bool:
-        """Return whether problems of the first run are gone in the second one, and none is new there."""
-        if self._are_unlike:
-            return False
-        first, second = self._found()
-        gone, new = _only_in(first, second), _only_in(second, first)
-        return bool(gone) and not new and _has_come_to(self.second, *gone)
-
-    @property
-    def _are_unlike(self) -> bool:
-        return bool(unlike_commands(self.first, self.second, min(self.first.end, self.second.end)))
-
-    def _found(self) -> tuple[_Problems, _Problems]:
-        first, second = self._diagnoses
-        return _problems_of(self.first, first), _problems_of(self.second, second)
-
-    def _hangs(self, *runs: _Problems) -> str:
-        first, second = ({key: each for key, each in own.known.items() if each.hangs} for own in runs)
-        names = [each.name for each in (*first.values(), *second.values())]
-        name = min(names, default="")
-        if not first:
-            is_new = second and _has_come_to(self.first, *second.values())
-            return sentence(f"{RUNS[1]} has a {name} that {RUNS[0]} has not") if is_new else ""
+    def _hangs(self, first: _Hangs, second: _Hangs) -> str:
+        """Return a sentence on what hangs; "" for nothing."""
+        name = min((each.name for each in (*first.values(), *second.values())), default="")
         still, gone = first.keys() & second.keys(), first.keys() - second.keys()
-        is_sure = still == second.keys() and gone and _has_come_to(self.second, *map(first.__getitem__, gone))
+        if not (first and second):
+            return self._hangs_in_one(name, first, second)
+        is_sure = still == second.keys() and len(_missing(first, second, self.second)) == len(gone) > 0
         if still and is_sure:
             number = "one is" if len(gone) == 1 else f"{len(gone)} are"
             return f"Of {counted(len(first), name)} {number} gone in {RUNS[1]}."
         if still:
             return f"The {name} is still there."
-        if second:
-            return f"The {name} is gone, but {RUNS[1]} has another one."
-        return f"The {name} is gone." if _has_come_to(self.second, *first.values()) else ""
+        return f"The {name} is gone, but {RUNS[1]} has another one."
 
-    def _others(self, *runs: _Problems) -> Iterator[str]:
-        first, second = ({each.name: each for each in own.known.values() if not each.hangs} for own in runs)
-        before, after = ({*own, *of_run.effects} for own, of_run in zip((first, second), runs, strict=True))
-        gone = [name for name in first if name not in after and _has_come_to(self.second, first[name])]
-        new = [name for name in second if name not in before and _has_come_to(self.first, second[name])]
-        for what, names in (("Gone", gone), ("New", new)):
-            if names:
-                yield f"{what} in {RUNS[1]}: {', '.join(names)}."
-
-
-def _only_in(one: _Problems, other: _Problems) -> list[_Known]:
-    left = one.known.keys() - other.known.keys()
-    return [one.known[each] for each in left if one.known[each].name not in other.effects]
-
-
-def _has_come_to(timeline: Timeline, *problems: _Known) -> bool:
-    """Whether a run has come so far that it would have shown these problems of the other one."""
-    return timeline.end >= max(each.at for each in problems) + NOTICED
+    def _hangs_in_one(self, name: str, first: _Hangs, second: _Hangs) -> str:
+        if not (first or second):
+            return ""
+        has, other = (self.first, self.second) if first else (self.second, self.first)
+        if len(_missing({**first, **second}, (), other)) == len(first or second):
+            return (
+                f"The {name} is gone."
+                if first
+                else f"{sentence(f'{RUNS[1]} has a {name} that {RUNS[0]} has not')}"
+            )
+        if other.end < has.end:
+            return ""
+        one, none = RUNS if first else RUNS[::-1]
+        return sentence(f"{one} has a {name}, {none} shows none up to {timestamp(other.end)}")
 
 
-def _problems_of(timeline: Timeline, diagnoses: Diagnoses) -> _Problems:
-    found: dict[Problem, _Known] = {}
+def _missing(known: Mapping[KeyT, _Known], other: Container[KeyT], run: Timeline) -> list[str]:
+    """The names of problems that the other run has not, though it has come so far that it would show them."""
+    missing = (each for key, each in known.items() if key not in other)
+    return [each.name for each in missing if run.end >= each.at + NOTICED]
+
+
+def _found(timeline: Timeline, diagnoses: Diagnoses) -> _Found:
+    hangs: dict[Problem, _Known] = {}
+    others: dict[str, _Known] = {}
     effects: set[str] = set()
     for each in diagnoses.update(timeline):
         told = each.explained(timeline)
-        if each.weight_in(timeline) is Weight.PROBLEM:
-            found[problem_of(each, timeline)] = _Known(each.at, name_of(each, told), told.for_ever)
-        elif each.due_to:
-            effects.add(name_of(each, told))
-    return _Problems(found, frozenset(effects))
+        name = name_of(each, told)
+        known = _Known(each.at, name)
+        if each.weight_in(timeline) is not Weight.PROBLEM:
+            effects.update([name] if each.due_to else [])
+        elif told.for_ever:
+            hangs[problem_of(each, timeline)] = known
+        else:
+            others[name] = known
+    return _Found(hangs, others, frozenset(effects))

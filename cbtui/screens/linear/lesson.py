@@ -191,9 +191,8 @@ class LinearComparison(ScreenPart):
         self._due = None
         first, second = (side.timeline for side in both)
         window = Window(0, min(first.end, second.end))
-        compared, problems = compare(first, second, window), ComparedProblems(first, second)
-        told, is_cured = problems.told(), problems.is_cured()
-        for line in comparison_lines(compared, both[0].name, both[1].name, told, is_cured=is_cured):
+        compared, problems = compare(first, second, window), ComparedProblems(first, second).compared()
+        for line in comparison_lines(compared, both[0].name, both[1].name, problems):
             self.host.tell(line)
         at = run_to_end(first_difference(first, second, window))
         self.host.tell("no call differs" if at is None else f"they differ from {timestamp(at)}")

@@ -23,17 +23,20 @@ CallbackKey: TypeAlias = tuple[str, str, str, str, int]
 
 
 _LONG: Nanoseconds = 10_000_000
+_LASTING: Nanoseconds = 1_000_000_000
 
 
 @dataclass(frozen=True, slots=True)
 class WaitFigures:
     """The waits of a ready callback that reach into a window; ``why`` is the reason of most of its time.
 
-    ``longest`` is that of a callback, or of its next message, from its beginning to the window's end at most.
+    ``longest`` is that of a callback, or of its next message, from its beginning to the window's end at most;
+    ``lasts``: it took a second, and still goes on then.
     """
 
     longest: Nanoseconds
     why: str
+    lasts: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,6 +50,11 @@ class CallbackInRun:
     def longest_wait(self) -> Nanoseconds:
         """The longest wait, whether or not a call followed it in the window."""
         return self.waits.longest if self.waits else 0
+
+    @property
+    def lasts(self) -> bool:
+        """Whether the longest wait still goes on as the window ends."""
+        return self.waits is not None and self.waits.lasts
 
     @property
     def idle(self) -> bool:
@@ -67,6 +75,11 @@ class CallbackPair:
         """Whether it runs in one run only, or there more than twice as often."""
         calls = [0 if side is None else side.figures.calls for side in (self.first, self.second)]
         return max(calls) > 2 * min(calls)
+
+    @property
+    def lasts(self) -> bool:
+        """Whether in both runs it still waits as the window ends."""
+        return all(side is not None and side.lasts for side in (self.first, self.second))
 
     @property
     def waits(self) -> bool:
@@ -311,14 +324,18 @@ def _wait_figures(entity: EntityId, timeline: Timeline, window: Window) -> Incre
     """The figures of the waits of a callback; a series of waits has one ``since``."""
     shares: defaultdict[str, int] = defaultdict(int)
     series: dict[Nanoseconds, Nanoseconds] = {}
+    pending: Nanoseconds = 0
     for number, wait in enumerate(timeline.waits_of(entity, with_calls_at_start(window))):
         end = min(wait.end_at(timeline.end), window.end)
         shares[why_waiting(wait, timeline)] += max(0, end - max(wait.start, window.start))
         series[wait.since] = waited_by(end, wait, timeline)
+        pending = series[wait.since] if wait.end is None or wait.end > window.end else 0
         if number % STEP_SIZE == 0:
             yield
     longest = max(series.values(), default=0)
-    return WaitFigures(longest, max(shares, key=shares.__getitem__)) if longest else None
+    if not longest:
+        return None
+    return WaitFigures(longest, max(shares, key=shares.__getitem__), longest == pending >= _LASTING)
 
 
 def _run_figures(timeline: Timeline, window: Window) -> Incremental[RunFigures]:

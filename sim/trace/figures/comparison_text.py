@@ -1,5 +1,6 @@
 """A comparison of two runs as plain text: a column for each and one for the difference."""
 
+import textwrap
 from collections.abc import Iterator
 
 from sim.trace.figures.comparison import Comparison
@@ -8,22 +9,16 @@ from sim.trace.figures.comparison_rows import (
     RUNS,
     ComparisonRow,
     Section,
-    ended_early,
-    extent,
     sections,
-    verdict,
 )
+from sim.trace.figures.comparison_sentences import NO_PROBLEMS, Problems, extent, headline
 
 _GAP = "  "
+_WIDTH = 80
 
 
-def comparison_text(
-    comparison: Comparison, first: str, second: str, before: str = "", *, is_cured: bool = False
-) -> str:
-    """The whole comparison, ending in a newline; ``first`` and ``second`` are the runs' names.
-
-    ``before`` is a sentence that comes before the verdict; ``is_cured`` is said in ``verdict()``.
-    """
+def comparison_text(comparison: Comparison, first: str, second: str, problems: Problems = NO_PROBLEMS) -> str:
+    """The whole comparison, ending in a newline; ``first`` and ``second`` are the runs' names."""
     shown = sections(comparison)
     head = ComparisonRow("", RUNS, DIFFERENCE)
     rows = [head, *(row for section in shown for row in section.rows)]
@@ -36,7 +31,7 @@ def comparison_text(
         f"{RUNS[0]}  {first}",
         f"{RUNS[1]}  {second}",
         _extent(comparison),
-        f"{before} {ended_early(comparison) or verdict(comparison, is_cured=is_cured)}.".lstrip(),
+        *textwrap.wrap(headline(comparison, problems), _WIDTH, break_on_hyphens=False),
         "",
         _line(head, widths),
     ]
@@ -69,11 +64,11 @@ def _line(row: ComparisonRow, widths: tuple[int, int, int]) -> str:
 
 
 def comparison_lines(
-    comparison: Comparison, first: str, second: str, before: str = "", *, is_cured: bool = False
+    comparison: Comparison, first: str, second: str, problems: Problems = NO_PROBLEMS
 ) -> Iterator[str]:
     """Yield the whole comparison as lines that can be listened to; the same, for the rest."""
     yield from (f"{run}: {name}" for run, name in zip(RUNS, (first, second), strict=True))
-    yield f"{before} {ended_early(comparison) or verdict(comparison, is_cured=is_cured)}.".lstrip()
+    yield headline(comparison, problems)
     yield _extent(comparison)
     for section in sections(comparison):
         yield section.title
