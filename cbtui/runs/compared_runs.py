@@ -119,11 +119,15 @@ class RunPair:
     window: Window
 
 
-def compared_side(run: ShownRun, changes: Changes) -> ComparedSide:
-    """Return a run on screen as a side, named by its ``changes``, in which the two runs differ."""
+def compared_side(run: ShownRun, changes: Changes, saved: str = "") -> ComparedSide:
+    """Return a run on screen as a side, named by its ``changes``, in which the two runs differ.
+
+    ``saved`` tells which side of a save of the file it is on, if one came between the runs.
+    """
     service = run.setup.service
+    words = ", ".join(filter(None, (changes.words, saved))) or "as written"
     return ComparedSide(
-        f"{run.setup.title}, {changes.words or 'as written'}",
+        f"{run.setup.title}, {words}",
         run.timeline,
         "" if service is None else service.name,
         alive=lambda: run.alive,

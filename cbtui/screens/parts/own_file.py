@@ -96,4 +96,4 @@ class OwnFile(ScreenPart):
     async def run_anew(self, saved: str) -> None:
         """Run the file again after one of the program's files was saved; replaces an edited copy."""
         self.host.tell(f"{saved} was saved: it runs again.")
-        await self.restarts.again(replace(self.restarts.changes, texts={}))
+        await self.restarts.again(replace(self.restarts.changes, texts={}), saved=saved)

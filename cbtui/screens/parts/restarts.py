@@ -49,6 +49,8 @@ class Restarts(ScreenPart):
     """The previous run."""
     inputs: tuple[TimedInput, ...] = ()
     """The inputs of the run on screen."""
+    _saved: str = ""
+    """The program's file that was saved before the run on screen began; "" if none was."""
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer ``run_again`` at any time if the run has no robot to reset; ``start_over`` always works."""
@@ -62,15 +64,19 @@ class Restarts(ScreenPart):
         setup = self.changes.applied(subject.set_up(self.changes.threads, speed))
         return msgspec.structs.replace(setup, keyboard=Keyboard.LIVE, inputs=self.inputs)
 
-    async def again(self, changes: Changes, inputs: tuple[TimedInput, ...] = ()) -> None:
-        """Run again with these changes, and with the inputs of an earlier run."""
-        await self.start(changes, self.speed(), inputs)
+    async def again(self, changes: Changes, inputs: tuple[TimedInput, ...] = (), saved: str = "") -> None:
+        """Run again with these changes, the inputs of an earlier run, and a file that was ``saved``."""
+        await self.start(changes, self.speed(), inputs, saved)
 
-    async def start(self, changes: Changes, speed: float | None, inputs: tuple[TimedInput, ...] = ()) -> None:
+    async def start(
+        self, changes: Changes, speed: float | None, inputs: tuple[TimedInput, ...] = (), saved: str = ""
+    ) -> None:
         """Run again with these changes, at a speed; of several at once only the last one does."""
         before = self.runs.run
         if before.timeline.end > 0:
-            self.before = compared_side(before, self.changes).ended()
+            self.before = compared_side(before, self.changes, saved and f"before {saved} was saved").ended()
+            self._saved = ""
+        self._saved = saved or self._saved
         self.changes, self.inputs = changes, inputs
         self.runs.begin(speed)
         self.began()
@@ -90,7 +96,10 @@ class Restarts(ScreenPart):
     @property
     def both(self) -> tuple[ComparedSide, ComparedSide] | None:
         """The previous run and this one; None if this is the first."""
-        return None if self.before is None else (self.before, compared_side(self.runs.run, self.changes))
+        after = self._saved and f"after {self._saved} was saved"
+        return (
+            None if self.before is None else (self.before, compared_side(self.runs.run, self.changes, after))
+        )
 
 
 @dataclass
