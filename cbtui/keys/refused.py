@@ -28,3 +28,18 @@ NOT_ALWAYS = {
     "record": "R",
 }
 """Actions that make no sense for some of what a run's screen shows, such as a recording."""
+NOT_IN_COMPARISON = {
+    "select": "enter",
+    "diagnoses": "d",
+    "previous_event": "left_curly_bracket",
+    "next_event": "right_curly_bracket",
+    "earlier": "left_square_bracket",
+    "later": "right_square_bracket",
+    "pan_earlier": "left",
+    "pan_later": "right",
+    "step_back": "comma",
+    "step": "full_stop",
+    "zoom_in": "greater_than_sign",
+    "zoom_out": "less_than_sign",
+}
+"""Actions that a comparison has not, or that lead nowhere at an end of the runs."""

@@ -16,6 +16,8 @@ from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.compared_runs import ComparedSide
 from cbtui.runs.judged.compared_problems import ComparedProblems
 from cbtui.runs.live.playhead import SPANS, Playhead
+from cbtui.screens.compare_absences import ComparisonAbsences
+from cbtui.screens.compare_words import about, shorter
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.bars import BarSelection
 from cbtui.screens.parts.frames import FRAMES_A_SECOND
@@ -24,14 +26,14 @@ from cbtui.screens.parts.navigation import MomentKey, TimeNavigation
 from cbtui.screens.parts.part import ScreenParts
 from cbtui.screens.sized import SizedScreen
 from cbtui.screens.windows.jump import JumpScreen
+from cbtui.terminal.textual_internals import clear_hints
 from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, HeadingLine
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
 from sim.quantities.durations import duration, timestamp
-from sim.trace.descriptions import executor_label
 from sim.trace.figures.comparison import compare_incrementally, first_difference
-from sim.trace.figures.comparison_rows import RUNS, Section, sections
+from sim.trace.figures.comparison_rows import Section, sections
 from sim.trace.figures.comparison_sentences import (
     NO_PROBLEMS,
     capitalised,
@@ -98,6 +100,7 @@ class CompareScreen(SizedScreen[None]):
             MomentKey(self, self.navigation),
             self.bars,
             Jumps(self, self),
+            ComparisonAbsences(lambda action: self.check_action(action, ()), self._tell),
         )
         self._drawn: tuple[object, ...] = ()
         self._compared: tuple[object, ...] | None = None
@@ -124,7 +127,8 @@ class CompareScreen(SizedScreen[None]):
         yield KeyBar(Scope.COMPARE, self.charset)
 
     def on_mount(self) -> None:
-        """Start drawing, and warn of damaged or failed runs."""
+        """Start drawing, and warn of damaged or failed runs; what was said before is about another screen."""
+        clear_hints(self.app)
         for number, side in enumerate(self._sides):
             lanes = self._lanes(number)
             lanes.charset, lanes.service, lanes.can_focus = self.charset, side.service, False
@@ -161,7 +165,7 @@ class CompareScreen(SizedScreen[None]):
             TextRun(f"   {duration(shown.length)} on screen", _FAINT),
         )
         for number, side in enumerate(self._sides):
-            self.query_one(f"#run{number}", HeadingLine).words = _about(number, side)
+            self.query_one(f"#run{number}", HeadingLine).words = about(number, side)
             lanes = self._lanes(number)
             lanes.styles.max_height = None if self.has_class(_LANES_ALONE) else (self.size.height - 1) // 4
             # Nothing is known of a run after its end, even of a callback that was still running.
@@ -233,7 +237,7 @@ class CompareScreen(SizedScreen[None]):
         elif self._ended_early:
             verdict = f"{self._ended_early}; {'until then ' if at is None else ''}{where}"
         elif self._is_tie and any(side.alive() for side in self._sides):
-            verdict = f"{where} so far; neither run is better yet: {_shorter(*self._sides)}"
+            verdict = f"{where} so far; neither run is better yet: {shorter(*self._sides)}"
         before = f"{self._told} " if self._told and self._whole else ""
         verdict = before + capitalised(verdict)
         self.query_one("#verdict", Static).update(verdict)
@@ -254,7 +258,7 @@ class CompareScreen(SizedScreen[None]):
         first, second = self._sides
         if asked.length <= 0:
             self._verdict = ""
-            return f"{self._what}: nothing that both runs have; {_shorter(first, second)}", ()
+            return f"{self._what}: nothing that both runs have; {shorter(first, second)}", ()
         compared = yield from compare_incrementally(first.timeline, second.timeline, asked)
         self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
         for number, notable in enumerate(compared.notable):
@@ -269,7 +273,7 @@ class CompareScreen(SizedScreen[None]):
         if self._whole:
             return self._extent(asked), sections(compared)
         cut = asked.end < min(self._asked.end, self._end)
-        after = f"; {_shorter(first, second)}" if cut else ""
+        after = f"; {shorter(first, second)}" if cut else ""
         return f"{self._what}, {stretch(asked)}{after}", sections(compared)
 
     @property
@@ -325,6 +329,9 @@ class CompareScreen(SizedScreen[None]):
     def _turn(self, message: Lanes.WheelTurned) -> None:
         self.navigation.zoom(message.steps)
 
+    def _tell(self, sentence: str) -> None:
+        self.notify(sentence, markup=False)
+
     def action_deselect(self) -> None:
         """Select nothing."""
         self.bars.select(None)
@@ -377,22 +384,6 @@ class CompareScreen(SizedScreen[None]):
     def action_leave(self) -> None:
         """Go back to where the comparison was opened."""
         self.dismiss()
-
-
-def _about(number: int, side: ComparedSide) -> tuple[TextRun, ...]:
-    timeline = side.timeline
-    state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
-    lost = f"lost {timeline.dropped(timeline.end)}"
-    facts = [text for text in (state, lost, executor_label(timeline)) if text]
-    name = TextRun(f" {RUNS[number]}  {side.name}", _STRONG)
-    return (name, *(TextRun(f"   {fact}", _PLAIN) for fact in facts))
-
-
-def _shorter(first: ComparedSide, second: ComparedSide) -> str:
-    shorter = second.timeline.end < first.timeline.end
-    side = second if shorter else first
-    until = "has come to" if side.alive() else "ends at"
-    return f"{RUNS[shorter]} {until} {timestamp(side.timeline.end)}"
 
 
 def _at_the_end_of(bounds: Window, end: Nanoseconds) -> Playhead:

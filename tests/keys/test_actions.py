@@ -77,7 +77,9 @@ def test_only_actions_that_rule_each_other_out_share_a_key() -> None:
     shared = {key for (_, key), times in used.items() if times > 1}
     assert shared == {
         *"rfedChHWPsSq7tgpnacR0",
-        *["space", "enter", "full_stop", "comma", "colon", "minus", "plus"],
+        *["space", "enter", "full_stop", "comma", "colon", "minus", "plus", "left", "right"],
+        *(f"{side}_{what}_bracket" for side in ("left", "right") for what in ("square", "curly")),
+        *["less_than_sign", "greater_than_sign"],
     }
 
 

@@ -163,7 +163,7 @@ def test_a_key_that_moves_through_time_does_the_same_as_in_a_lesson(key: str) ->
         {
             action.id
             for action in ACTIONS
-            if action.scope is scope and key in keys_of(action) and not action.id.startswith("no_time")
+            if action.scope is scope and key in keys_of(action) and not action.refused
         }
         for scope in (Scope.COMPARE, Scope.LESSON)
     )
@@ -185,6 +185,35 @@ async def test_the_cursor_goes_from_bar_to_bar_of_the_lane_that_was_clicked_on()
         assert start_of(lanes.selection.bar) == lanes.now
         await pilot.press("escape")
         assert lanes.selection is None
+
+
+@pytest.mark.parametrize(
+    ("key", "sentence"),
+    [
+        ("enter", "Code is shown beside a run"),
+        ("d", "Diagnoses are listed in a run"),
+        ("right_curly_bracket", "No bar is later"),
+        ("full_stop", "This is the end"),
+        ("right", "This is the end"),
+    ],
+)
+async def test_a_key_that_does_nothing_says_why_at_the_top_and_covers_no_figure(
+    key: str, sentence: str
+) -> None:
+    async with compared(*sides(), size=NARROW) as (app, pilot):
+        await pilot.press(key)
+        await until(pilot, lambda: sentence in lines_of(app)[0])
+        assert "run A  shared-group" in text_of(app)
+
+
+async def test_a_sentence_about_the_screen_before_is_taken_away() -> None:
+    app = ComparingConsole(*sides())
+    async with app.run_test(size=NARROW, notifications=True) as pilot:
+        await drawn(app, pilot)
+        app.notify("node.py was saved: it runs again.")
+        await until(pilot, lambda: "was saved" in text_of(app))
+        app.push_screen(CompareScreen(*sides(), app.charset))
+        await until(pilot, lambda: "was saved" not in text_of(app))
 
 
 async def test_w_lets_the_table_tell_of_the_stretch_on_screen_and_back() -> None:

@@ -254,7 +254,8 @@ def _of_task(
 
 
 def _of_scope(scope: Scope, keymap: Keymap, charset: Charset) -> _Section:
-    return _keys(scope.value, [action for action in ACTIONS if action.scope is scope], keymap, charset)
+    own = [action for action in ACTIONS if action.scope is scope and not action.refused]
+    return _keys(scope.value, own, keymap, charset)
 
 
 def _keys(
