@@ -17,11 +17,15 @@ _LOOKED_AT = 100
 
 @dataclass(frozen=True, slots=True)
 class Remedy:
-    """Changes of a program: an edit, callbacks that get a group of their own, threads (0: unchanged)."""
+    """Changes of a program: an edit, callbacks that get a group of their own, threads (0: unchanged).
+
+    ``again``: the edit leaves the callback's work to its further calls.
+    """
 
     own_groups: tuple[EntityId, ...] = ()
     threads: int = 0
     edit: CodeEdit | None = None
+    again: bool = False
 
     def words(self, timeline: Timeline) -> str:
         """Return the changes as a clause; empty for none."""

@@ -256,13 +256,13 @@ _ABOUT = 0.75
 
 
 def by_edit(
-    place: CodeLocation | None, words: str, change: Callable[..., None], *more: object
+    place: CodeLocation | None, words: str, change: Callable[..., None], *more: object, again: bool = False
 ) -> tuple[Remedy, ...]:
     """Return the remedy that edits a place by a function of its line and ``more``; none without a place."""
     if place is None:
         return ()
     edit = CodeEdit(place.file, words, change, (place.first_line, *more))
-    return (Remedy(edit=edit),)
+    return (Remedy(edit=edit, again=again),)
 
 
 def entity_of(found: Finding, timeline: Timeline) -> EntityInfo:

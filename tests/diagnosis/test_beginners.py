@@ -161,6 +161,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("hides_a_name", "program-raised", "def handle(self, message):", "hides Node.handle"),
         ("input_in_timer", "program-raised", "input(", "read in another thread"),
         ("wait_for_service", "service-never-comes", "self.client.wait_for_service()", "start the node"),
+        ("service_created_later", "service-never-comes", "wait_for_service()", "create /grip in __init__"),
         ("wait_in_service", "service-never-comes", "self.client.wait_for_service(", "start the node"),
         ("lock_across_callbacks", "self-made-deadlock", "with self.", "in the same order"),
         (

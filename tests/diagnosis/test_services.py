@@ -186,3 +186,30 @@ def test_each_of_several_programs_is_told_where_it_waits_before_it_spins(tmp_pat
     told = found.explained(timeline)
     assert told.what.startswith("the program waits-2 waits in wait_for_service() for /nowhere, ")
     assert str(told.place) == "waits.py:10"
+
+
+def test_a_service_that_the_waiting_callback_keeps_from_being_created_is_told_with_its_line() -> None:
+    path = Path(__file__).parent / "beginners" / "service_created_later.py"
+    timeline = run_to_end(program_setup(path, 3.0)).timeline
+    assert diagnose(timeline)[0].explained(timeline).what == (
+        "pick waits in wait_for_service() for /grip, which nobody has offered so far; setup would create it "
+        "at line 20, and can run only when the wait is over"
+    )
+
+
+@pytest.mark.parametrize("before", ["", "other = node.create_client(Trigger, 'grip')\n"])
+def test_of_several_clients_the_one_is_told_that_the_program_waits_for(tmp_path: Path, before: str) -> None:
+    path = tmp_path / "program.py"
+    path.write_text(
+        "import rclpy\nfrom rclpy.node import Node\nfrom std_srvs.srv import Trigger\n\n"
+        f"rclpy.init()\nnode = Node('n')\n{before}client = node.create_client(Trigger, 'late')\n"
+        "client.wait_for_service()\n"
+        "node.create_service(Trigger, 'late', lambda request, response: response)\nrclpy.spin(node)\n"
+    )
+    timeline = run_to_end(program_setup(path, 3.0)).timeline
+    told = diagnose(timeline)[0].explained(timeline)
+    line = 9 + bool(before)
+    assert (
+        f"for /late, which nobody has offered so far; the program would create it at line {line}" in told.what
+    )
+    assert told.cure == "create /late before the wait"

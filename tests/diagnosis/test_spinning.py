@@ -352,7 +352,8 @@ def test_a_program_that_waits_for_a_service_before_it_spins_is_told_of_the_one_t
     (found,) = diagnose(run.timeline)
     told = found.explained(run.timeline)
     assert told.what == (
-        "the program waits in wait_for_service() for /lampe, which nobody offers, and comes to no spin()"
+        "the program waits in wait_for_service() for /lampe, which nobody has offered so far, "
+        "and comes to no spin()"
     )
     assert told.cure == "call /lamp, which is offered (node.py:6)"
     assert told.for_ever

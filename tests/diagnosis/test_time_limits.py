@@ -65,7 +65,7 @@ def found_in(
         ("self.call()\nself.came.wait(8.0)", IN_VAIN),
         (
             "self.none.wait_for_service(timeout_sec=8.0)",
-            "tick waits in wait_for_service() until 9.0 s for /none, which nobody offers",
+            "tick waits in wait_for_service() until 9.0 s for /none, which nobody has offered so far",
         ),
     ],
 )
@@ -93,7 +93,7 @@ def test_a_program_that_waits_for_a_service_for_some_time_comes_to_spin_after_th
     monitor = found_in(tmp_path, "pass", 5.0, before="node.none.wait_for_service(timeout_sec=8.0)")
     told = next(each.explanation for each in monitor.findings if each.name == "service never comes")
     assert told.what == (
-        "the program waits in wait_for_service() until 8.0 s for /none, which nobody offers, "
+        "the program waits in wait_for_service() until 8.0 s for /none, which nobody has offered so far, "
         "and comes to no spin() before that"
     )
     assert not told.for_ever

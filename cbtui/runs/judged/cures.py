@@ -1,5 +1,6 @@
 """Tries a cure in the background: runs with and without it, on virtual time at full speed."""
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -45,6 +46,8 @@ Problem: TypeAlias = tuple[str, str, str]
 _COMPUTES = "still-computing"
 _LOOPS, _WAITS = "stays-in-loop", "endless-wait"
 _CRASH = "program-raised"
+_TOO_MANY_CALLS = ("always-due", "falls-behind", "service-falls-behind", "never-destroyed")
+"""Problems of callbacks that are to be called less often."""
 
 _NAMES = {
     "program-raised": "exception",
@@ -86,6 +89,8 @@ class TriedRun:
     end: Nanoseconds = 0
     is_cut: bool = False
     since: Mapping[Problem, Nanoseconds] = field(default_factory=dict)
+    calls: Mapping[str, int] = field(default_factory=dict)
+    """The number of calls of each callback, by its name."""
 
     @property
     def badness(self) -> tuple[int, int]:
@@ -115,12 +120,14 @@ class Cure:
     """A change of a run that can be tried, in words.
 
     ``diff`` is what ``diff -u`` writes about an edit; ``code`` are the statements for all other changes.
+    ``again``: it leaves the callback's work to its further calls.
     """
 
     changes: Changes
     words: str
     diff: str = ""
     code: tuple[str, ...] = ()
+    again: bool = False
 
     @property
     def key(self) -> str:
@@ -162,7 +169,7 @@ def cures_of(explanation: Explanation, before: Changes, timeline: Timeline) -> I
                 continue
             changes, edited = replace(changes, texts={**before.texts, file: new}), diff(file, text, new)
         if changes != before:
-            yield Cure(changes, remedy.words(timeline), edited)
+            yield Cure(changes, remedy.words(timeline), edited, again=remedy.again)
 
 
 def _without_edit(remedy: Remedy, before: Changes, timeline: Timeline) -> Changes:
@@ -184,11 +191,13 @@ def with_inputs(setup: RunSetup, inputs: tuple[TimedInput, ...]) -> RunSetup:
     return msgspec.structs.replace(setup, inputs=inputs) if inputs else setup
 
 
-def judged(problem: Problem, before: TriedRun, after: TriedRun) -> Verdict:
+def judged(problem: Problem, before: TriedRun, after: TriedRun, *, again: bool = False) -> Verdict:
     """Tell whether a cure ends a problem of the run ``before`` without a worse one in its place.
 
     An effect of the problem before does not count if it remains as a problem of its own. After an exception
-    that ended the run, whatever else the program does wrong has its turn.
+    that ended the run, whatever else the program does wrong has its turn. A problem does not end if its
+    callbacks are merely called less often, or, if the cure leaves their work to further calls ``again``, get
+    none.
     """
     if problem not in before.problems:
         return Verdict(None)
@@ -204,8 +213,20 @@ def judged(problem: Problem, before: TriedRun, after: TriedRun) -> Verdict:
     if problem[0] == _CRASH and not before.is_whole and (after.is_whole or after.end > before.end):
         return Verdict(True, instead)
     goes_on = after.is_whole or after.is_cut
-    helps = goes_on and replace(after, problems=left).badness < before.badness
-    return Verdict(True) if helps else Verdict(False, instead)
+    idle = _called_less(problem, before, after, again)
+    helps = goes_on and not idle and replace(after, problems=left).badness < before.badness
+    return Verdict(True) if helps else Verdict(False, idle or instead)
+
+
+def _called_less(problem: Problem, before: TriedRun, after: TriedRun, again: bool) -> str:
+    """Tell of a problem's callback that is called less often, by more than the run's end may cut off."""
+    for name in problem[1:]:
+        was, now = (each.calls.get(name, 0) for each in (before, after))
+        if again and 0 < now <= was:
+            return f"{name} is not called again"
+        if now < was - 1 and after.end >= before.end and problem[0] not in _TOO_MANY_CALLS:
+            return f"{name} is called less often, {counted(now, 'time')} in place of {was}"
+    return ""
 
 
 def tried_in_vain(tried: Sequence[tuple[Cure, Verdict]]) -> str:
@@ -256,4 +277,7 @@ def try_run(
     effects = {each.rule.id for each in found if each.due_to} - {each.rule.id for each in wrong}
     is_whole = timeline.ended is not None and timeline.ended.time_was_up
     since = {problem: each.at for problem, (each, _) in told.items()}
-    return TriedRun(lasts, is_whole, frozenset(effects), names, timeline.end, is_cut, since)
+    calls: Counter[str] = Counter()
+    for each in timeline.entities.values():
+        calls[each.spoken_name] += len(timeline.calls_begun(each.id, Window(0, timeline.end + 1)))
+    return TriedRun(lasts, is_whole, frozenset(effects), names, timeline.end, is_cut, since, calls)

@@ -144,7 +144,7 @@ class CureTrial:
         before = self._without(problem, clock)
         if problem not in before.problems:
             return Verdict(None)
-        return judged(problem, before, self._try(cure.changes, clock, 50))
+        return judged(problem, before, self._try(cure.changes, clock, 50), again=cure.again)
 
     def _without(self, problem: Problem, clock: str) -> TriedRun:
         """Return the run without a cure; another one up to now, if the one before does not show a problem."""

@@ -3,7 +3,8 @@
 import ast
 from collections.abc import Iterable
 
-from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, name_of
+from sim.diagnosis.edits.program_file import asked_of_file
+from sim.diagnosis.edits.source_editor import Function, NotSimpleError, SourceEditor, name_of
 
 
 def rename(source: SourceEditor, line: int, name: str, new: str) -> None:
@@ -19,20 +20,41 @@ def rename_publisher(source: SourceEditor, _line: int, name: str, new: str) -> N
     _rename(source, made, name, new)
 
 
+@asked_of_file
+def served_at(source: SourceEditor, name: str) -> tuple[str, int]:
+    """Return the function that creates a service, or "the program", and the line; "" and 0 for none."""
+    functions: list[Function] = [*source.nodes(ast.FunctionDef), *source.nodes(ast.AsyncFunctionDef)]
+    for call in source.nodes(ast.Call):
+        if ast.unparse(call.func).endswith(".create_service") and _naming(call, name):
+            around = [each for each in functions if call in ast.walk(each)]
+            return around[-1].name if around else "the program", call.lineno
+    return "", 0
+
+
+@asked_of_file
+def made_for(source: SourceEditor, line: int) -> tuple[int, ...]:
+    """Return the lines that make the clients for which a line calls ``wait_for_service()``."""
+    calls = (each.func for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0))
+    waits = (each for each in calls if isinstance(each, ast.Attribute) and each.attr == "wait_for_service")
+    names = {ast.unparse(each.value) for each in waits}
+    made = (each for each in source.nodes(ast.Assign) if names & set(map(ast.unparse, each.targets)))
+    return tuple(each.value.lineno for each in made)
+
+
 def _rename(source: SourceEditor, calls: Iterable[ast.Call], name: str, new: str) -> None:
-    texts = [
-        argument
-        for call in calls
-        for argument in (*call.args, *(each.value for each in call.keywords))
-        if isinstance(argument, ast.Constant)
-        and isinstance(argument.value, str)
-        and argument.value in (name, name.rpartition("/")[2], name[1:])
-    ]
+    texts = [each for call in calls for each in _naming(call, name)]
     if len(texts) != 1:
         raise NotSimpleError
     quote = source.code_of(texts[0])[-1]
     is_relative = texts[0].value != name and name.rpartition("/")[0] == new.rpartition("/")[0]
     source.replace(texts[0], f"{quote}{new.rpartition('/')[2] if is_relative else new}{quote}")
+
+
+def _naming(call: ast.Call, name: str) -> list[ast.Constant]:
+    """Return the strings among a call's arguments that may be the name of a topic or service."""
+    arguments = (*call.args, *(each.value for each in call.keywords))
+    texts = (each for each in arguments if isinstance(each, ast.Constant) and isinstance(each.value, str))
+    return [each for each in texts if each.value in (name, name.rpartition("/")[2], name[1:])]
 
 
 def rename_definition(source: SourceEditor, line: int) -> None:

@@ -58,7 +58,8 @@ def edits_for_steps(place: CodeLocation | None, entity: EntityId, timeline: Time
     """Return edits of a callback in an endless loop at a place, for timers: they are called again."""
     if timeline.entities[entity].kind is not EntityKind.TIMER:
         return ()
-    return by_edit(place, f"do one step of the loop at each call of {who(entity, timeline)}", step_by_step)
+    words = f"do one step of the loop at each call of {who(entity, timeline)}"
+    return by_edit(place, words, step_by_step, again=True)
 
 
 def edits_for_rounds(
@@ -69,7 +70,7 @@ def edits_for_rounds(
     If that is not known, ``least`` is the number of rounds that take so long.
     """
     words = f"do one round of the loop at each call of {who(entity, timeline)}"
-    return by_edit(place, words, one_round_a_call, least)
+    return by_edit(place, words, one_round_a_call, least, again=True)
 
 
 def edits_for_spinning(
@@ -83,7 +84,7 @@ def _returning(place: CodeLocation | None, entity: EntityId, timeline: Timeline)
     subject = who(entity, timeline)
     return (
         *by_edit(place, f"return from {subject}, and go on where what it waits for is set", go_on_where_set),
-        *by_edit(place, f"return from {subject}, and look again at its next call", look_again),
+        *by_edit(place, f"return from {subject}, and look again at its next call", look_again, again=True),
     )
 
 

@@ -75,7 +75,7 @@ class EndlessWait(Rule):
         if notice.kind is NoticeKind.NO_PROGRESS and at:
             doing = f"waits for {awaited_lock(at[-1], timeline)}," if at[-1].lock else doing_of(at[-1])
             what = f" {doing} and {_how_long(found, timeline)}"
-        place, kept = line_of(found.subject, _moment(found), timeline), _kept_waiting(found, timeline)
+        place, kept = line_of(found.subject, _moment(found), timeline), kept_waiting(found, timeline)
         ends = _enders(found.subject, at[-1] if at else None, timeline)
         what += f"; {listed(ends)} would end it" if ends else ""
         cure = "wait with a timeout, and make sure that it comes" if ends else notice.advice or _ADVICE
@@ -269,7 +269,7 @@ class StaysInLoop(Rule):
         subject = who(found.subject, timeline)
         at = timeline.positions_of(found.subject, _moment(found))[-1]
         loop = line_location(*at.loop)
-        kept = _kept_waiting(found, timeline)
+        kept = kept_waiting(found, timeline)
         room = remedy_for_waits(kept, found.subject, Window(found.at, found.until + 1), timeline)
         only = (
             f"; {listed(who(each, timeline) for each in kept)} can run only when it is over" if kept else ""
@@ -287,7 +287,7 @@ class StaysInLoop(Rule):
         if found.until < timeline.end:
             return None
         at = timeline.positions_of(found.subject, Window(found.until, found.until + 1))
-        is_worker = all(goes_on(each, timeline) for each in at) and not _kept_waiting(found, timeline)
+        is_worker = all(goes_on(each, timeline) for each in at) and not kept_waiting(found, timeline)
         return Weight.REMARK if is_worker else self.weight
 
 
@@ -308,7 +308,7 @@ def _in_loop_since(span: Span, view: TimelineView, least: int) -> int | None:
     return since if since <= lately.start else None
 
 
-def _kept_waiting(found: Finding, timeline: Timeline) -> list[EntityId]:
+def kept_waiting(found: Finding, timeline: Timeline) -> list[EntityId]:
     """Return the callbacks that wait for a callback's group or thread at the end of its wait."""
     waiting = timeline.moment(found.until).waiting
     return [each for each, wait in waiting.items() if wait.holder == found.subject != each]

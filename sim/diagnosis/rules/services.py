@@ -3,8 +3,9 @@
 import re
 from collections.abc import Iterator
 
-from sim.diagnosis.cures import Remedy
+from sim.diagnosis.cures import Remedy, remedy_for_waits
 from sim.diagnosis.edits.functions import return_response
+from sim.diagnosis.edits.names import made_for, served_at
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
@@ -18,6 +19,7 @@ from sim.diagnosis.rule import (
     place_of,
 )
 from sim.diagnosis.rules.edits import edits_for_service
+from sim.diagnosis.rules.endless import kept_waiting
 from sim.diagnosis.rules.names import offer
 from sim.diagnosis.rules.timing import calls_outrun
 from sim.diagnosis.time_limits import time_limit
@@ -25,7 +27,7 @@ from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, often, until_when, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import EntityKind, ProgramAt
+from sim.trace.events import EntityId, EntityKind, ProgramAt
 from sim.trace.model import EntityInfo, Span, Window
 from sim.trace.timeline import Timeline
 
@@ -187,8 +189,28 @@ def _unserved(timeline: Timeline) -> list[EntityInfo]:
 
 def _of(program: ProgramAt, timeline: Timeline) -> list[EntityInfo]:
     """Return such clients of a program: where there are several, those that its files made."""
-    files = {file for file, _, _ in program.frames}
-    return [each for each in _unserved(timeline) if not program.process or each.made_at[0] in files]
+    files, (file, _, line) = {file for file, _, _ in program.frames}, program.frames[-1]
+    clients = [each for each in _unserved(timeline) if not program.process or each.made_at[0] in files]
+    return _asked_at((file, line), clients)
+
+
+def _of_callback(entity: EntityId, place: tuple[str, int], timeline: Timeline) -> list[EntityInfo]:
+    """Return such clients of a callback's node for which it may wait at a place."""
+    node = timeline.entities[entity].node
+    return _asked_at(place, [each for each in _unserved(timeline) if each.node == node])
+
+
+def _asked_at(place: tuple[str, int], clients: list[EntityInfo]) -> list[EntityInfo]:
+    """Return those of some clients that are asked at a place; all if the source does not show which."""
+    file, lines = place[0], made_for(*place)
+    return [each for each in clients if each.made_at[0] == file and each.made_at[1] in lines] or clients
+
+
+def _created_later(found: Finding, file: str) -> tuple[str, str]:
+    """Say who creates a service that is waited for, if a file shows it, and return that function; else ""."""
+    maker, line = served_at(file, found.about) if " and " not in found.about else ("", 0)
+    by = f"; {maker} would create it at line {line}" if line else ""
+    return f"which nobody has offered so far{by}", maker
 
 
 class ServiceNeverComes(Rule):
@@ -204,10 +226,8 @@ class ServiceNeverComes(Rule):
         for each in view.positions:
             if each.call != "Client.wait_for_service" or view.end - each.start < self.threshold:
                 continue
-            node = view.timeline.entities[each.entity].node
-            clients = {entity.name for entity in _unserved(view.timeline) if entity.node == node}
-            if clients:
-                about = listed(sorted(clients))
+            if clients := _of_callback(each.entity, (each.file, each.line), view.timeline):
+                about = listed(sorted({client.name for client in clients}))
                 stuck, ends = frozenset([each.entity]), time_limit(each)
                 yield Finding(self, each.start, view.end, each.entity, about=about, stuck=stuck, ends=ends)
         yield from self._of_program(view)
@@ -229,10 +249,12 @@ class ServiceNeverComes(Rule):
         clients = _of(at, timeline)
         program = " ".join(filter(None, ("the program", timeline.processes.get(at.process))))
         differs, cure, remedies = offer(clients[0], timeline) if clients else ("", "", ())
-        wrong = differs or "which nobody offers"
+        unoffered, maker = _created_later(found, file)
+        if maker and maker != "__init__":
+            cure = f"create {found.about} before the wait"
         until = until_when(found.ends, timeline)
         return Explanation(
-            f"{program} waits in wait_for_service(){until} for {found.about}, {wrong}, "
+            f"{program} waits in wait_for_service(){until} for {found.about}, {differs or unoffered}, "
             f"and comes to no spin(){' before that' if until else ''}",
             "callbacks run only inside spin()",
             cure or f"check the service's name, and start the node that offers {found.about} before this one",
@@ -245,22 +267,28 @@ class ServiceNeverComes(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         if not found.subject:
             return self._explained_of_program(found, timeline)
-        subject, node = who(found.subject, timeline), entity_of(found, timeline).node
-        place = line_of(found.subject, Window(found.at, found.until + 1), timeline)
-        differs, meant, remedies = offer(
-            next(each for each in _unserved(timeline) if each.node == node), timeline
-        )
+        subject = who(found.subject, timeline)
+        within = Window(found.at, found.until + 1)
+        place = line_of(found.subject, within, timeline)
+        asked = (place.file, place.first_line) if place else ("", 0)
+        differs, meant, remedies = offer(_of_callback(found.subject, asked, timeline)[0], timeline)
+        unoffered, maker = _created_later(found, place.file if place else "")
+        kept = [each for each in kept_waiting(found, timeline) if who(each, timeline) == maker]
         start = meant or f"start the node that offers {found.about}"
+        start += "; wait for it in __init__, before spin()"
+        if maker and maker != "__init__":
+            start = f"create {found.about} in __init__"
+            unoffered += ", and can run only when the wait is over" if kept else ""
+        room = remedy_for_waits(kept, found.subject, within, timeline)
         return Explanation(
             f"{subject} waits in wait_for_service(){until_when(found.ends, timeline)} for {found.about}, "
-            f"{differs or 'which nobody offers'}",
+            f"{differs or unoffered}",
             "while it waits, it keeps its thread and its group, for ever without a timeout or in a loop",
-            f"{start}; wait for it in __init__, before spin(), or ask "
-            f"service_is_ready() in {subject} and return",
+            f"{start}, or ask service_is_ready() in {subject} and return",
             place,
             for_ever=found.until >= timeline.end and not found.ends,
             until=found.ends,
-            remedies=remedies or edits_for_service(place, found.subject, timeline),
+            remedies=remedies or (room, *edits_for_service(place, found.subject, timeline)),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
