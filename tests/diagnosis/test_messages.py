@@ -73,7 +73,7 @@ def test_messages_lost_during_several_calls_are_not_said_to_be_lost_in_one() -> 
         spin(node, None)
 
     told = diagnosed(program).explained("dropped-messages").what
-    assert "messages while its calls ran: its queue holds 10" in told
+    assert "lost 73 messages while its calls ran, 600 ms each: its queue holds 10" in told
 
 
 def test_what_is_lost_while_nobody_spins_is_not_laid_to_the_callback() -> None:
@@ -96,6 +96,28 @@ def test_a_queue_that_is_long_enough_loses_nothing() -> None:
 def test_a_queue_of_one_is_meant_to_keep_the_newest() -> None:
     run = sensor_and_sleeper(1)
     assert ("dropped-messages", "hear") in run.told() - run.problems()
+
+
+@pytest.mark.parametrize(
+    ("work", "group", "cure"),
+    [
+        (0.5, 0.0, "let /t return sooner, or publish less often"),
+        (0.0, 0.28, "give /t a callback group of its own"),
+    ],
+)
+def test_a_queue_of_one_that_loses_three_quarters_is_a_problem(work: float, group: float, cure: str) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        simulation.publisher_at_rate("t", 0.02)
+        node.create_subscription(Int32, "t", lambda _: simulation.sleep(work), 1)
+        node.create_timer(0.3, lambda: simulation.sleep(group))
+        spin(node, 2)
+
+    run = diagnosed(program)
+    told = run.explained("dropped-messages")
+    assert "dropped-messages" in {rule for rule, _ in run.problems()}
+    assert told.cure.startswith(cure)
+    assert re.search(r"lost \d+ of \d+ messages", told.what)
 
 
 def test_a_timer_that_runs_before_the_waiting_messages_decides_on_old_data() -> None:

@@ -43,8 +43,8 @@ from sim.trace.timeline import Timeline
 class DroppedMessages(Rule):
     """Messages were lost because a queue was full or they exceeded their lifespan.
 
-    A queue of one usually keeps the newest message on purpose, so its losses are a remark; so are losses of
-    actions, whose queues are not the program's own.
+    A queue of one usually keeps the newest message on purpose, so its losses are a remark, unless three
+    quarters of the messages are lost; so are losses of actions, whose queues are not the program's own.
     """
 
     id = "dropped-messages"
@@ -87,8 +87,12 @@ class DroppedMessages(Rule):
                 if own
                 else f" while it waited ({why_waiting(waits[-1], timeline)})"
             )
+            if own and (calls := timeline.spans_of(entity.id, Window(found.at, found.until + 1))):
+                length = sum(each.end_at(timeline.end) - each.start for each in calls) // len(calls)
+                because += f", {duration(length)} each" if len(calls) > 1 else ""
         room = remedy_for_waits([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
-        cure = f"{room.words(timeline) or f'let {subject} return sooner'}; a longer queue only delays it"
+        faster = f"let {subject} return sooner, or publish less often"
+        cure = f"{room.words(timeline) or faster}; a longer queue only delays it"
         if not waits and (made := made_at(entity)):
             losses = Counter(timeline.losses_of(entity.id, Window(found.at, found.until + 1)))
             at_once = entity.depth + max(losses.values())
@@ -99,7 +103,9 @@ class DroppedMessages(Rule):
             (loop, how), room = loop_beside_spin(found.until, timeline), Remedy()
             cure, place = (how, loop) if loop else ("keep spinning its node", place)
             cure += "; a longer queue only delays it"
-        messages = "1 message" if found.count == 1 else f"{found.count} messages"
+        sent = found.count + timeline.calls_of(entity.id, Window(0, timeline.end + 1))
+        part = f"{found.count} of {sent}" if _keeps_little(entity, timeline) else str(found.count)
+        messages = "1 message" if part == "1" else f"{part} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
         calls = timeline.spans_of(entity.id, Window(found.until - SECOND, found.until + 1))
         age = max((each.age for each in calls), default=0)
@@ -115,9 +121,21 @@ class DroppedMessages(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
-        """A remark for queues of one, and where what keeps the callback waiting is the problem."""
-        is_minor = found.due_to or entity_of(found, timeline).depth <= 1
+        """A remark for most queues of one, and where what keeps the callback waiting is the problem."""
+        entity = entity_of(found, timeline)
+        is_minor = found.due_to or (entity.depth <= 1 and not _keeps_little(entity, timeline))
         return Weight.REMARK if is_minor else Weight.PROBLEM
+
+
+def _keeps_little(entity: EntityInfo, timeline: Timeline) -> bool:
+    """Return whether a queue of one has lost three quarters of its messages."""
+    run = Window(0, timeline.end + 1)
+    lost = timeline.drops_of(entity.id, run)
+    return entity.depth == 1 and lost >= _MANY and lost >= 3 * timeline.calls_of(entity.id, run)
+
+
+_MANY = 10
+"""The number of losses from which on it counts which part of the messages they are."""
 
 
 class StaleData(Rule):
