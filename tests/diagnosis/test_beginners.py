@@ -281,11 +281,13 @@ def test_the_services_of_the_robot_are_known_without_the_robot(tmp_path: Path) -
     [
         (
             "lock_across_callbacks",
-            "(lock_across_callbacks.py:31) wants self.arm, which move took at lock_across_callbacks.py:23",
+            "deadlock: move (lock_across_callbacks.py:25) wants self.camera, which look took at "
+            "lock_across_callbacks.py:29; look (lock_across_callbacks.py:31) wants self.arm, which move took",
         ),
         (
             "lock_by_decorator",
-            "(lock_by_decorator.py:34) wants self.lock, which it took itself at lock_by_decorator.py:29",
+            "deadlock: count (lock_by_decorator.py:34) wants self.lock, which it took itself at "
+            "lock_by_decorator.py:29",
         ),
         (
             "lock_of_ended_thread",
@@ -298,6 +300,14 @@ def test_a_lock_has_its_name_with_who_took_it_and_where(program: str, wants: str
     timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 3.0)).timeline
     told = diagnose(timeline)[0].rule.explain(diagnose(timeline)[0], timeline)
     assert wants in told.what
+
+
+def test_of_what_would_end_a_wait_it_is_told_that_it_waits_itself() -> None:
+    timeline = run_to_end(program_setup(PROGRAMS / "waits_for_who_waits.py", 5.0)).timeline
+    go, grip = (each.explained(timeline).what for each in diagnose(timeline))
+    file = "waits_for_who_waits.py"
+    assert f"in open ({file}:28), which is in Client.call() ({file}:27), would end it" in go
+    assert f"in go ({file}:23), which itself waits in Event.wait() ({file}:22), would end it" in grip
 
 
 def test_the_call_that_would_end_a_wait_for_an_item_is_told_with_its_line() -> None:

@@ -290,14 +290,16 @@ def _explanation(
     found: Finding, why: str, cure: str, remedies: tuple[Remedy, ...], timeline: Timeline
 ) -> Explanation:
     subject, wanted, lasts = who(found.subject, timeline), found.ring[1], found.until >= timeline.end
-    if not lasts:
+    if lasts and not found.ends and found.detail.startswith(f"{subject} ("):
+        waits = "deadlock"
+    elif not lasts:
         waits = f"{subject} waited in vain for {wanted}"
     elif found.ends:
         waits = f"{subject} waits in vain for {wanted}{until_when(found.ends, timeline)}"
     else:
         waits = f"deadlock: {subject} waits for {wanted} for ever"
     return Explanation(
-        f"{waits}; {found.detail}{often(found.count)}",
+        f"{waits}{': ' if waits == 'deadlock' else '; '}{found.detail}{often(found.count)}",
         why,
         cure,
         _line_of(found.subject, found, timeline),

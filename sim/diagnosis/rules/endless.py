@@ -354,10 +354,22 @@ def _enders(entity: EntityId, at: Position | None, timeline: Timeline) -> list[s
         return []
     file, own = at.file, who(entity, timeline)
     return [
-        f"{call}() in {function} ({Path(file).name}:{line})"
+        f"{call}() in {function} ({Path(file).name}:{line}){_waiting_too(function, timeline)}"
         for function, call, line in enders(file, at.line)
         if function != own
     ]
+
+
+def _waiting_too(function: str, timeline: Timeline) -> str:
+    """Say that a callback which would end a wait stands in a wait itself; "" if it does not."""
+    now = timeline.moment(timeline.end)
+    stands = (timeline.position_on(thread, timeline.end) for thread in (*now.running, *now.blocked))
+    waits = (each for each in stands if each is not None and each.doing in (Doing.WAITS, Doing.CALLS_ROS))
+    known = timeline.entities
+    at = next((each for each in waits if each.entity and known[each.entity].spoken_name == function), None)
+    doing = "" if at is None else doing_of(at)
+    where = "" if at is None else f"{Path(at.file).name}:{at.line}"
+    return doing and f", which {'is' if doing.startswith('in ') else 'itself'} {doing} ({where}),"
 
 
 def _moment(found: Finding) -> Window:
