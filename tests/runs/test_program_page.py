@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.runs.setup.changeable import misnamed
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.program_page import page_of_program
+from cbtui.runs.setup.unmet_changes import UnmetChanges
 from sim.diagnosis import CodeLocation, Explanation
 from sim.trace.timeline import Timeline
 from tests.support.engine_runs import program_setup, run_program
@@ -22,6 +22,14 @@ node = Node("server")
 rclpy.spin_once(node, timeout_sec=0.1)
 """
 _TRIGGER = 'node.create_service(Trigger, "press", lambda request, response: response)'
+_NAMED = """
+def pressed(request, response):
+    return response
+
+def made_later(): ...
+
+node.create_service(Trigger, "press", pressed)
+"""
 _SET_BOOL = 'node.create_service(SetBool, "switch", lambda request, response: response)'
 
 
@@ -76,10 +84,38 @@ def test_a_change_for_a_callback_that_there_is_not_is_told_of(tmp_path: Path) ->
     path = tmp_path / "node.py"
     path.write_text(_NODE.format(_TRIGGER))
     changes = Changes().with_group(("", "pushed"), "own").with_group(("", "press"), "own")
-    setup = changes.applied(program_setup(path, 1.0))
-    wrong = misnamed(setup, run.timeline)
-    page = page_of_program("node.py", "virtual", run.timeline, misnamed=wrong)
+    unmet = UnmetChanges(changes.applied(program_setup(path, 1.0))).now(run.timeline)
+    page = page_of_program("node.py", "virtual", run.timeline, unmet=unmet)
     assert page["found"].splitlines()[-1] == (
         "- no callback is named ``pushed`` so far: nothing is changed there"
     )
     assert page["found"].count("no callback is named") == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (Changes().with_group(("/server", "pressed"), "own"), []),
+        (
+            Changes().with_group(("/sever", "pressed"), "own"),
+            [("no callback is named pressed in /sever", True)],
+        ),
+        (Changes().with_group(("/Trigger", "pressed"), "own"), []),
+        (Changes().with_period(("", "pressed"), 1), [("no timer callback is named pressed", False)]),
+        (
+            Changes().with_period(("/server", "pressed"), 1),
+            [("no timer callback is named pressed in /server", False)],
+        ),
+        (Changes().with_group(("/server", "made_later"), "own"), []),
+    ],
+)
+def test_a_change_is_wrong_if_no_file_mentions_its_node_or_callback(
+    changes: Changes, said: list[tuple[str, bool]], tmp_path: Path
+) -> None:
+    run = run_program(tmp_path, _NODE.format(_NAMED))
+    path = tmp_path / "node.py"
+    path.write_text(_NODE.format(_NAMED))
+    unmet = UnmetChanges(changes.applied(program_setup(path, 1.0))).now(run.timeline)
+    assert [(each.sentence(), each.is_wrong) for each in unmet] == [
+        (f"{sentence} so far", is_wrong) for sentence, is_wrong in said
+    ]

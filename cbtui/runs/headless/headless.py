@@ -13,7 +13,7 @@ from cbtui.runs.headless.deadlock_news import DeadlockNews
 from cbtui.runs.headless.program_log import ProgramLog
 from cbtui.runs.headless.standard_input import StandardInput
 from cbtui.runs.live.disk_space import DiskSpaceWatch
-from cbtui.runs.setup.changeable import misnamed
+from cbtui.runs.setup.unmet_changes import UnmetChanges
 from cbtui.terminal.interrupts import deferred_interrupt, ending_signals
 from cbtui.text.output import CannotSayError, complain, say
 from sim.diagnosis import diagnose, findings_text
@@ -169,11 +169,15 @@ class _Headless:
         return None
 
     def _compare_names(self, events: list[AnyEvent]) -> None:
-        """Stop the run at its first callback if a change misspells one; the engine then tells which."""
+        """Stop the run at its first callback if a change names none; the engine then tells which."""
         if self._has_changes and any(isinstance(each, CallbackStarted) for each in events):
             self._has_changes = False
-            if misnamed(self._setup, self._timeline):
+            unmet = UnmetChanges(self._setup).now(self._timeline)
+            if any(each.is_wrong for each in unmet):
                 self._run.session.send(Stop())
+            else:
+                for each in unmet:
+                    complain(each.sentence())
 
     @property
     def _is_unmatched(self) -> bool:

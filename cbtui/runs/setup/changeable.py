@@ -4,7 +4,6 @@ import linecache
 import re
 from collections import Counter
 from dataclasses import dataclass, replace
-from difflib import get_close_matches
 
 from cbtui.runs.setup.changes import CallbackPlace
 from cbtui.runs.setup.quantities import USUAL_SENSOR_RATE, Quantity
@@ -112,29 +111,6 @@ def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
             )
     names = Counter(name for _, name in found)
     return {place: replace(each, is_alone=names[each.name] == 1) for place, each in found.items()}
-
-
-def misnamed(setup: RunSetup, timeline: Timeline) -> list[str]:
-    """Return for which callbacks there are changes that the run lacks, and no file of its programs mentions.
-
-    What a launch file starts is not known before it runs: there, another callback has nearly that name.
-    """
-    changed = [*(each.callback for each in setup.groups), *(each.callback for each in setup.periods)]
-    if not changed:
-        return []  # a program may have any number of callbacks, and this is asked again and again
-    names = {each for _, name in callbacks_of(timeline) for each in (name, short_name(name))}
-    missing = [name for name in changed if name not in names]
-    if any(each.is_launch_file for each in setup.programs):
-        missing = [name for name in missing if get_close_matches(name, names, 1, 0.75)]
-    return [name for name in missing if not _is_mentioned(name, setup, timeline)]
-
-
-def _is_mentioned(name: str, setup: RunSetup, timeline: Timeline) -> bool:
-    """Tell whether a callback of that name may still be made."""
-    made_in = (file for each in timeline.entities.values() for file in (each.file, each.made_at[0]))
-    word = re.compile(rf"\b{re.escape(name.rpartition('/')[2])}(_callback)?\b")
-    files = {*(each.path for each in setup.programs), *made_in}
-    return any(word.search(setup.texts.get(file) or "".join(linecache.getlines(file))) for file in files)
 
 
 def place_of(entity: EntityInfo, timeline: Timeline) -> CallbackPlace:

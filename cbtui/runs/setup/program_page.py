@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
 from cbtui.runs.setup.changeable import is_set_bool, programs_own
+from cbtui.runs.setup.unmet_changes import UnmetChange
 from cbtui.text.markdown import as_it_is
 from sim.diagnosis import Explanation, with_stop
 from sim.quantities.durations import duration
@@ -34,23 +35,23 @@ def page_of_program(
     problems: Sequence[Explanation] = (),
     *,
     has_cures: bool = False,
-    misnamed: Sequence[str] = (),
+    unmet: Sequence[UnmetChange] = (),
 ) -> Mapping[str, str]:
     """Return the sections of the page; ``problems`` are what went wrong, the worst first.
 
-    ``has_cures``: whether the first problem has cures that can be tried; ``misnamed`` are the callbacks that
-    were to be changed, and that there are not.
+    ``has_cures``: whether the first problem has cures that can be tried; ``unmet`` are changes for callbacks
+    that there are not.
     """
     tries = "\n".join(f"- {line}" for line in _tries(timeline, problems, has_cures=has_cures))
     return {
         "about": _ABOUT.format(name=name, clock=clock),
-        "found": f"## What was found\n\n{_found(timeline, misnamed)}\n",
+        "found": f"## What was found\n\n{_found(timeline, unmet)}\n",
         "tries": f"## What to try\n\n{tries}\n",
         "signs": _SIGNS,
     }
 
 
-def _found(timeline: Timeline, misnamed: Sequence[str]) -> str:
+def _found(timeline: Timeline, unmet: Sequence[UnmetChange]) -> str:
     """The nodes with their executors, and the groups with their callbacks; what was to be changed in vain."""
     if not timeline.nodes:
         ended = timeline.ended
@@ -63,7 +64,7 @@ def _found(timeline: Timeline, misnamed: Sequence[str]) -> str:
         own = _listed(_callback(each) for each in timeline.group_members(group.id) if programs_own(each))
         if own:
             lines.append(f"- group {group.letter}, {group.kind.value}: {own}")
-    lines += (f"- no callback is named ``{name}`` so far: nothing is changed there" for name in misnamed)
+    lines += (f"- {each.sentence('``')}: nothing is changed there" for each in unmet)
     return "\n".join(lines)
 
 

@@ -10,8 +10,8 @@ from textual.screen import Screen
 from cbtui.runs.judged.cures import cures_of
 from cbtui.runs.live.file_watch import CANNOT_WATCH, content_of, contents
 from cbtui.runs.live.live_run import LiveRun
-from cbtui.runs.setup.changeable import misnamed
 from cbtui.runs.setup.program_page import MOST, page_of_program
+from cbtui.runs.setup.unmet_changes import UnmetChange, UnmetChanges
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.restarts import Restarts
@@ -48,6 +48,7 @@ class OwnFile(ScreenPart):
     content: bytes | None = None
     """The content that the run on screen was made from."""
     _shown: object = field(default=None, init=False)
+    _unmet: UnmetChanges | None = field(default=None, init=False)
 
     def begin(self) -> None:
         """Note that a run of the current file begins."""
@@ -65,8 +66,13 @@ class OwnFile(ScreenPart):
             run.timeline,
             problems,
             has_cures=has_cures,
-            misnamed=misnamed(run.setup, run.timeline),
+            unmet=self._unmet_in(run),
         )
+
+    def _unmet_in(self, run: LiveRun) -> list[UnmetChange]:
+        if self._unmet is None or self._unmet.setup is not run.setup:
+            self._unmet = UnmetChanges(run.setup)
+        return self._unmet.now(run.timeline)
 
     def update_guide(self) -> None:
         """Write the guide again if the findings changed.

@@ -110,6 +110,7 @@ def test_a_callback_that_there_is_not_is_a_slip() -> None:
     [
         (("--group", "scan_callbck=own"), "did you mean scan_callback?"),
         (("--period", "nonsense=1"), "no timer callback is named nonsense; there is timer_callback"),
+        (("--group", "/pub_node:scan_callback=own"), "no callback is named scan_callback in /pub_node"),
     ],
 )
 def test_a_run_ends_as_soon_as_a_change_proves_to_be_for_no_callback(
