@@ -29,6 +29,7 @@ from sim.engine.failures.failure import breakdown, is_learners
 from sim.engine.failures.tracebacks import leave_out_own_frames
 from sim.engine.failures.uncaught_exceptions import report_uncaught
 from sim.engine.outbox import Outbox
+from sim.engine.own_threads import OwnThreads
 from sim.engine.program_position import ProgramPosition
 from sim.engine.programs.children import allow_children, refuse_children
 from sim.engine.programs.ending import finalise, set_engine_apart
@@ -115,6 +116,7 @@ class Engine:
         self._descriptors = Descriptors(lambda text, error: record(Printed(clock.now(), text, error)))
         self._programs = ProgramSupervisor(self._host, record)
         self._program_position = ProgramPosition(self._probe, clock, record, self._programs.main_threads)
+        self._own_threads = OwnThreads(self._probe, clock, record, self._programs.main_threads)
         self._starter = ProgramStarter(self._programs, setup, _launch)
         self._lines = Ros2Lines(self._host, record, self._starter, self._programs.look)
         self._terminal = Terminal(clock, record, setup.keyboard, len(setup.typed))
@@ -244,6 +246,7 @@ class Engine:
         due = self._endless.look()
         self._positions.look()
         self._program_position.look()
+        self._own_threads.look()
         if self._shutdown.has_begun:
             return None
         return min((each for each in (due, self._host.explain_waits()) if each is not None), default=None)
@@ -255,6 +258,7 @@ class Engine:
             if self._periods % _PERIODS_A_LOOK == 0:
                 self._positions.look()
                 self._program_position.look()
+                self._own_threads.look()
 
     def _make_room(self) -> None:
         self._outbox.flush()

@@ -78,6 +78,9 @@ class RunStores:
         self.program_positions: defaultdict[ev.ProcessId, History[ev.ProgramAt]] = defaultdict(
             lambda: History(attrgetter("t"), ev.ProgramAt, spill)
         )
+        self.own_threads: defaultdict[int, History[ev.OwnThreadAt]] = defaultdict(
+            lambda: History(attrgetter("t"), ev.OwnThreadAt, spill)
+        )
         self.robot: History[ev.RobotMoved] = History(attrgetter("t"), ev.RobotMoved, spill)
         self.velocities: History[ev.VelocityCommanded] = History(attrgetter("t"), ev.VelocityCommanded, spill)
         self.scans = Scans(spill)
@@ -99,6 +102,11 @@ class RunStores:
     def queue(self, entity: EntityId, at: Nanoseconds) -> Queue:
         """The queue of an entity."""
         return self.queues[entity].queue(at, self._origin_time(entity))
+
+    def own_threads_at(self, at: Nanoseconds) -> list[ev.OwnThreadAt]:
+        """Where threads that programs have started wait, outside callbacks."""
+        latest = (each.latest(at) for each in self.own_threads.values())
+        return [each for each in latest if each is not None and each.frames]
 
     def decided(self, window: Window) -> Iterator[tuple[Deed, Span | Blocked | EntityId]]:
         """The decisions of a window with their calls, ``Blocked``, or the entities that lost something."""
@@ -148,6 +156,7 @@ class RunStores:
             ev.SpinClashed: self.spin_clashes.add,
             ev.TimesKept: self._times_kept,
             ev.ProgramAt: lambda event: self.program_positions[event.process].add(event),
+            ev.OwnThreadAt: lambda event: self.own_threads[event.number].add(event),
             ev.CallbackFailed: self._callback_failed,
             ev.ExceptionSurfaced: self.surfaced.add,
             ev.Published: self._published,

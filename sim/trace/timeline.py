@@ -94,6 +94,7 @@ class Timeline:
         """The attempts to spin what was already being spun, in order."""
         self.surfaced: Sequence[ev.ExceptionSurfaced] = run.surfaced
         """The exceptions of callbacks that pools raised out of ``spin()``, in order."""
+        self.own_threads_at: Callable[[Nanoseconds], list[ev.OwnThreadAt]] = run.own_threads_at
 
     def program_at(self, at: Nanoseconds) -> ev.ProgramAt | None:
         """Where the only program is at ``at`` outside callbacks, None if it spins, or is unknown."""

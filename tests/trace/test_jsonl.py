@@ -90,6 +90,8 @@ def test_golden_lines() -> None:
         '"call":"time.sleep","frames":["node.py:60, in odom_callback"]}',
         '{"t":2.25,"event":"program_at","doing":"in rclpy","call":"spin","frames":["node.py:70, in main"],'
         '"loop":"node.py:69"}',
+        '{"t":2.25,"event":"own_thread_at","thread":"worker","doing":"waits","call":"Event.wait",'
+        '"frames":["node.py:40, in work"]}',
         '{"t":2.25,"event":"spin_clash","node":"/sub_node","callback":"odom_callback",'
         '"function":"spin_until_future_complete","file":"node.py","line":60}',
         '{"t":2.25,"event":"times_kept","node":"/sub_node","length":8.0,"attributes":["done_at"]}',

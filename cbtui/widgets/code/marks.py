@@ -15,9 +15,9 @@ from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.events import Doing, EntityId
 from sim.trace.figures.waiting import wait_told, waits_since
-from sim.trace.model import EntityInfo, Moment, Nanoseconds, Position, Span, Window
+from sim.trace.model import EntityInfo, Frame, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.roster import roster_of
-from sim.trace.timeline import Timeline
+from sim.trace.timeline import NOBODY, Timeline
 
 JUST_NOW: Nanoseconds = 250_000_000
 """How long a callback stays marked after it has returned, so that short ones are visible."""
@@ -72,7 +72,9 @@ LineMarks: TypeAlias = dict[int, LineMark]
 
 
 def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, LineMarks]:
-    """Return the lines at which callbacks are at a moment, or the program waits, and the calls to there.
+    """Return the lines at which callbacks are at a moment, or the program or a thread of it waits.
+
+    Also returned are the calls to there.
 
     Sleeps that follow each other at one line are one position, so the text tells how long it has been there,
     and whether that may be more than one sleep. Of several threads at one line it tells of the first.
@@ -85,14 +87,30 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
     since = [(_there_since(position, timeline), position) for position in positions]
     for start, position in sorted(since, key=itemgetter(0)):
         number = groups.index(timeline.entities[position.entity].group) if position.entity else -1
-        *calls, here = position.frames
-        for frame in (*calls, here):
-            file = files.of(frame.file)
-            known = None if file is None else found[file].get(frame.line)
-            if file is not None and (known is None or (frame is here and not known.texts)):
-                texts = tuple(_at_line(position, at - start, timeline, file)) if frame is here else ()
-                found[file][frame.line] = LineMark(texts, number)
+        file = files.of(position.file)
+        texts = () if file is None else tuple(_at_line(position, at - start, timeline, file))
+        _mark(found, files, position.frames, number, texts)
+    for own in timeline.own_threads_at(at):
+        frames, name = tuple(Frame(*frame) for frame in own.frames), short_thread(own.name)
+        there = Position(own.t, None, 0, NOBODY, own.doing, own.call, frames, lock=own.lock)
+        _mark(found, files, frames, -1, (f"▶ {name} {doing_of(there)}", f"▶ {name}", "▶"))
     return dict(found)
+
+
+def _mark(
+    found: dict[SourceFile, LineMarks],
+    files: SourceFiles,
+    frames: Sequence[Frame],
+    number: int,
+    texts: tuple[str, ...],
+) -> None:
+    """Mark the lines of a stack; ``texts`` are for its innermost one."""
+    *calls, here = frames
+    for frame in (*calls, here):
+        file = files.of(frame.file)
+        known = None if file is None else found[file].get(frame.line)
+        if file is not None and (known is None or (frame is here and not known.texts)):
+            found[file][frame.line] = LineMark(texts if frame is here else (), number)
 
 
 def _there_since(position: Position, timeline: Timeline) -> Nanoseconds:

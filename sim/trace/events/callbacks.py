@@ -16,6 +16,7 @@ from sim.trace.events.fields import (
     SourcePlace,
     Text,
     ThreadId,
+    ThreadName,
     WireOnly,
 )
 
@@ -194,6 +195,25 @@ class ProgramAt(TraceEvent, frozen=True, tag="program_at"):
         """File and line of the innermost frame, or of the loop around it."""
         file, _, line = self.frames[-1]
         return self.loop if self.loop[0] else (file, line)
+
+
+class OwnThreadAt(TraceEvent, frozen=True, tag="own_thread_at"):
+    """Where a thread that the program itself started waits or sleeps, outside callbacks.
+
+    Another one of the same number replaces it. It is looked for a few times a second, on a few threads.
+    """
+
+    number: WireOnly[int]
+    """Which of the threads that are looked at it is; that of an ended one is used again."""
+    name: ThreadName
+    doing: Doing
+    """As in ``callback_at``."""
+    call: Maybe[str]
+    """As in ``callback_at``."""
+    frames: Frames
+    """As in ``callback_at``; none once it goes on or has ended."""
+    lock: Maybe[str] = ""
+    """As in ``callback_at``."""
 
 
 class CallbackFailed(TraceEvent, frozen=True, tag="callback_error"):

@@ -10,7 +10,7 @@ from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, lines_at, m
 from cbtui.widgets.code.source_files import SourceFiles
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
-from sim.trace.events import CallbackAt, Doing, ProgramAt, RunStarted
+from sim.trace.events import CallbackAt, Doing, OwnThreadAt, ProgramAt, RunStarted
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.pictures import lines_of
@@ -145,6 +145,19 @@ def test_the_line_at_which_a_program_waits_where_nothing_spins_is_marked(path: P
     assert lines_at(timeline, ns(1.0), files) == {}
     marked = lines_at(timeline, ns(4.5), files)[files.main][38]
     assert (marked.texts[0], marked.number) == ("▶ in Rate.sleep(), 2.5 s", -1)
+
+
+def test_the_line_at_which_a_thread_of_the_program_s_own_waits_is_marked_until_it_goes_on(path: Path) -> None:
+    run = Run()
+    frames = ((str(path), "work", 37), (str(path), "wait", 38))
+    waits = OwnThreadAt(ns(2.0), 0, "worker", Doing.WAITS, "Event.wait", frames)
+    timeline = Timeline()
+    timeline.extend([*run.events, waits, OwnThreadAt(ns(4.0), 0, "worker", Doing.COMPUTES, "", ())])
+    files = SourceFiles(path)
+    lines = lines_at(timeline, ns(3.0), files)[files.main]
+    assert lines[38].texts == ("▶ worker waits in Event.wait()", "▶ worker", "▶")
+    assert lines[37].texts == ()
+    assert lines_at(timeline, ns(1.0), files) == lines_at(timeline, ns(4.0), files) == {}
 
 
 def test_a_waiting_callback_is_marked_with_the_reason(path: Path) -> None:

@@ -1,0 +1,45 @@
+"""Threads that a program starts itself: where they wait is told, until they go on."""
+
+from pathlib import Path
+
+from sim.trace.events import Doing, OwnThreadAt
+from tests.support.engine_runs import run_program
+
+_NODE = """
+import threading, time
+import rclpy
+from rclpy.node import Node
+
+rclpy.init()
+node = Node("n")
+node.create_timer(1.0, lambda: None)
+event, lock = threading.Event(), threading.Lock()
+lock.acquire()
+
+def waits():
+    event.wait()
+    event.clear()
+    time.sleep(1.0)
+
+def locks():
+    with lock:
+        pass
+
+for each in (waits, locks):
+    threading.Thread(target=each, name=each.__name__, daemon=True).start()
+threading.Thread(target=lambda: rclpy.spin(node), name="spins", daemon=True).start()
+time.sleep(2.0)
+event.set()
+time.sleep(2.0)
+"""
+
+
+def test_a_thread_of_the_program_s_own_is_told_of_while_it_waits(tmp_path: Path) -> None:
+    run = run_program(tmp_path, _NODE, seconds=4)
+    told = [event for event in run.events if isinstance(event, OwnThreadAt)]
+    assert {each.name for each in told} == {"waits", "locks"}
+    steps = [(each.doing, each.call) for each in told if each.name == "waits"]
+    assert steps[:3] == [(Doing.WAITS, "Event.wait"), (Doing.SLEEPS, "time.sleep"), (Doing.COMPUTES, "")]
+    taking = next(each for each in told if each.name == "locks")
+    assert (taking.call, taking.lock, taking.frames[-1][1:]) == ("Lock.acquire", "lock", ("locks", 18))
+    assert [each.name for each in run.timeline.own_threads_at(run.timeline.end - 1)] == ["locks"]
