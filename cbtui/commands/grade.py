@@ -1,10 +1,8 @@
 """``cbtui grade``: the files of a folder of learners, run and checked one after another."""
 
 import argparse
-import os
 from contextlib import suppress
 from pathlib import Path
-from stat import S_ISDIR
 from typing import TYPE_CHECKING
 
 from cbtui.commands.check import add_limit, exercise_of
@@ -70,8 +68,6 @@ def grade(options: argparse.Namespace) -> int:
     files = [paper.file for paper in papers if paper.file is not None]
     force = options.force or options.resume
     outputs.check_outputs({"--junit": junit, "--csv": path}, files, force=force)
-    for output in filter(None, (junit, path)):
-        _check_writable(output)
     from cbtui.grading.confinement import Confinement
     from cbtui.grading.grading import Grader, PackagesChangedError, line
     from cbtui.grading.mark_sheet import MarkSheet, SheetFile, SheetStream, UnwritableSheetError
@@ -150,21 +146,6 @@ def _write(path: Path, text: str) -> bool:
         complain(f"{path} cannot be written: {error.strerror}")
         return False
     return True
-
-
-def _check_writable(path: Path) -> None:
-    """Refuse a file that cannot be written before any program is run."""
-    try:
-        mode = mode_of(path)
-        place = path if mode else path.parent
-        if S_ISDIR(mode):
-            refuse(f"{path} cannot be written: it is a folder")
-        if not mode_of(place):
-            refuse(f"{path} cannot be written: there is no folder {place}")
-    except OSError as error:
-        refuse(f"{path} cannot be written: {error.strerror}")
-    if not os.access(place, os.W_OK):
-        refuse(f"{path} cannot be written: you may not write there")
 
 
 def _papers(options: argparse.Namespace) -> "list[HandIn]":

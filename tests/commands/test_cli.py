@@ -70,7 +70,7 @@ def test_list_tells_how_far_one_is(capsys: pytest.CaptureFixture[str]) -> None:
         ),
         (["run", "single-thread", "--speed", "0"], "time cannot pass 0 times as fast"),
         (["run", "single-thread", "--call-data", "perhaps"], "invalid choice: 'perhaps'"),
-        (["run", "single-thread", "--events", "/no/such/folder/x.jsonl"], "cannot write events"),
+        (["run", "single-thread", "--events", "/no/such/folder/x.jsonl"], "there is no folder /no/such"),
         (["run", "nothing_here.py"], "there is no file nothing_here.py"),
         (["run", "./"], "is a folder; name the file in it to run"),
         (["run", "single-thread", "--", "-x"], "a lesson has its own arguments"),

@@ -91,8 +91,8 @@ def test_the_report_finds_its_picture_in_another_folder(recording: Path) -> None
     ("words", "sentence"),
     [
         ([], "name what to write, such as --svg lanes.svg"),
-        (["--csv", "{}/no/such/out.csv"], "no/such/out.csv: No such file or directory"),
-        (["--csv", "{}"], "Is a directory"),
+        (["--csv", "{}/no/such/out.csv"], "no/such/out.csv cannot be written: there is no folder"),
+        (["--csv", "{}"], "it is a folder"),
         (["--perfetto", "/dev/full"], "cannot write /dev/full: No space left on device"),
         (["--markdown", "/dev/full"], "cannot write /dev/full: No space left on device"),
         (["--csv", "{}/run.mcap"], "--csv would overwrite {}/run.mcap; give it a file of its own"),

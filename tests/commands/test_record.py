@@ -100,7 +100,7 @@ def test_info_tells_of_losses_and_prints_no_control_characters(
     ("arguments", "sentence"),
     first_row_daily(
         (["--record", "{there}"], "there is a file {there} already; give another name, or --force"),
-        (["--record", "/no/such/folder/x.mcap"], "cannot record to /no/such/folder/x.mcap: No such file"),
+        (["--record", "/no/such/folder/x.mcap"], "cannot be written: there is no folder /no/such"),
         (["--record", "/dev/full", "--force"], "cannot record to /dev/full: No space left on device"),
         (["--force"], "--force replaces files that are there already; no file to write is named"),
     ),

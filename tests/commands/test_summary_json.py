@@ -24,8 +24,15 @@ def test_a_run_and_its_recording_tell_the_same(tmp_path: Path, monkeypatch: pyte
     assert json.loads(cbtui("info", "run.mcap", "--json").stdout) == told
 
 
-def test_a_summary_that_cannot_be_written_is_complained_of(tmp_path: Path) -> None:
+def test_a_summary_that_cannot_be_written_is_refused_before_the_run(tmp_path: Path) -> None:
     ran = cbtui("run", "missed-ticks", "--for", "1", "--json", str(tmp_path / "none" / "run.json"))
+    assert (ran.returncode, ran.stdout) == (2, "")
+    assert "run.json cannot be written: there is no folder " in ran.stderr
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
+def test_a_summary_on_a_full_disk_is_complained_of() -> None:
+    ran = cbtui("run", "missed-ticks", "--for", "1", "--json", "/dev/full")
     assert ran.returncode == 1
     assert "cannot write the summary to" in ran.stderr
     assert ran.stdout.startswith("missed-ticks, 1.0 s")

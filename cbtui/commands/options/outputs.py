@@ -1,9 +1,10 @@
 """The files that a command writes: one that is there already is only replaced with ``--force``."""
 
 import argparse
+import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from stat import S_ISREG
+from stat import S_ISDIR, S_ISREG
 
 from cbtui.commands.options.targets import refuse, same_file
 from sim.files.untrusted import mode_of
@@ -17,7 +18,7 @@ def add_force(parser: argparse.ArgumentParser) -> None:
 def check_outputs(outputs: Mapping[str, str | Path | None], inputs: Iterable[Path], *, force: bool) -> None:
     """Exit with code 2 and one line unless each output, by its option, has a file of its own.
 
-    That may be there already only with ``force``; pipes and devices are written to in any case.
+    It can be written, and may be there already only with ``force``; pipes and devices are always written to.
     """
     wanted = [(option, Path(name)) for option, name in outputs.items() if name is not None]
     if force and not wanted:
@@ -29,6 +30,7 @@ def check_outputs(outputs: Mapping[str, str | Path | None], inputs: Iterable[Pat
                 refuse(f"{option} would overwrite {each}; give it a file of its own")
         if not force and _is_file(path):
             refuse(f"there is a file {path} already; give another name, or --force to replace it")
+        _check_writable(path)
         taken.append(path)
 
 
@@ -37,3 +39,18 @@ def _is_file(path: Path) -> bool:
         return S_ISREG(mode_of(path))
     except OSError:  # writing it says why
         return False
+
+
+def _check_writable(path: Path) -> None:
+    """Refuse a file that cannot be written before any program is run."""
+    try:
+        mode = mode_of(path)
+        place = path if mode else path.parent
+        if S_ISDIR(mode):
+            refuse(f"{path} cannot be written: it is a folder")
+        if not mode_of(place):
+            refuse(f"{path} cannot be written: there is no folder {place}")
+    except OSError as error:
+        refuse(f"{path} cannot be written: {error.strerror}")
+    if not os.access(place, os.W_OK):
+        refuse(f"{path} cannot be written: you may not write there")

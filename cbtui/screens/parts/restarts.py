@@ -26,7 +26,9 @@ from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.windows.setup import SetupScreen
 from cbtui.screens.windows.setup_rows import GroupRow, SettingRow, ThreadsRow, ValueRow
 from sim.engine.setup import Keyboard, RunSetup, TimedInput
+from sim.trace.events import CommandKind
 
+_AS_WRITTEN = "everything is back to what the program says"
 _TOLD = 2
 """The most statements of equivalent code in the notification of a restart."""
 
@@ -124,7 +126,8 @@ class SetUpKeys(ScreenPart):
         """Ask for the group of the selected callback, or open the set-up window if none is selected."""
         callback = self._selected_callback
         if callback is None:
-            self._open_set_up(lambda row: row.aspect == "group")
+            heading = "Set-up: no callback is selected, choose one"
+            self._open_set_up(lambda row: row.aspect == "group", heading)
         else:
             self._ask(GroupRow(callback))
 
@@ -157,18 +160,19 @@ class SetUpKeys(ScreenPart):
         question: Screen[Any] = row.ask(self.restarts.changes, self.host.charset)
         self.host.ask(question, take)
 
-    def _open_set_up(self, first: Callable[[SettingRow], bool]) -> None:
+    def _open_set_up(self, first: Callable[[SettingRow], bool], heading: str = SetupScreen.heading) -> None:
         screen = SetupScreen(self._changeable, self.restarts.changes, first, self.host.charset)
+        screen.heading = heading
         self.host.ask(screen, self._run_with)
 
     async def _run_with(self, changes: Changes | None) -> None:
-        if changes is not None:
-            code = code_of(changes.without(self.restarts.changes), self._changeable)
-            await self.restarts.again(changes)
-            if 0 < len(code) <= _TOLD:
-                self.host.tell("\n".join(code))
-            else:
-                words = changes.words
-                self.host.tell(
-                    f"changed: {words}" if words else "everything is back to what the program says"
-                )
+        if changes is None:
+            return
+        code = code_of(changes.without(self.restarts.changes), self._changeable)
+        given = self.runs.timeline.given
+        await self.restarts.again(changes)
+        words = changes.words
+        told = "\n".join(code) if 0 < len(code) <= _TOLD else f"changed: {words}" if words else _AS_WRITTEN
+        if any(each.kind is CommandKind.CALL for each in given) and not self.runs.run.setup.calls:
+            told += f"\nThe calls of the run before are not repeated: {self.host.key('call_service')} calls."
+        self.host.tell(told)

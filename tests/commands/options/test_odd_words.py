@@ -109,7 +109,7 @@ def test_what_cannot_be_opened(complaint: Complaint, words: list[str], sentence:
             ["run", "--inputs", "run.mcap", "--record", "run.mcap", "--force"],
             "--record would overwrite run.mcap",
         ),
-        (["run", "node.py", "--record", "folder"], "cannot record to folder: it is a folder"),
+        (["run", "node.py", "--record", "folder"], "folder cannot be written: it is a folder"),
         (
             ["run", "node.py", "--record", "run.mcap", "--events", "new.txt"],
             "there is a file run.mcap already",
@@ -124,9 +124,9 @@ def test_what_cannot_be_opened(complaint: Complaint, words: list[str], sentence:
         (["run", "node.py", "--force"], "--force replaces files that are there already; no file to write"),
         (
             ["run", "node.py", "--record", "run.mcap", "--force", "--events", "no/x"],
-            "cannot write events to no/x: No such file or directory",
+            "no/x cannot be written: there is no folder no",
         ),
-        (["export", "run.mcap", "--force", "--csv", "kept.txt", "--svg", "no/x"], "cannot write no/x"),
+        (["export", "run.mcap", "--force", "--csv", "kept.txt", "--svg", "no/x"], "no/x cannot be written"),
         (["export", "run.mcap", "--csv", "new.csv", "--svg", "/dev/full"], "cannot write /dev/full"),
         (["grade", ".", "--csv", "split_groups.py"], "--csv would overwrite split_groups.py"),
         (["grade", ".", "--csv", "folder"], "folder cannot be written: it is a folder"),

@@ -19,7 +19,7 @@ from cbtui.screens.windows.value import ValueScreen
 from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.key_bar import KeyBar
 from sim.engine.setup import GroupChange, PeriodChange, RealRos
-from sim.trace.events import AnyEvent
+from sim.trace.events import AnyEvent, CommandGiven, CommandKind
 from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
 from tests.support.daily import first_daily, first_row_daily
 from tests.support.fake_session import FakeEngines, FakeSession
@@ -120,6 +120,7 @@ async def test_g_without_a_selected_callback_lets_one_be_chosen_first() -> None:
     async with console() as (app, pilot):
         await press(pilot, "g")
         assert isinstance(app.screen, SetupScreen)
+        assert "Set-up: no callback is selected, choose one" in text_of(app)
         await press(pilot, "down", "enter")
         assert "Which callback group should scan_callback have?" in text_of(app)
         await press(pilot, "r", "r")
@@ -277,6 +278,14 @@ async def test_a_notification_hides_neither_the_diagnosis_nor_the_keys(size: tup
         await pilot.pause()
         keys = next(bar for bar in app.screen.query(KeyBar) if bar.display)
         assert app.screen.query_one(Toast).region.bottom <= keys.region.y
+
+
+async def test_a_run_with_other_threads_says_that_the_calls_of_the_run_before_are_not_repeated() -> None:
+    called = CommandGiven(ns(12.0), "call /motor_power true", CommandKind.CALL)
+    async with console(events=[*shared_group_run().events, called]) as (app, pilot):
+        await press(pilot, "t", "4")
+        note = "The calls of the run before are not repeated: s calls."
+        assert notes(app) == [f"executor = MultiThreadedExecutor(num_threads=4)\n{note}"]
 
 
 # several at once
