@@ -101,11 +101,8 @@ class ComparedProblems:
             return ""
         has, other = (self.first, self.second) if first else (self.second, self.first)
         if len(_missing({**first, **second}, (), other)) == len(first or second):
-            return (
-                f"The {name} is gone."
-                if first
-                else f"{sentence(f'{RUNS[1]} has a {name} that {RUNS[0]} has not')}"
-            )
+            is_new = f"{RUNS[1]} has a {name} that {RUNS[0]} has not"
+            return f"The {name} is gone." if first else sentence(is_new)
         if other.end < has.end:
             return ""
         one, none = RUNS if first else RUNS[::-1]
