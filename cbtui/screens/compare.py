@@ -40,6 +40,7 @@ from sim.trace.figures.comparison_sentences import (
     ended_early,
     extent,
     is_tie,
+    notable,
     stretch,
     verdict,
 )
@@ -131,7 +132,8 @@ class CompareScreen(SizedScreen[None]):
         clear_hints(self.app)
         for number, side in enumerate(self._sides):
             lanes = self._lanes(number)
-            lanes.charset, lanes.service, lanes.can_focus = self.charset, side.service, False
+            lanes.threads_last, lanes.can_focus = True, False
+            lanes.charset, lanes.service = self.charset, side.service
             for sentence in (side.damage, side.failure):
                 if sentence is not None:
                     self.notify(sentence, severity="warning", markup=False)
@@ -261,8 +263,6 @@ class CompareScreen(SizedScreen[None]):
             return f"{self._what}: nothing that both runs have; {shorter(first, second)}", ()
         compared = yield from compare_incrementally(first.timeline, second.timeline, asked)
         self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
-        for number, notable in enumerate(compared.notable):
-            self._lanes(number).kept = notable
         problems = NO_PROBLEMS
         if self._whole:
             yield
@@ -270,6 +270,8 @@ class CompareScreen(SizedScreen[None]):
             self._told = problems.told
         self._verdict, self._is_tie = verdict(compared, problems), is_tie(compared, problems)
         self._judged, self._ended_early = asked, ended_early(compared)
+        for number, kept in enumerate(notable(compared, problems)):
+            self._lanes(number).kept = kept
         if self._whole:
             return self._extent(asked), sections(compared)
         cut = asked.end < min(self._asked.end, self._end)

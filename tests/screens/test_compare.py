@@ -23,8 +23,9 @@ from cbtui.screens.windows.moment import MomentScreen
 from cbtui.widgets.comparison import ComparisonTable
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes, start_of
+from cbtui.widgets.lanes.rows import ThreadLane
 from sim.quantities.durations import timestamp
-from sim.trace.events import AnyEvent, CommandGiven, CommandKind, RobotMoved, RunEnded
+from sim.trace.events import AnyEvent, CommandGiven, CommandKind, RobotMoved, RunEnded, ThreadAppeared
 from sim.trace.figures.comparison import compare as figures_of
 from sim.trace.figures.comparison_sentences import verdict
 from sim.trace.model import Window
@@ -214,6 +215,7 @@ async def test_a_sentence_about_the_screen_before_is_taken_away() -> None:
         await until(pilot, lambda: "was saved" in text_of(app))
         app.push_screen(CompareScreen(*sides(), app.charset))
         await until(pilot, lambda: "was saved" not in text_of(app))
+        await app.workers.wait_for_complete()
 
 
 async def test_w_lets_the_table_tell_of_the_stretch_on_screen_and_back() -> None:
@@ -314,7 +316,28 @@ async def test_both_runs_show_the_same_lanes(size: tuple[int, int]) -> None:
         first, second = app.comparison.query(Lanes)
         assert first.size == second.size
         assert first.kept
-        assert first.kept == second.kept
+        names, others = (
+            {each.timeline.entities[kept].label: rank for kept, rank in each.kept.items()}
+            for each in lanes(app)
+        )
+        assert names == others
+
+
+@pytest.mark.parametrize("size", [NARROW, WIDE])
+async def test_a_callback_is_at_the_same_height_in_both_runs_however_many_threads_they_have(
+    size: tuple[int, int],
+) -> None:
+    first, _ = sides()
+    head, *events = shared_group_run().events
+    threads = [ThreadAppeared(0, 90 + number, f"worker {number}") for number in range(3)]
+    second = ComparedSide("more threads", timeline_of([head, *threads, *events], 14.0), "/motor_power")
+    async with compared(first, second, size=size) as (app, _):
+        pictures = [each.picture for each in lanes(app)]
+        rows = [
+            [lane for lane in each.lanes if not isinstance(lane, ThreadLane)] for each in pictures if each
+        ]
+        assert rows[0]
+        assert [each.lanes[: len(rows[0])] for each in pictures if each] == [tuple(rows[0])] * 2
 
 
 async def test_a_narrow_screen_names_the_key_that_lets_all_lanes_be_seen() -> None:

@@ -30,7 +30,7 @@ from sim.trace.figures.comparison_rows import (
     ComparisonRow,
     sections,
 )
-from sim.trace.figures.comparison_sentences import Problems, ended_early, extent, is_tie, verdict
+from sim.trace.figures.comparison_sentences import Problems, ended_early, extent, is_tie, notable, verdict
 from sim.trace.figures.comparison_text import comparison_lines, comparison_text
 from sim.trace.figures.comparison_wording import CALLS
 from sim.trace.incremental import run_to_end
@@ -531,10 +531,16 @@ def test_what_differs_by_noise_on_the_real_clock_is_about_the_same() -> None:
 def test_a_callback_that_hardly_runs_in_one_of_the_runs_is_unlike() -> None:
     other = run([TIMER, ODOM], [*called(1, 1.0, 1.1), *called(1, 2.0, 2.1), *called(1, 3.0, 3.1)])
     compared = compare(healthy(), other, Window(0, ns(4.0)))
-    assert list(map(set, compared.notable)) == [{1, 2}, {1, 2}]
-    assert not any(compare(healthy(), healthy(), Window(0, ns(4.0))).notable)
+    assert list(map(set, notable(compared))) == [{1, 2}, {1, 2}]
+    assert not any(notable(compare(healthy(), healthy(), Window(0, ns(4.0)))))
     alone = compare(healthy(), run([TIMER], called(1, 1.0, 1.1)), Window(0, ns(4.0)))
-    assert list(map(set, alone.notable)) == [{2}, set()]
+    assert list(map(set, notable(alone))) == [{2}, set()]
+
+
+def test_the_callback_that_decides_the_verdict_is_the_most_notable() -> None:
+    compared = compare(starved(), healthy(), Window(0, ns(4.0)))
+    assert verdict(compared).startswith(f"run B is better: losses of {ODOM}")
+    assert [ranks[odom] for ranks, odom in zip(notable(compared), (1, 2), strict=True)] == [0, 0]
 
 
 def test_the_compared_part_on_the_real_clock_begins_with_the_first_calls() -> None:

@@ -1,6 +1,6 @@
 """Paints lanes as rows of text in inks; needs no terminal, so that a picture can be tested as text."""
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from math import inf
 from operator import attrgetter
 
@@ -16,6 +16,7 @@ from cbtui.widgets.lanes.names import more_lanes
 from cbtui.widgets.lanes.picture import LEAST_WIDTH, LaneLayout, LanePicture, layout_for
 from cbtui.widgets.lanes.room import ROOMY_FROM, has_overview, rows_granted
 from cbtui.widgets.lanes.rows import (
+    NONE_KEPT,
     GroupLane,
     Lane,
     MemberLane,
@@ -66,11 +67,12 @@ class LanePainter:
         looks: float = inf,
         call_key: str = USUAL_KEYS.call,
         more_key: str = "",
+        threads_last: bool = False,
     ) -> None:
         self.charset = charset
         self.call_key, self.more_key = call_key, more_key
         self.service = service
-        self.looks = looks
+        self.looks, self.threads_last = looks, threads_last
         self.cache = LaneCache(Timeline())
 
     def paint(
@@ -84,20 +86,21 @@ class LanePainter:
         whole: Nanoseconds = 0,
         path: Sequence[ChainStep] = (),
         told: Nanoseconds | None = None,
-        kept: Collection[EntityId] = (),
+        kept: Mapping[EntityId, int] = NONE_KEPT,
         end: Nanoseconds | None = None,
     ) -> LanePicture:
         """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells.
 
         Words and figures are of the moment ``told``, ``now`` unless given. With ``whole`` there is an
         overview, up to that end; else only where it takes no room. ``path`` stands out on its lanes; the
-        lanes of the callbacks ``kept`` stay longest. The run is drawn up to ``end``, if given.
+        lanes of the callbacks ``kept`` stay longest, by rank. The run is drawn up to ``end``, if given.
         """
         if timeline is not self.cache.timeline:
             self.cache = LaneCache(timeline)
         layout = layout_for(max(width, LEAST_WIDTH))
         scale = scale_for(window, layout.columns)
         every = all_lanes(timeline, self.service)
+        every.sort(key=lambda lane: self.threads_last and isinstance(lane, ThreadLane))
         if width < LEAST_WIDTH:
             return LanePicture(((TextRun(" " * width, PLAIN),),) * height, (), layout, scale)
         room = height - 1 - (whole > 0)

@@ -1,6 +1,6 @@
 """The lanes of a run, and the choice of those to show if not all fit."""
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TypeAlias
@@ -48,6 +48,8 @@ class ServiceLane:
 
     service: str
 
+
+NONE_KEPT: Mapping[EntityId, int] = {}
 
 Lane: TypeAlias = ThreadLane | GroupLane | MemberLane | SoleLane | ServiceLane
 
@@ -112,14 +114,14 @@ def choose_lanes(
     timeline: Timeline,
     window: Window,
     selected: Lane | None = None,
-    kept: Collection[EntityId] = (),
+    kept: Mapping[EntityId, int] = NONE_KEPT,
 ) -> list[Lane]:
     """Return the most important lanes of ``window`` that fit, in their order.
 
     The selected lane and its neighbours stay, so that moving through the lanes scrolls the view. The
-    callbacks ``kept`` come next, then lanes with work or long waits; idle ones are dropped first, and threads
-    beyond half of the room before callbacks that are called: one thread works like another. The cursor's
-    moment does not count: the choice would flicker.
+    callbacks ``kept`` come next, by rank, then lanes with work or long waits; idle ones are dropped first,
+    and threads beyond half of the room before callbacks that are called: one thread works like another. The
+    cursor's moment does not count: the choice would flicker.
     """
     if len(lanes) <= room:
         return lanes
@@ -139,7 +141,7 @@ _SPARE = 4
 """The priority of a thread beyond half of the room, or whose calls take no time, and the highest of a client,
 which only takes replies."""
 _KEPT = 10
-"""The priority of a callback that the picture is about: higher than any other."""
+"""The least priority of a callback that the picture is about: higher than any other."""
 _FAR = 2
 """The distance from the selected lane beyond which only priority counts."""
 _LONG_WAIT: Nanoseconds = 10_000_000
@@ -153,7 +155,7 @@ class _LanePriority:
 
     timeline: Timeline
     window: Window
-    kept: Collection[EntityId] = ()
+    kept: Mapping[EntityId, int]
 
     def of(self, lane: Lane) -> int:
         """Return a lane's priority."""
@@ -163,7 +165,7 @@ class _LanePriority:
             case GroupLane(group):
                 return 8 if self._group_waits(group.id) else 6
             case MemberLane(entity) | SoleLane(entity) if entity.id in self.kept:
-                return _KEPT
+                return _KEPT + len(self.kept) - self.kept[entity.id]
             case MemberLane(entity) | SoleLane(entity):
                 of_replies = entity.kind is EntityKind.CLIENT
                 return min(_SPARE, self._entity(entity.id)) if of_replies else self._entity(entity.id)

@@ -1,6 +1,6 @@
 """The widget of the lanes: draws what its painter paints, and reports what the pointer picks."""
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from textual.events import Click, MouseScrollDown, MouseScrollUp
 from textual.geometry import Offset, Size
@@ -16,7 +16,7 @@ from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
 from cbtui.widgets.lanes.painter import INTERVALS_PER_FRAME, LanePainter
 from cbtui.widgets.lanes.picture import LanePicture
 from cbtui.widgets.lanes.room import wanted_rows
-from cbtui.widgets.lanes.rows import Lane, all_lanes
+from cbtui.widgets.lanes.rows import NONE_KEPT, Lane, all_lanes
 from cbtui.widgets.lanes.selection import (
     Selection,
     bar_at,
@@ -68,8 +68,10 @@ class Lanes(PaintedWidget, can_focus=True):
     """The end of an overview that is always shown; 0 for one that is shown if there is room."""
     hint: reactive[str] = reactive("", repaint=False)
     path: reactive[Sequence[ChainStep]] = painted(())
-    kept: reactive[Collection[EntityId]] = painted(())
-    """The callbacks whose lanes are the last to be hidden."""
+    kept: reactive[Mapping[EntityId, int]] = painted(NONE_KEPT)
+    """The callbacks whose lanes are the last to be hidden, with their ranks."""
+    threads_last = False
+    """Whether threads, of which another run may have more, are below the callbacks."""
     changes: reactive[str] = painted("")
     keys: reactive[LaneKeys] = reactive(USUAL_KEYS, repaint=False)
 
@@ -288,5 +290,7 @@ class Lanes(PaintedWidget, can_focus=True):
     def _begin_anew(self) -> None:
         """Start with another painter and an empty cache."""
         call, more = self.keys.call, self.keys.more
-        self._painter = LanePainter(self.charset, self.service, INTERVALS_PER_FRAME, call, more)
+        self._painter = LanePainter(
+            self.charset, self.service, INTERVALS_PER_FRAME, call, more, self.threads_last
+        )
         self.changed()

@@ -130,15 +130,6 @@ class Comparison:
     is_real: bool = False
     unlike_commands: tuple[CommandPair, ...] = ()
 
-    @property
-    def notable(self) -> tuple[frozenset[EntityId], frozenset[EntityId]]:
-        """The callbacks of each run that wait long in one of them, or run much less often, if at all."""
-        notable = [pair for pair in self.callbacks if pair.is_unlike or pair.waits]
-        return (
-            frozenset(pair.first.figures.entity.id for pair in notable if pair.first),
-            frozenset(pair.second.figures.entity.id for pair in notable if pair.second),
-        )
-
 
 def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
     """Compare a window of two runs; callbacks match by node, kind, function and topic or service.

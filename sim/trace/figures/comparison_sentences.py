@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
+from sim.trace.events import EntityId
 from sim.trace.figures.comparison import CallbackInRun, Comparison, RunFigures
 from sim.trace.figures.comparison_rows import RUNS
 from sim.trace.figures.comparison_wording import AGES, ERRORS, FLAWS, LATENESS, LOSSES, WAITS, Wording
@@ -109,6 +110,23 @@ def _tie(comparison: Comparison, problems: Problems) -> str:
     if comparison.is_real:
         return "Both runs are about the same: what differs may be the real clock's doing"
     return "Neither run is better: no callback fails, loses or waits more in one of them"
+
+
+def notable(
+    comparison: Comparison, problems: Problems = NO_PROBLEMS
+) -> tuple[dict[EntityId, int], dict[EntityId, int]]:
+    """Return the callbacks of each run that differ notably, with their ranks: 0 decides the verdict.
+
+    Last are those that wait long in one of the runs, or run much less often, if at all.
+    """
+    deciding = dict.fromkeys(each.name for each in sorted(_differences(comparison, problems), key=_weight))
+    ranks = {name: place for place, name in enumerate(deciding)}
+    pairs = [each for each in comparison.callbacks if each.name in ranks or each.is_unlike or each.waits]
+    pairs.sort(key=lambda pair: ranks.get(pair.name, len(ranks)))
+    return (
+        {pair.first.figures.entity.id: rank for rank, pair in enumerate(pairs) if pair.first},
+        {pair.second.figures.entity.id: rank for rank, pair in enumerate(pairs) if pair.second},
+    )
 
 
 class _FigureDifference(NamedTuple):

@@ -155,7 +155,9 @@ def test_a_callback_that_the_picture_is_about_keeps_its_lane_though_it_is_idle()
     every, window = all_lanes(timeline, ""), Window(0, ns(5.0))
     idle = every[-1]
     assert idle not in choose_lanes(every, 4, timeline, window)
-    assert idle in choose_lanes(every, 4, timeline, window, kept={callbacks[-1]})
+    ranks = {callbacks[0]: 1, callbacks[-1]: 0}
+    assert idle in choose_lanes(every, 4, timeline, window, kept=ranks)
+    assert choose_lanes(every, 1, timeline, window, kept=ranks) == [idle]
 
 
 def run_timeline(run: Run) -> Timeline:
