@@ -66,8 +66,12 @@ class LaneStatus:
         if share == 0 and not ever_ran(self.timeline, thread.id, self.moment.at):
             if thread.executor == 0:
                 return TextRun("no callbacks" if self.width >= _WIDE else "own thread", FAINT)
-            unused = "never needed" if never_ran(self.timeline, thread.id) else "not used yet"
-            return TextRun(f"  0%  {unused}" if self.width >= _WIDE else "  0% unused", FAINT)
+            is_never = never_ran(self.timeline, thread.id)
+            if self.width >= _WIDE:
+                return TextRun(f"  0%  {'never needed' if is_never else 'not used yet'}", FAINT)
+            # Of a run that goes on nobody knows whether the thread will be used.
+            is_later = self.timeline.ended is not None and not is_never
+            return TextRun("  0% not yet" if is_later else "  0% unused", FAINT)
         return TextRun(f"{share:4.0%} busy", PLAIN if share else FAINT)
 
     def _caller(self, span: Span) -> str:

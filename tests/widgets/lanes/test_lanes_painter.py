@@ -380,6 +380,8 @@ def test_a_thread_was_never_needed_once_the_run_is_over() -> None:
     run.over(5.0, "its time was up", failed=False)
     shown = plain(LanePainter().paint(told(run), *last(10, 2.5), 120, 20).rows)
     assert [word in shown for word in ("never needed", "not used yet")] == [False, True]
+    narrow = plain(LanePainter().paint(told(run), *last(10, 2.5), 80, 20).rows)
+    assert [word in narrow for word in ("unused", "0% not yet")] == [False, True]
 
 
 def test_a_thread_of_the_programs_own_is_not_said_to_be_unneeded() -> None:
