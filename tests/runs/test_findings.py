@@ -15,7 +15,7 @@ from tests.support.runs import shared_group_run, split_groups_run
 from tests.support.simulation import Simulation
 
 
-def calling(*, beats: bool) -> FindingsMonitor:
+def calling(*, beats: bool, logs: bool = False) -> FindingsMonitor:
     """Two threads, and a callback that at 1 s calls a service whose reply its own group keeps out."""
 
     def program(simulation: Simulation) -> None:
@@ -24,6 +24,8 @@ def calling(*, beats: bool) -> FindingsMonitor:
         group = MutuallyExclusiveCallbackGroup()
         client = node.create_client(SetBool, "/outside", callback_group=group)
         once(node, 1.0, lambda: client.call(SetBool.Request()), group)
+        if logs:
+            simulation.at(9.5, lambda: node.get_logger().info("round"))
         if beats:
             node.create_timer(0.5, lambda: None, callback_group=MutuallyExclusiveCallbackGroup())
         spin(node, 2)
@@ -45,6 +47,12 @@ def test_nothing_moves_once_all_that_runs_is_stuck() -> None:
 def test_a_program_of_which_a_part_goes_on_still_moves() -> None:
     watch = calling(beats=True)
     assert watch.stuck_at(ns(1.5)) is not None
+    assert watch.nothing_moves_since() is None
+
+
+def test_a_program_that_logs_is_not_said_to_stand_still() -> None:
+    watch = calling(beats=False, logs=True)
+    assert watch.stuck_at(ns(10.0)) is not None
     assert watch.nothing_moves_since() is None
 
 

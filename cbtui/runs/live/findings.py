@@ -82,7 +82,7 @@ class FindingsMonitor:
         return next((found for found in endless if found.at <= at), None)
 
     def nothing_moves_since(self) -> Nanoseconds | None:
-        """Since when the program can never go on, as all that it still runs is stuck; None if it can."""
+        """Since when the program cannot go on, as all that it still runs is stuck; None if it can or logs."""
         timeline = self._timeline
         found = self.stuck_at(timeline.end)
         if found is None or timeline.end - found.at < _STANDS_STILL:
@@ -91,6 +91,8 @@ class FindingsMonitor:
             entity for each in self.findings if each.explanation.for_ever for entity in each.finding.stuck
         }
         since = Window(timeline.end - _STANDS_STILL, timeline.end + 1)
+        if timeline.logs_until(since.start) < len(timeline.logs):
+            return None
         ran = (span.entity for thread in timeline.threads for span in timeline.spans_on(thread, since))
         return found.at if stuck.issuperset(ran) else None
 
