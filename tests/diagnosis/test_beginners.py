@@ -222,7 +222,7 @@ def test_a_beginners_mistake_is_one_problem_at_its_line(
 def test_an_await_in_vain_is_told_with_what_is_awaited(program: str) -> None:
     timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 4.0)).timeline
     [told] = [each.explained(timeline).what for each in diagnose(timeline)]
-    assert "tick awaits self.ready, which has not come since 0.500 s" in told
+    assert "tick awaits self.ready, which has not come so far, since 0.500 s" in told
 
 
 @pytest.mark.parametrize(

@@ -151,7 +151,7 @@ def awaits_in_vain(subject: str, place: CodeLocation | None, since: Nanoseconds)
     """Return a clause on an await of a future that does not come."""
     future = awaited_at(place.file, place.first_line) if place else ""
     awaits = f"{future}, which" if future else "what"
-    return f"{subject} awaits {awaits} has not come since {timestamp(since)}"
+    return f"{subject} awaits {awaits} has not come so far, since {timestamp(since)}"
 
 
 def let_complete(place: CodeLocation | None) -> str:
