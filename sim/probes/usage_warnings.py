@@ -3,6 +3,7 @@
 import threading
 import warnings
 from collections.abc import Callable, Sequence
+from inspect import isasyncgenfunction, isgeneratorfunction
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -69,7 +70,12 @@ class UsageWarnings:
             self._tell_of(place, NoticeKind.PUBLISHERS_KEPT, problem, advice, number)
 
     def callback_made(self, callback: object, place: tuple[str, int], entity: int) -> None:
-        """Warn if a callback shares the variable of a loop with one made at the same line before."""
+        """Warn if a callback shares a loop's variable with one made at its line before, or is a generator."""
+        if (isgeneratorfunction(callback) or isasyncgenfunction(callback)) and place[1]:
+            name = getattr(callback, "__name__", "the callback")
+            problem = f"{name} has a yield in it, so calling it only makes a generator: nothing of it runs"
+            advice = f"write {name} without yield"
+            self._tell_of(place, NoticeKind.NEVER_ITERATED, problem, advice, entity=entity)
         for name in self._shared.of(callback, place):
             code = getattr(callback, "__code__")  # noqa: B009 - it is a function
             given = ", ".join((*code.co_varnames[: code.co_argcount], f"{name}={name}"))

@@ -80,6 +80,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "lambda message: self.ask(message.data)",
             "hand over an async def, or a functools.partial of ask",
         ),
+        ("yield_in_timer", "slip", "self.create_timer(", "write go without yield"),
         ("never_awaited", "slip", "self.is_well()", "put await before is_well(), in an async def tick"),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("calls_of_two_peers", "self-made-deadlock", "self.client.call(", "num_threads=3"),

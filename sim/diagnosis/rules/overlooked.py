@@ -56,10 +56,10 @@ class AnswerOverlooked(Rule):
 
 
 class Slip(Rule):
-    """A line does not do what it seems to: its callbacks share a variable, or its call never runs."""
+    """A line does not do what it seems to: its callbacks share a variable, or what it calls never runs."""
 
     id = "slip"
-    summary = "callbacks of a loop share its variable, or a coroutine is not awaited"
+    summary = "callbacks of a loop share its variable, or what is called never runs"
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each line once, as the engine reports it."""
@@ -69,7 +69,7 @@ class Slip(Rule):
                 yield Finding(self, notice.t, notice.t, notice.entity, about=about, event=notice)
 
     def kind(self, found: Finding, timeline: Timeline) -> str:
-        """Distinguish the two."""
+        """Distinguish them."""
         return _notice_of(found).kind.value.replace(" ", "-")
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
@@ -80,6 +80,7 @@ class Slip(Rule):
 _WHY = {
     NoticeKind.LATE_BOUND: "a function looks up its variables when called, and by then the loop is over",
     NoticeKind.NEVER_AWAITED: "calling an async def only makes a coroutine, which runs when it is awaited",
+    NoticeKind.NEVER_ITERATED: "rclpy calls a callback and drops what it returns, also a generator",
 }
 
 

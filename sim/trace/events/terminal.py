@@ -104,6 +104,8 @@ class NoticeKind(StrEnum):
     """Callbacks made in a loop share its variable, so that all of them see the last value."""
     NEVER_AWAITED = "never awaited"
     """A callback makes a coroutine and drops it, so that nothing of it runs."""
+    NEVER_ITERATED = "never iterated"
+    """A callback is a generator function, so that nothing of it runs."""
     UNMATCHED = "unmatched"
     """The run was asked to change a callback that the program does not have."""
     FORGED = "forged"
