@@ -194,6 +194,12 @@ def test_the_list_has_a_sign_a_reason_a_cure_and_a_place_for_each_finding() -> N
     assert max(map(len, lines)) <= 79
 
 
+def test_of_a_call_that_still_runs_it_is_told_how_long_so_far() -> None:
+    timeline = timeline_of(shared_group_run().until(9.0))
+    told = next(each for each in diagnose(timeline) if each.rule.id == "overrun-timer").explained(timeline)
+    assert told.what.startswith("timer_callback has run for 5.0 s so far with a period of 500 ms; 9 ticks ")
+
+
 def test_where_nothing_was_found_the_list_is_silent() -> None:
     assert findings_text((), Timeline()) == ""
 

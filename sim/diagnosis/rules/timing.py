@@ -155,8 +155,11 @@ class OverrunTimer(Rule):
             cure = f"{whom} let go of {'the lock' if taker else 'it'} before anything that takes long"
             keeper = line_of(lock_keeper(longest, timeline), during, timeline)
             place, remedies = keeper or line_location(*longest.taken_at) or place, ()
+        spans = timeline.spans_of(found.subject, Window(found.at, found.at + 1))
+        goes_on = timeline.ended is None and any(span.end is None for span in spans)
+        took = f"has run for {duration(found.lasted)} so far" if goes_on else f"took {duration(found.lasted)}"
         return Explanation(
-            f"{subject} took {duration(found.lasted)} with a period of {duration(entity.period)}; "
+            f"{subject} {took} with a period of {duration(entity.period)}; "
             f"{ticks} missed or late{often(found.count, 'overruns in all')}",
             why,
             cure,
