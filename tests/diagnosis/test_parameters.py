@@ -1,10 +1,12 @@
-"""The rule on parameter callbacks that set what is being set."""
+"""Parameters that set what is being set, and exceptions of parameters and of a second shutdown."""
 
 from pathlib import Path
 
+import pytest
+
 from sim.diagnosis import diagnose
 from sim.trace.events import Printed
-from tests.support.engine_runs import run_program
+from tests.support.engine_runs import program_setup, run_program, run_to_end
 
 SETS = """
 import rclpy
@@ -46,3 +48,25 @@ def test_a_parameter_that_its_callback_sets_while_it_is_set_is_told_once_others_
     told = found.explained(run.timeline)
     assert told.what == "a parameter callback sets 'own' while that is being set (node.py:9, in asked)"
     assert "pre-set callback" in told.cure
+
+
+@pytest.mark.parametrize(
+    ("line", "cure"),
+    [
+        (
+            "node.get_parameter('speed')",
+            "declare it first, in __init__: self.declare_parameter('speed', ...)",
+        ),
+        ("rclpy.shutdown(); rclpy.shutdown()", "to shut down what may be shut down already, call rclpy.try_"),
+    ],
+)
+def test_what_was_not_declared_or_is_shut_down_already_is_told_with_the_call_to_make(
+    tmp_path: Path, line: str, cure: str
+) -> None:
+    (tmp_path / "node.py").write_text(
+        f"import rclpy\n\nrclpy.init()\nnode = rclpy.create_node('n')\n{line}\n"
+    )
+    timeline = run_to_end(program_setup(tmp_path / "node.py", 1.0)).timeline
+    told = diagnose(timeline)[0].explained(timeline)
+    assert told.cure.startswith(cure)
+    assert str(told.place) == "node.py:5"

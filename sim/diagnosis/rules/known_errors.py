@@ -97,6 +97,16 @@ _KNOWN = tuple(
             r"make a \1(), set its fields, and publish that",
         ),
         (
+            r"RuntimeError: Context must be initialized before it can be shutdown",
+            r"rclpy is not initialised by then: it was shut down before, or init() was not called",
+            r"to shut down what may be shut down already, call rclpy.try_shutdown()",
+        ),
+        (
+            r"ParameterNotDeclaredException: .*parameter\(s\): (\w+)",
+            r"a node has only the parameters that it declares",
+            r"declare it first, in __init__: self.declare_parameter('\1', ...) with its default",
+        ),
+        (
             r"InvalidNodeNameException: .*",
             r"the name of a node has only letters, digits and underscores, and does not begin with a digit",
             r"give the node another name, such as my_node",
