@@ -12,6 +12,12 @@ OWN_TIME = {
 NOT_ALWAYS = {
     **OWN_TIME,
     "step_back": "comma",
+    "earlier": "left_square_bracket",
+    "later": "right_square_bracket",
+    "previous_event": "left_curly_bracket",
+    "next_event": "right_curly_bracket",
+    "zoom_out": "less_than_sign",
+    "zoom_in": "greater_than_sign",
     "threads": "t",
     "group": "g",
     "set_up": "p",

@@ -129,6 +129,12 @@ class Absences(ScreenPart):
         pauses = pauses if self.is_available("pause") else ""
         sentences = {
             "step_back": "This is the beginning: no event is before it.",
+            "earlier": "This is the beginning.",
+            "later": "The end is on screen already.",
+            "previous_event": "There is no earlier bar here.",
+            "next_event": "There is no later bar here.",
+            "zoom_out": "No longer stretch can be shown.",
+            "zoom_in": "No shorter stretch can be shown.",
             "step": f"{pauses}{key('step_back')} looks back, event by event.",
             "cycle_camera": "There is no robot here whose map or camera could be shown.",
             "next_lesson": f"No lesson follows {'this one' if self.lesson else 'here'}: {lessons}",
