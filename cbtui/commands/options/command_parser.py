@@ -43,9 +43,24 @@ class CommandParser(argparse.ArgumentParser):
                 shown_how = f"{value} is not a command; {ways}"
                 raise argparse.ArgumentError(None, shown_how) from None
             near = _nearest(str(value), {str(each): str(each) for each in action.choices or ()})
+            if isinstance(action, argparse._SubParsersAction) and not near:
+                raise argparse.ArgumentError(None, f"there is no command {value!r}") from None
             if not near:
                 raise
             raise argparse.ArgumentError(action, f"invalid choice: {value!r}{near}") from None
+
+    def _match_argument(self, action: argparse.Action, arg_strings_pattern: str) -> int:
+        """Name what an option lacks, where argparse tells only how many."""
+        try:
+            return super()._match_argument(action, arg_strings_pattern)
+        except argparse.ArgumentError:
+            if action.choices is not None:
+                needed = " or ".join(map(str, action.choices))
+            elif action.metavar is None:
+                raise
+            else:
+                needed = action.metavar if isinstance(action.metavar, str) else " and ".join(action.metavar)
+            raise argparse.ArgumentError(action, f"give {needed}") from None
 
     def print_help(self, file: object = None) -> None:
         """Print the help with ``say``: argparse itself ignores that it cannot be written."""
