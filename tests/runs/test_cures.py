@@ -345,3 +345,44 @@ def test_a_call_of_a_run_before_is_made_on_the_real_clock_too(tmp_path: Path) ->
     setup = with_inputs(program_setup(PROGRAMS / "sleep_in_service.py", 1.0), (called,))
     timeline = run_to_end(msgspec.structs.replace(setup, clock="real", speed=1.0)).timeline
     assert [call.service for call in timeline.calls if call.caller == 0] == ["/gripper"]
+
+
+def test_what_a_queue_of_one_loses_on_purpose_is_no_problem_in_the_place_of_old_messages(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "node.py").write_text(FALLS_BEHIND)
+    setup = program_setup(tmp_path / "node.py", 10.0)
+    timeline = run_to_end(setup).timeline
+    found = diagnose(timeline)[0]
+    (cure,) = cures_of(found.explained(timeline), Changes(), timeline)
+    assert (found.rule.id, cure.words) == ("falls-behind", "give hear a queue of 1")
+    before, after = (try_run(each, 10 * SECOND, Event()) for each in (setup, cure.changes.applied(setup)))
+    assert judged(problem_of(found, timeline), before, after).helps
+
+
+FALLS_BEHIND = """
+import time
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from std_msgs.msg import String
+
+class Slow(Node):
+    def __init__(self):
+        super().__init__("slow")
+        self.create_subscription(String, "news", self.hear, 1000)
+
+    def hear(self, msg):
+        time.sleep(0.3)
+
+def main():
+    rclpy.init()
+    teller, executor = Node("teller"), MultiThreadedExecutor()
+    publisher = teller.create_publisher(String, "news", 10)
+    teller.create_timer(0.05, lambda: publisher.publish(String()))
+    executor.add_node(Slow())
+    executor.add_node(teller)
+    executor.spin()
+
+main()
+"""

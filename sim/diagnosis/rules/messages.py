@@ -44,7 +44,8 @@ class DroppedMessages(Rule):
     """Messages were lost because a queue was full or they exceeded their lifespan.
 
     A queue of one usually keeps the newest message on purpose, so its losses are a remark, unless three
-    quarters of the messages are lost; so are losses of actions, whose queues are not the program's own.
+    quarters of the messages are lost while others keep its callback waiting; so are losses of actions, whose
+    queues are not the program's own.
     """
 
     id = "dropped-messages"
@@ -78,7 +79,7 @@ class DroppedMessages(Rule):
         at = timeline.end if taken else found.until  # a node is lost when the spin that took it has returned
         waits = timeline.waits_of(entity.id, Window(at, at + 1))
         because, place = "", place_of(found.subject, timeline)
-        own = bool(waits) and waits[-1].holder == entity.id
+        own = _waits_for_itself(entity, at, timeline)
         if waits:
             if own:
                 place = line_of(entity.id, Window(found.at, found.until + 1), timeline)
@@ -104,7 +105,7 @@ class DroppedMessages(Rule):
             cure, place = (how, loop) if loop else ("keep spinning its node", place)
             cure += "; a longer queue only delays it"
         sent = found.count + timeline.calls_of(entity.id, Window(0, timeline.end + 1))
-        part = f"{found.count} of {sent}" if _keeps_little(entity, timeline) else str(found.count)
+        part = f"{found.count} of {sent}" if _keeps_little(entity, at, timeline) else str(found.count)
         messages = "1 message" if part == "1" else f"{part} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
         calls = timeline.spans_of(entity.id, Window(found.until - SECOND, found.until + 1))
@@ -123,15 +124,22 @@ class DroppedMessages(Rule):
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
         """A remark for most queues of one, and where what keeps the callback waiting is the problem."""
         entity = entity_of(found, timeline)
-        is_minor = found.due_to or (entity.depth <= 1 and not _keeps_little(entity, timeline))
+        is_minor = found.due_to or (entity.depth <= 1 and not _keeps_little(entity, found.until, timeline))
         return Weight.REMARK if is_minor else Weight.PROBLEM
 
 
-def _keeps_little(entity: EntityInfo, timeline: Timeline) -> bool:
-    """Return whether a queue of one has lost three quarters of its messages."""
+def _waits_for_itself(entity: EntityInfo, at: Nanoseconds, timeline: Timeline) -> bool:
+    """Return whether a callback waits for an earlier call of its own."""
+    waits = timeline.waits_of(entity.id, Window(at, at + 1))
+    return bool(waits) and waits[-1].holder == entity.id
+
+
+def _keeps_little(entity: EntityInfo, at: Nanoseconds, timeline: Timeline) -> bool:
+    """Return whether a queue of one has lost three quarters of its messages, but not to calls of its own."""
     run = Window(0, timeline.end + 1)
     lost = timeline.drops_of(entity.id, run)
-    return entity.depth == 1 and lost >= _MANY and lost >= 3 * timeline.calls_of(entity.id, run)
+    is_part = lost >= _MANY and lost >= 3 * timeline.calls_of(entity.id, run)
+    return entity.depth == 1 and is_part and not _waits_for_itself(entity, at, timeline)
 
 
 _MANY = 10
