@@ -41,6 +41,9 @@ class RunClock(Protocol):
     def auto_reset_event(self) -> AutoResetEvent:
         """A new event, not set."""
 
+    def races(self) -> bool:
+        """Whether the threads of a pool race, or go on as they mostly do; False unless explored."""
+
     def choose(self, number: int) -> int:
         """The index of the one of ``number`` equal waiters that is served: 0, the oldest, unless explored.
 

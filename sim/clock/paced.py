@@ -137,6 +137,10 @@ class PacedClock:
         """A new event, not set."""
         return PacedAutoResetEvent(self)
 
+    def races(self) -> bool:
+        """Whether the threads of a pool race: False, for real ones do."""
+        return False
+
     def choose(self, number: int) -> int:
         """0, the first."""
         return 0

@@ -39,6 +39,10 @@ class Schedule:
         """The index of the chosen one of ``number`` equal candidates; 0 came first."""
         return 0
 
+    def races(self) -> bool:
+        """Whether the threads of a pool race, one step of rclpy at a time, or go on as they mostly do."""
+        return False
+
     def lateness(self) -> int:
         """The nanoseconds by which a wait with a deadline ends late."""
         return 0

@@ -15,6 +15,7 @@ class RandomWalk(Schedule):
 
     def __init__(self, seed: int) -> None:
         self._random = Random(seed)
+        self._races = seed % 2 == 0
 
     def next(self, ready: Sequence[Hashable]) -> int:
         """The index of any thread."""
@@ -27,6 +28,10 @@ class RandomWalk(Schedule):
     def choose(self, number: int) -> int:
         """The index of any candidate."""
         return self._random.randrange(number) if number > 1 else 0
+
+    def races(self) -> bool:
+        """True for every second seed."""
+        return self._races
 
     def hands_over(self) -> bool:
         """True with a probability of one half."""

@@ -173,6 +173,10 @@ class VirtualClock:
         """Whether a released lock goes to a waiting thread; otherwise it stays free."""
         return self._schedule.hands_over()
 
+    def races(self) -> bool:
+        """Whether the threads of a pool race, or go on as they mostly do."""
+        return self._schedule.races()
+
     def choose(self, number: int) -> int:
         """The index of the one of ``number`` equal waiters that is served: 0, the oldest, unless explored."""
         return self._schedule.choose(number)

@@ -40,7 +40,7 @@ class _Following(Enum):
 
 
 # Module constants, because every callback reads them several times and looking up an enum member is slow.
-_TASKS, _GATHERING, _WAITING = _Following
+TASKS, GATHERING, WAITING = _Following
 
 
 class Cycle:
@@ -77,7 +77,7 @@ class Cycle:
         """The tasks of the present cycle, where they come before what it hands over again."""
         self.foreign_awaits: list[Task[Any]] = []
         """Tasks that await something unknown; they are resumed when the executor is next woken."""
-        self._following = _TASKS
+        self._following = TASKS
         self.held = False
         """Whether the found work waits until it may be served."""
         self._found_all = False
@@ -91,12 +91,12 @@ class Cycle:
     def about_to_look(self) -> bool:
         """Whether the next step is to take a new snapshot."""
         is_served = not (self._due_tasks or self._snapshot)
-        return is_served and not (self._tasks and self._following is _TASKS)
+        return is_served and not (self._tasks and self._following is TASKS)
 
     @property
     def waits(self) -> bool:
         """Whether all found work is served, and the executor waits for what was gathered."""
-        return self._following is _WAITING
+        return self._following is WAITING
 
     def set_wanted(self, wanted: tuple[Any, ...], nodes: Iterable[OwnerNode] | None) -> None:
         """Change the present wait, and drop the rest of the snapshot.
@@ -109,7 +109,7 @@ class Cycle:
         self._tasks.extendleft(reversed(self._due_tasks))
         self._due_tasks.clear()
         self._snapshot.clear()
-        self._following = _TASKS
+        self._following = TASKS
         self.held = self._yielded = False
 
     def _chosen(self, nodes: Iterable[OwnerNode]) -> list[OwnerNode]:
@@ -138,7 +138,7 @@ class Cycle:
                 return None
         work = self._serve(now)
         if work is None:
-            self._following = _WAITING
+            self._following = WAITING
         return work
 
     def _released(self) -> bool:
@@ -172,7 +172,7 @@ class Cycle:
         """Whether a snapshot served in part is at its end; if not, the rest stays. Call it once for each."""
         if self._due_tasks:
             return False
-        if self._following is _GATHERING:
+        if self._following is GATHERING:
             return not self._gather(self._ready(now))
         ends = self._yielded and not self._holds(now)
         if ends:
@@ -189,12 +189,12 @@ class Cycle:
             if not self._found_all or self._tasks:
                 found = self._find(now)
             else:
-                begins = self._following is _TASKS or not self._newest_task_first
+                begins = self._following is TASKS or not self._newest_task_first
                 found = not (begins and self._starts_worker()) and self._gather(deque())
             if self.held:
                 return True
             self.held = found and not (self._due_tasks or self._goes_ahead())
-        return self._following is not _WAITING
+        return self._following is not WAITING
 
     def would_find(self, now: int) -> bool:
         """Whether there is work to serve, or would be after a gathering now."""
@@ -229,17 +229,17 @@ class Cycle:
 
     def _find(self, now: int) -> bool:
         """Find the next work: what was waited for, else tasks, else the result of a new gathering."""
-        following, self._following = self._following, _TASKS
-        if following is _TASKS:
+        following, self._following = self._following, TASKS
+        if following is TASKS:
             self._ask_again()
             if self._newest_task_first and self._starts_worker():
                 return False
             if self._take_tasks():
                 return True
-        if following is not _WAITING and not self._newest_task_first and self._starts_worker():
+        if following is not WAITING and not self._newest_task_first and self._starts_worker():
             return False
         found = self._ready(now)
-        if following is _WAITING and (awaited := self._end_of_wait(self._awaited(found))) is not None:
+        if following is WAITING and (awaited := self._end_of_wait(self._awaited(found))) is not None:
             if awaited:
                 self._name(awaited)
                 self._found_all = len(awaited) == len(found)
@@ -260,7 +260,7 @@ class Cycle:
             return False
         if self._newest_task_first:
             self._take_tasks()
-        self._following = _GATHERING
+        self._following = GATHERING
         return not self._released()
 
     def _end_of_wait(self, awaited: deque[Entity]) -> deque[Entity] | None:
@@ -284,7 +284,7 @@ class Cycle:
 
     def _gather(self, found: deque[Entity]) -> bool:
         """Start to wait for all that can run, of which ``found`` is ready; return whether it is not empty."""
-        self._following = _TASKS if found else _WAITING
+        self._following = TASKS if found else WAITING
         self._yielded = False
         self._found_all = True
         self._regather()
@@ -318,7 +318,7 @@ class Cycle:
         else:
             self._fresh_tasks = tuple(self._due_tasks)
         if self._due_tasks:
-            self._following = _GATHERING
+            self._following = GATHERING
         return bool(self._due_tasks)
 
     def _put_tasks_off(self) -> None:
@@ -336,7 +336,7 @@ class Cycle:
         """Stop waiting for what was gathered."""
         self.held = False
         if self.waits:
-            self._following = _TASKS
+            self._following = TASKS
 
     def entered(self, entity: Entity) -> None:
         """A handler starts: its entity was handed out, and the executor is woken."""

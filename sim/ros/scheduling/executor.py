@@ -40,6 +40,7 @@ class Executor:
     _registered: Collection[Entity] = ()  # kept in use until the next update, though destroyed before
     already_spinning = "Executor is already spinning"
     """The message of the RuntimeError for a nested or second spin."""
+    _cycle_type: type[Cycle] = Cycle
     replies_in_tasks = False  # whether a task of its own sends what a service's coroutine returns
 
     def __init__(self, *, context: Context | None = None) -> None:
@@ -52,13 +53,9 @@ class Executor:
         self._probe = self._context.probe
         self._nodes: list[OwnerNode] = []
         self._runner = CallbackRunner(self)
-        chooses = type(self).can_execute is not Executor.can_execute
-        self._cycle = self._runner.cycle = Cycle(
-            self._nodes,
-            self._clock,
-            self._runner.entity_of,
-            self.can_execute if chooses else None,
-            self._profile,
+        chosen = None if type(self).can_execute is Executor.can_execute else self.can_execute
+        self._cycle = self._runner.cycle = self._cycle_type(
+            self._nodes, self._clock, self._runner.entity_of, chosen, self._profile
         )
         self._signal = self._clock.auto_reset_event()
         self._polls_waitables = False

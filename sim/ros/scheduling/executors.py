@@ -13,6 +13,7 @@ from sim.ros.context.utilities import get_available_threads, get_default_context
 from sim.ros.scheduling.cycle import Work
 from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.executor import Executor
+from sim.ros.scheduling.racing import RacingCycle, RacingPool
 from sim.ros.scheduling.running import StartedWork
 from sim.ros.scheduling.task import Future, Task
 from sim.ros.scheduling.waiting_ends import (
@@ -94,9 +95,14 @@ class MultiThreadedExecutor(Executor):
                 "Use the SingleThreadedExecutor instead.",
                 stacklevel=2,
             )
+        races = chosen.host.clock.races()
+        if races:
+            self._cycle_type = RacingCycle
         super().__init__(context=chosen)
-        self._pool = WorkerPool(self)
+        self._pool = RacingPool(self) if races else WorkerPool(self)
         self._cycle.pool = self._pool
+        if isinstance(self._cycle, RacingCycle):
+            self._cycle.go_on = self._signal.set
         self._spinning_on = False
 
     @property

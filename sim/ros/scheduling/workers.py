@@ -318,14 +318,20 @@ class WorkerPool:
         except Exception as error:  # noqa: BLE001 -- kept for the spinning thread
             with self._lock:
                 self.keep(error)
-                # The spinning thread waited for the worker that it started, and checks errors, unless that
-                # worker has taken over work that others were called for before.
-                waited_for = worker.began_in == self._clock.turn and not self._claimed()
-                self.error_surfaces |= waited_for or self._only_asks_again()
+                self.error_surfaces |= self._surfaces_now(worker)
         except BaseException:  # noqa: BLE001 -- lost, as in rclpy: the pool keeps it in a future
             return
         finally:
             worker.began_in = -1
+
+    def _surfaces_now(self, worker: Worker) -> bool:
+        """Whether the spinning thread raises the exception of a worker though it hands over nothing new.
+
+        It waited for the worker that it started, and checks errors, unless that worker has taken over work
+        that others were called for before.
+        """
+        waited_for = worker.began_in == self._clock.turn and not self._claimed()
+        return waited_for or self._only_asks_again()
 
     def _only_asks_again(self) -> bool:
         """Whether the cycle that a callback's end begins hands over tasks that await, and nothing else."""

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from sim.ros.middleware.host import current_host
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.ros.scheduling.cycle import Cycle
+from sim.ros.scheduling.racing import RacingCycle
 from sim.ros.scheduling.running import CallbackRunner
 from tests.ros.scheduling.schedules import broken_rules, first_trouble, play_seeded
 from tests.ros.scheduling.systems import System, play, systems
@@ -102,6 +103,11 @@ def test_a_wake_up_that_is_lost_between_looking_and_waiting_is_found(monkeypatch
         return work
 
     monkeypatch.setattr(Cycle, "next", look)
+    assert_only_exploring_finds("a wake-up was lost")
+
+
+def test_a_wake_up_that_racing_threads_lose_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(RacingCycle, "woken", lambda cycle: None)
     assert_only_exploring_finds("a wake-up was lost")
 
 

@@ -1,0 +1,148 @@
+"""A pool whose threads race: the spinning thread goes through its cycles as rclpy's does, workers only run.
+
+A usual pool takes the steps of rclpy's threads in the order that they mostly have, with few changes of
+threads. Here each step is one of its own: the spinning thread hands over the tasks, gathers, waits, and hands
+over what the wait found, and any other thread may come between two of these. So where a schedule chooses,
+orders come that the usual pool cannot take.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Collection
+from typing import Any
+
+from sim.ros.scheduling.cycle import TASKS, WAITING, Cycle, Work
+from sim.ros.scheduling.entity import Entity
+from sim.ros.scheduling.running import AdmittedWork, StartedWork
+from sim.ros.scheduling.task import Task
+from sim.ros.scheduling.wait_set import in_order_of_readiness
+from sim.ros.scheduling.workers import Worker, WorkerPool
+
+
+class RacingCycle(Cycle):
+    """The cycles of rclpy, a step at a time; after each one the spinning thread can be left."""
+
+    go_on: Callable[[], None]
+    """Ends the wait of the spinning thread, which then takes its next step."""
+    _there = 0
+    """How much of what is waited for was ready as the wait began."""
+    _is_woken = False
+    """Whether the guard condition was triggered since a wait ended."""
+
+    @property
+    def waits(self) -> bool:
+        """Whether the executor waits for what was gathered, and finds nothing of it."""
+        return self._following is WAITING and not self._wait_is_over(self._clock.now())
+
+    def next(self, now: int) -> Work | None:
+        """Take the next step; return the work that it hands over, if it does."""
+        work = self._serve(now)
+        if work is None:
+            if self._find(now):
+                work = self._serve(now)
+            if work is None and not self.waits:
+                self.go_on()
+        return work
+
+    def _find(self, now: int) -> bool:
+        if self._following is WAITING:
+            return self._wait_is_over(now) and self._end_wait(now)
+        if self._following is TASKS:
+            self._ask_again()
+            self._starts_worker()
+            if self._take_tasks():
+                return True
+        self._gather(deque())
+        self._there = len(self._awaited(self._ready(now)))
+        return False
+
+    def _wait_is_over(self, now: int) -> bool:
+        return self._is_woken or bool(self._awaited(self._ready(now)))
+
+    def _end_wait(self, now: int) -> bool:
+        """Find what the wait ended with: what ended it, and as much of what came since as is chosen.
+
+        The end of rclpy's wait needs no interpreter, which its thread may get much later.
+        """
+        awaited = in_order_of_readiness(self._awaited(self._ready(now)))
+        fewest = min(self._there or (not self._is_woken), len(awaited))
+        number = fewest + self._clock.choose(len(awaited) - fewest + 1)
+        first = set(awaited[:number])
+        self._name(deque(each for each in self._ready(now) if each in first))
+        self._is_woken = self._yielded = False
+        self._following = TASKS
+        return bool(first)
+
+    def _serve(self, now: int) -> Work | None:
+        due = self._due_tasks
+        while due and (due[0]._settled() or due[0].executing()):
+            due.popleft()
+        return super()._serve(now)
+
+    def add_task(self, task: Task[Any]) -> None:
+        """Serve a task in the next cycle; a new one triggers the guard condition."""
+        super().add_task(task)
+        if not task._was_suspended:
+            self.woken()
+
+    def woken(self) -> None:
+        """The guard condition is triggered."""
+        self._is_woken = True
+        self.go_on()
+
+
+class RacingPool(WorkerPool):
+    """Workers that take what the spinning thread has handed over, and look for nothing."""
+
+    def worker_looks(self) -> bool:
+        """No worker does."""
+        return False
+
+    def await_start(self) -> None:
+        """The worker that was started may begin later."""
+
+    def asked_again(self) -> list[Task[Any]]:
+        """The tasks of the queue, for each cycle hands over all that do not run."""
+        return [each for each in self._queue if isinstance(each, Task)] if self._hands_over_again else []
+
+    def hand_over_again(self, _fresh: Collection[Task[Any]]) -> bool:
+        """Count the callbacks that are handed over again, which do nothing else; no start is waited for."""
+        waiting = sum(isinstance(each, Entity) for each in self._queue) if self._hands_over_again else 0
+        if waiting:
+            self._handed_over_again += waiting
+            self._surface_errors()
+            if self._may_start() and self._none_is_idle():
+                self._start_worker()
+        return False
+
+    def _start_worker(self) -> None:
+        super()._start_worker()
+        self._starting = None
+
+    def _next(self, worker: Worker) -> StartedWork | None:
+        while True:
+            with self._lock:
+                begun = self._begin_queued(worker, self._clock.now())
+                if begun is not None:
+                    return self._runner.start(begun)
+                if self._dismissed:
+                    return None
+                self._idle.append(worker)
+            worker.signal.wait(None)
+
+    def _begin_queued(self, worker: Worker, now: int) -> AdmittedWork | None:
+        begun = super()._begin_queued(worker, now)
+        if isinstance(begun, Task):
+            begun._executing = True
+        return begun
+
+    def _run(self, started: StartedWork, worker: Worker) -> None:
+        try:
+            super()._run(started, worker)
+        finally:
+            if isinstance(started, Task):
+                started._executing = False
+
+    def _surfaces_now(self, _worker: Worker) -> bool:
+        return False
