@@ -37,6 +37,13 @@ def on_model(source: str, distro: str, steering: list[Any] | None) -> None:
     steered = Steered(Steering(*steering or ()), lambda: len(program.get("said", ())))
     program["choices"] = steered.made
     clock = VirtualClock(schedule=None if steering is None else steered)
+
+    def says(line: str) -> None:
+        steered.says(clock, line)
+        if steered.stuck:
+            program["tell_all"]()
+
+    program["says"] = says
     probe = SilentProbe(clock)
     probe.visible = True  # so that time stops over where a timer falls due that nobody waits for
     host = Host(clock, probe, profile=Profile.named(distro))

@@ -18,8 +18,12 @@ rclpy.init()
 said, calls, sent, there, timers, clients, goals, unanswered = [], {}, {}, {}, [], {}, {}, {}
 overslept = []
 
+says = globals().get("says", lambda what: None)
+
 def say(what):
-    said.append((time.monotonic() - began, what))
+    at = time.monotonic() - began
+    says(what)  # no other thread of the model comes between this and the next line
+    said.append((at, what))
 
 def sleep(seconds):
     since = time.monotonic()
@@ -166,6 +170,18 @@ from rclpy.action import ActionClient, ActionServer, CancelResponse
 from test_msgs.action import Fibonacci
 """
 _TAIL = """
+def tell_all():
+    ended = time.monotonic() - began
+    lines = [f"{{at:.6f}} {{what}}" for at, what in said]
+    made = globals().get("choices", ())
+    falls_due = [at / 1e9 - began for at in globals().get("moments", ())]
+    moments = sorted(at for at in falls_due if at > 1e-4)
+    choices = [f"choice {{line}} {{options}} {{chosen}}" for line, options, chosen in made]
+    late_at = [late for at, late in globals().get("late", ()) if at > began]
+    late = max(ended - {end:.6f}, sum(overslept) * {of_gap}, *late_at)
+    print(*lines, "moments", *moments, *choices, f"late {{late:.6f}}", sep="\\n", flush=True)
+    os._exit(0)
+
 for place, maker in makers.items():
     if place not in missing:
         there[place] = maker()
@@ -180,16 +196,7 @@ for timer in timers:
 for name, executor in executors.items():
     threading.Thread(target=spin, args=(executor, name), daemon=True).start()
 time.sleep({end:.6f})
-ended = time.monotonic() - began
-lines = [f"{{at:.6f}} {{what}}" for at, what in said]
-made = globals().get("choices", ())
-falls_due = [at / 1e9 - began for at in globals().get("moments", ())]
-moments = sorted(at for at in falls_due if at > 1e-4)
-choices = [f"choice {{line}} {{options}} {{chosen}}" for line, options, chosen in made]
-late_at = [late for at, late in globals().get("late", ()) if at > began]
-late = max(ended - {end:.6f}, sum(overslept) * {of_gap}, *late_at)
-print(*lines, "moments", *moments, *choices, f"late {{late:.6f}}", sep="\\n", flush=True)
-os._exit(0)
+tell_all()
 """
 _LATE_OF_GAP = 0.4
 """How much delays of sleeps count that add up: together they may come to the gap between two moments."""
