@@ -219,7 +219,9 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
         ready = [f"{name_of(each, timeline)} is ready" for each in (*moment.waiting, *turns)]
         waits = stuck or _no_reply(pending, moment.at, timeline) or next(iter(ready), "")
         level = DiagnosisLevel.PENDING if waits else DiagnosisLevel.FINE
-        return Diagnosis(stuck or f"{waits or 'nothing waits'}; {threads}", level)
+        own = any(each.doing is Doing.WAITS for each in timeline.own_threads_at(moment.at))
+        none = "no callback waits" if own else "nothing waits"
+        return Diagnosis(stuck or f"{waits or none}; {threads}", level)
     nothing = "no other callback waits" if pending else "nothing else waits"
     overdue = _overdue(timeline.entities[for_itself], moment, timeline, since)
     text = f"{overdue}; {stuck or nothing}"

@@ -203,12 +203,13 @@ def test_of_several_clients_the_one_is_told_that_the_program_waits_for(tmp_path:
     path.write_text(
         "import rclpy\nfrom rclpy.node import Node\nfrom std_srvs.srv import Trigger\n\n"
         f"rclpy.init()\nnode = Node('n')\n{before}client = node.create_client(Trigger, 'late')\n"
-        "client.wait_for_service()\n"
+        "node.create_timer(0.5, node.get_name)\nclient.wait_for_service()\n"
         "node.create_service(Trigger, 'late', lambda request, response: response)\nrclpy.spin(node)\n"
     )
     timeline = run_to_end(program_setup(path, 3.0)).timeline
-    told = diagnose(timeline)[0].explained(timeline)
-    line = 9 + bool(before)
+    (found,) = diagnose(timeline)
+    told = found.explained(timeline)
+    line = 10 + bool(before)
     assert (
         f"for /late, which nobody has offered so far; the program would create it at line {line}" in told.what
     )

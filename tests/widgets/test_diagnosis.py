@@ -22,7 +22,7 @@ from sim.diagnosis import Weight as RuleWeight
 from sim.diagnosis.words import threads_needed
 from sim.engine.setup import ProgramSetup, RealRos, RunSetup
 from sim.trace.descriptions import executor_label
-from sim.trace.events import CallbackAt, CallbackStarted, Doing, Reason, RunEnded, Severity
+from sim.trace.events import CallbackAt, CallbackStarted, Doing, OwnThreadAt, Reason, RunEnded, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -168,7 +168,10 @@ def test_a_call_without_a_reply_is_not_told_as_nothing_waits() -> None:
 def test_where_nothing_waits_the_threads_that_were_needed_are_told() -> None:
     assert said(dummy_server_run(), 5.2).text.endswith("so far 2 of 2 threads were needed at once")
     assert said(split_groups_run(), 3.0).text == "nothing waits; so far 1 of 4 threads was needed at once"
-    assert said(shared_group_run(), 3.0).text == "nothing waits; one thread does all the work"
+    run = shared_group_run()
+    assert said(run, 3.0).text == "nothing waits; one thread does all the work"
+    run.add(OwnThreadAt(ns(1.0), 0, "worker", Doing.WAITS, "Event.wait", (("node.py", "work", 9),)))
+    assert said(run, 3.0).text == "no callback waits; one thread does all the work"
 
 
 def test_executors_made_at_the_instant_of_the_first_callback_have_a_thread_each() -> None:

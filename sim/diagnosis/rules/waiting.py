@@ -239,7 +239,8 @@ class BehindOthers(_KeptWaiting):
 class NodeNeverSpins(Rule):
     """A callback of a node is ready, and no executor spins the node, unless an exception ended that.
 
-    None need be ready if the program is in a loop of its own before anything spins.
+    None need be ready if the program is in a loop of its own before anything spins. Of a program that waits
+    for a service the rule on that tells.
     """
 
     id = "node-never-spins"
@@ -249,6 +250,9 @@ class NodeNeverSpins(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield for each node the callback that has waited longest."""
+        at = view.timeline.program_at(view.end)
+        if at is not None and at.call == "Client.wait_for_service":
+            return
         taken = {clash.node for clash in view.timeline.spin_clashes}
         for node, wait in view.unspun.items():
             name = node_name(node, view.timeline)

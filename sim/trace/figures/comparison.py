@@ -92,7 +92,7 @@ class RunFigures:
     """A run in the window: threads that ran callbacks, the most at one moment, and the robot's figures.
 
     ``end`` is the end of the whole run; ``collisions`` counts contacts of the robot, including one that began
-    before the window. ``mismatches`` counts publishers and subscriptions that do not match by its end,
+    before the window. ``mismatches`` counts subscriptions that do not match a publisher by its end,
     ``crashes`` is 1 if an error has ended the run by then, and ``fails`` tells whether one ended it at all.
     """
 
@@ -341,8 +341,8 @@ def _run_figures(timeline: Timeline, window: Window) -> Incremental[RunFigures]:
     touching = yield from collect(pose.touching for pose in trail_in_parts(timeline, window))
     collisions = sum(touches for touches, _ in groupby(touching))
     most = yield from threads_incrementally(timeline, window)
-    mismatches = sum(each.t <= window.end for each in timeline.mismatches)
+    unmatched = {(each.entity, each.subscription) for each in timeline.mismatches if each.t <= window.end}
     ended = timeline.ended
     fails = ended is not None and ended.failed
     crashes = int(ended is not None and ended.failed and ended.t <= window.end)
-    return RunFigures(timeline.end, used, most, robot, collisions, mismatches, crashes, fails)
+    return RunFigures(timeline.end, used, most, robot, collisions, len(unmatched), crashes, fails)

@@ -205,7 +205,7 @@ _LEAST = 6
 """The rank of what weighs less than all else."""
 _DECIDING_RUNS: tuple[tuple[int, str, Callable[[RunFigures], int]], ...] = (
     (0, "runs that an error ends", lambda run: run.crashes),
-    (1, "subscriptions that hear nothing", lambda run: run.mismatches),
+    (1, "subscriptions that do not match a publisher", lambda run: run.mismatches),
     (2, "collisions", lambda run: run.collisions),
 )
 _OF_CALLS = (LATENESS, AGES)
