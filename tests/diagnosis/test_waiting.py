@@ -290,10 +290,17 @@ def kept_late(period: float, length: float, every: float) -> Diagnosed:
     return diagnosed(program, 20.0)
 
 
-def test_a_timer_that_misses_ticks_at_most_calls_is_starved() -> None:
-    run = kept_late(0.05, 0.3, 0.31)
+@pytest.mark.parametrize(
+    ("period", "length", "every", "waited"),
+    [(0.05, 0.3, 0.31, "290 ms"), (0.1, 0.45, 0.5, "350 ms")],
+    ids=["at most calls", "at every other call"],
+)
+def test_a_timer_that_misses_ticks_at_many_calls_is_starved(
+    period: float, length: float, every: float, waited: str
+) -> None:
+    run = kept_late(period, length, every)
     assert ("group-starvation", "often") in run.problems()
-    assert "often waited 290 ms: group A was held by slow (" in run.explained("group-starvation").what
+    assert f"often waited {waited}: group A was held by slow (" in run.explained("group-starvation").what
 
 
 @pytest.mark.parametrize(

@@ -75,7 +75,7 @@ class _KeptWaiting(Rule):
         """Irrelevant if it is a timer that seldom waits, and never for long."""
         calls = timeline.calls_of(found.subject, Window(0, timeline.end + 1))
         is_long = found.size >= HALF_A_SECOND
-        return self.weight if is_long or found.count >= max(_HABIT, calls / 2) else None
+        return self.weight if is_long or found.count >= max(_HABIT, calls / 3) else None
 
     def _waiting(self, found: Finding, timeline: Timeline) -> list[EntityId]:
         """Return the callbacks that waited for the culprit at the worst time, the longest wait first."""
