@@ -53,6 +53,29 @@ def awaited_at(source: SourceEditor, line: int) -> str:
     return ast.unparse(there[0]) if len(there) == 1 and isinstance(there[0], ast.Attribute | ast.Name) else ""
 
 
+@asked_of_file
+def never_set(source: SourceEditor, line: int) -> str:
+    """Return the call that would set the event for which a line waits without a timeout, if there is none.
+
+    "" if there is one, if the file uses the event otherwise, as by handing it on, or did not make it.
+    """
+    there = [each for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0)]
+    waits = [ast.unparse(each.func) for each in there if not (each.args or each.keywords)]
+    events = [each.removesuffix(".wait") for each in waits if each.endswith(".wait")]
+    last = events[0].rpartition(".")[2] if len(events) == 1 else ""
+    named: list[ast.expr] = [each for each in source.nodes(ast.Attribute) if each.attr == last]
+    named += [each for each in source.nodes(ast.Name) if each.id == last]
+    asked = {id(each.value) for each in source.nodes(ast.Attribute) if each.attr in _LEFT_UNSET}
+    made = {
+        id(target)
+        for each in source.nodes(ast.Assign)
+        if ast.unparse(each.value) in ("threading.Event()", "Event()")
+        for target in each.targets
+    }
+    is_own = any(id(each) in made for each in named)
+    return f"{events[0]}.set()" if is_own and all(id(each) in made | asked for each in named) else ""
+
+
 def _does(source: SourceEditor, function: ast.FunctionDef, calls: set[str]) -> bool:
     return any(ast.unparse(each.func) in calls for each in source.nodes(ast.Call, function))
 
@@ -65,6 +88,10 @@ _ENDS = {
     "put": ("get", "get_nowait"),
 }
 """The methods that end the wait in a method of the same object."""
+
+
+_LEFT_UNSET = ("wait", "is_set", "clear")
+"""The methods after which an event is no more set than before."""
 
 
 def event_setters(file: str, line: int) -> tuple[str, ...]:

@@ -17,6 +17,7 @@ from sim.diagnosis.rules.leaks import NeverDestroyed
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, SentTooEarly, StaleData
 from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.overlooked import AnswerOverlooked, Slip
+from sim.diagnosis.rules.own_threads import ThreadWaitsForNobody
 from sim.diagnosis.rules.parameters import ParameterOverruled
 from sim.diagnosis.rules.services import (
     NobodyOffers,
@@ -81,6 +82,7 @@ RULES: tuple[Rule, ...] = (
     ServiceFallsBehind(),
     StaleData(),
     DroppedMessages(),
+    ThreadWaitsForNobody(),
     GapsInTrace(),
     MeantInMilliseconds(),
     GroupsChangeNothing(),
