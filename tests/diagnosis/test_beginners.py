@@ -81,7 +81,13 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "hand over an async def, or a functools.partial of ask",
         ),
         ("yield_in_timer", "slip", "self.create_timer(", "write go without yield"),
-        ("never_awaited", "slip", "self.is_well()", "put await before is_well(), in an async def tick"),
+        (
+            "never_awaited",
+            "slip",
+            "self.is_well()",
+            "put await before is_well(), in an async def tick; if it awaits a reply of /state, give tick a "
+            "callback group of its own too, for it keeps its group meanwhile",
+        ),
         ("call_in_timer", "self-made-deadlock", "self.client.call(", "use call_async()"),
         ("calls_of_two_peers", "self-made-deadlock", "self.client.call(", "num_threads=3"),
         ("calls_back_and_forth", "self-made-deadlock", "self.other.call(", "group of its own, and give "),

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, line_location
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import awaiting, must_answer, who
-from sim.trace.events import Notice, NoticeKind
+from sim.trace.events import EntityId, EntityKind, GroupKind, Notice, NoticeKind
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 
@@ -74,7 +74,20 @@ class Slip(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         notice = _notice_of(found)
-        return Explanation(notice.problem, _WHY[notice.kind], notice.advice, line_location(*notice.place))
+        advice = notice.advice
+        if notice.kind is NoticeKind.NEVER_AWAITED and (client := _client_beside(notice.entity, timeline)):
+            own = f"give {who(notice.entity, timeline)} a callback group of its own"
+            advice += f"; if it awaits a reply of {client}, {own} too, for it keeps its group meanwhile"
+        return Explanation(notice.problem, _WHY[notice.kind], advice, line_location(*notice.place))
+
+
+def _client_beside(entity: EntityId, timeline: Timeline) -> str:
+    """Return the service of a client in a callback's mutually exclusive group; "" for none."""
+    group = timeline.groups.get(timeline.entities[entity].group) if entity else None
+    if group is None or group.kind is not GroupKind.EXCLUSIVE:
+        return ""
+    clients = (each for each in timeline.group_members(group.id) if each.kind is EntityKind.CLIENT)
+    return next((each.name for each in clients), "")
 
 
 _WHY = {
