@@ -17,7 +17,7 @@ def fit_parameters(source: SourceEditor, line: int) -> None:
     """Give the callback that is defined at a line the number of parameters that it is called with.
 
     Its parameters keep their names; one is removed only if it is not used. A method is given the ``self``
-    that it lacks, a lambda all that it lacks.
+    that it lacks, a lambda all that it lacks. A service's callback that is given its response returns it.
     """
     lambdas = [
         each for each in source.nodes(ast.Lambda) if each.lineno == line and not ast.unparse(each.args)
@@ -54,6 +54,8 @@ def fit_parameters(source: SourceEditor, line: int) -> None:
             source.cut_behind(surplus[0], surplus[-1])
     elif surplus:
         source.cut_behind(given[own + len(wanted) - 1], surplus[-1])
+    if "response" in missing and not source.nodes(ast.Return, callback):
+        _return_at_end(source, callback, "response")
 
 
 def _own(source: SourceEditor, callback: ast.FunctionDef) -> int:
@@ -99,10 +101,13 @@ def return_response(source: SourceEditor, line: int) -> None:
     returns = source.nodes(ast.Return, callback)
     if len(callback.args.args) != 2 + _own(source, callback) or returns:
         raise NotSimpleError
+    _return_at_end(source, callback, callback.args.args[-1].arg)
+
+
+def _return_at_end(source: SourceEditor, callback: ast.FunctionDef, name: str) -> None:
     last = callback.body[-1]
-    response = callback.args.args[-1].arg
     kept = source.lines_behind(last.lineno - 1, last)
-    source.replace_lines(last, last, f"{kept}{indentation(last)}return {response}\n")
+    source.replace_lines(last, last, f"{kept}{indentation(last)}return {name}\n")
 
 
 def _defined_at(source: SourceEditor, line: int) -> ast.FunctionDef:

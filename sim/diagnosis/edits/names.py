@@ -57,8 +57,11 @@ def _naming(call: ast.Call, name: str) -> list[ast.Constant]:
     return [each for each in texts if each.value in (name, name.rpartition("/")[2], name[1:])]
 
 
-def rename_definition(source: SourceEditor, line: int) -> None:
-    """Begin the name of a method or class attribute that a line defines with ``my_``, and all its uses."""
+def rename_definition(source: SourceEditor, line: int, is_taken: bool) -> None:
+    """Begin the name of a method or class attribute that a line defines with ``my_``, and all its uses.
+
+    Not that of a method which the file hands over as a callback, unless the name ``is_taken`` for sure.
+    """
     names = [
         each.targets[0] if isinstance(each, ast.Assign) else name_of(each)
         for owner in source.nodes(ast.ClassDef)
@@ -66,6 +69,9 @@ def rename_definition(source: SourceEditor, line: int) -> None:
         if each.lineno == line and isinstance(each, ast.Assign | ast.FunctionDef | ast.AsyncFunctionDef)
     ]
     if len(names) != 1 or not isinstance(names[0], ast.Name):
+        raise NotSimpleError
+    handed_over = {ast.unparse(each) for call in source.nodes(ast.Call) for each in call.args}
+    if not is_taken and f"self.{names[0].id}" in handed_over:
         raise NotSimpleError
     source.insert_before(names[0], "my_")
     for used in source.nodes(ast.Attribute):

@@ -58,9 +58,10 @@ class ProgramRaised(Rule):
         if ended.exception in UNREADABLE:
             why, cure = "Python could not read the file, so nothing of it ran", "correct the line"
         why, cure = known_reason(ended.error or "") or (why, cure)
+        is_arity = " positional argument" in (ended.error or "")
         remedies = (
             *by_edit(place, "define it with the parameters it is called with", fit_parameters),
-            *by_edit(place, "give it another name", rename_definition),
+            *by_edit(place, "give it another name", rename_definition, not is_arity),
         )
         if field := NO_FLOAT.fullmatch(ended.error or ""):
             remedies = by_edit(place, "write a float", write_float, field[1])

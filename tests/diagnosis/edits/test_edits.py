@@ -205,6 +205,8 @@ def test_a_callback_gets_the_parameters_it_is_called_with(
 ) -> None:
     text = node(f"def __init__(self):\n    self.{made}\n\n{definition}  # here\n    print('x', used)\n")
     expected = None if fitted is None else [f"-    {definition}  # here", f"+    {fitted}  # here"]
+    if fitted and "response" in fitted:
+        expected = [*(expected or ()), "+        return response"]
     assert changed(text, fit_parameters) == expected
 
 
@@ -248,17 +250,18 @@ def test_what_hides_a_name_of_a_node_gets_another_one_wherever_it_is_used() -> N
             self.door.handle()
         """
     )
-    assert changed(text, rename_definition) == [
+    assert changed(text, rename_definition, False) is None
+    assert changed(text, rename_definition, True) == [
         "-        self.create_timer(1.0, self.handle)",
         "+        self.create_timer(1.0, self.my_handle)",
         "-    def handle(self):  # here",
         "+    def my_handle(self):  # here",
     ]
-    assert changed(node("handle = None  # here"), rename_definition) == [
+    assert changed(node("handle = None  # here"), rename_definition, False) == [
         "-    handle = None  # here",
         "+    my_handle = None  # here",
     ]
-    assert changed("def handle():  # here\n    pass\n", rename_definition) is None
+    assert changed("def handle():  # here\n    pass\n", rename_definition, True) is None
 
 
 SCRIPT = "import rclpy\n\n\n{0}  # here\n    answer.success = True\n\n\nnode.{1}\n"
@@ -281,7 +284,8 @@ def test_a_function_of_no_class_gets_the_parameters_that_it_is_called_with(
     definition: str, made: str, fitting: str | None
 ) -> None:
     lines = changed(SCRIPT.format(definition, made), fit_parameters)
-    assert lines == (fitting and [f"-{definition}  # here", f"+{fitting}  # here"])
+    returned = ["+    return response"] if "response" in (fitting or "") else []
+    assert lines == (fitting and [f"-{definition}  # here", f"+{fitting}  # here", *returned])
 
 
 def test_a_function_of_no_class_returns_its_response() -> None:
