@@ -17,6 +17,7 @@ from typing import Any
 
 from sim.clock.outside_work import OutsideWork
 from sim.clock.replacing import Replacements
+from sim.interpreter.function_marks import asks_time
 from sim.quantities.nanoseconds import SECOND
 
 _SINCE_1970 = ("CLOCK_REALTIME", "CLOCK_REALTIME_COARSE", "CLOCK_TAI")
@@ -83,9 +84,11 @@ def _replace_now(replacements: Replacements, wall: Callable[[], int]) -> None:
         seconds, rest = divmod(moment, SECOND)
         return cls.fromtimestamp(seconds, zone).replace(microsecond=rest // 1000)
 
+    @asks_time
     def now(cls: type[datetime.datetime], tz: datetime.tzinfo | None = None) -> datetime.datetime:
         return at(cls, tz, wall() if owns() else time.time_ns())
 
+    @asks_time
     def utcnow(cls: type[datetime.datetime]) -> datetime.datetime:
         return at(cls, datetime.UTC, wall() if owns() else time.time_ns()).replace(tzinfo=None)
 

@@ -15,7 +15,7 @@ from types import CodeType, FrameType, TracebackType
 from typing import Any
 
 from sim.clock.paced import PacedClock
-from sim.interpreter.function_marks import waits_for_time
+from sim.interpreter.function_marks import asks_time, waits_for_time
 from sim.interpreter.guarding import takes_to_guard
 from sim.quantities.nanoseconds import wait_ns
 
@@ -174,8 +174,8 @@ def _replace_time(clock: PacedClock) -> None:
     origin = clock.origin
     modules: Any = (time, threading, queue)
     modules[0].sleep = sleep
-    modules[0].monotonic = modules[0].perf_counter = lambda: (origin + clock.now()) / 1e9
-    modules[0].monotonic_ns = modules[0].perf_counter_ns = lambda: origin + clock.now()
-    modules[0].time = lambda: (clock.epoch + clock.now()) / 1e9
-    modules[0].time_ns = lambda: clock.epoch + clock.now()
+    modules[0].monotonic = modules[0].perf_counter = asks_time(lambda: (origin + clock.now()) / 1e9)
+    modules[0].monotonic_ns = modules[0].perf_counter_ns = asks_time(lambda: origin + clock.now())
+    modules[0].time = asks_time(lambda: (clock.epoch + clock.now()) / 1e9)
+    modules[0].time_ns = asks_time(lambda: clock.epoch + clock.now())
     modules[1]._time = modules[2].time = time.monotonic

@@ -27,6 +27,7 @@ from sim.clock.replacing import Replacements
 from sim.clock.schedule import NO_ACCESSES
 from sim.clock.virtual import VirtualAutoResetEvent, VirtualClock
 from sim.clock.virtual_threads import VirtualThread, start_outside
+from sim.interpreter.function_marks import asks_time
 from sim.interpreter.guarding import takes_to_guard
 from sim.quantities.nanoseconds import wait_ns
 
@@ -236,6 +237,7 @@ def _replace_time(clock: VirtualClock) -> None:
             clock.sleep(wait_ns(seconds))
 
     def here(virtual: Callable[[], Number], real: Callable[[], Number]) -> Callable[[], Number]:
+        @asks_time
         def ask() -> Number:
             if not clock.owns_current_thread():
                 return real()

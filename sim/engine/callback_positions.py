@@ -12,7 +12,7 @@ from typing import TypeAlias
 
 from sim.clock import RunClock
 from sim.engine.waited_lock import WaitedLock, decorated, first_line, waited_lock
-from sim.interpreter.function_marks import calls_the_program, waits_for_keyboard
+from sim.interpreter.function_marks import asks_time, calls_the_program, waits_for_keyboard
 from sim.probes.own_code import is_library, is_own, outwards
 from sim.probes.probe import Probe, RunningCallback
 from sim.trace.events import AnyEvent, CallbackAt, Doing, EntityId, ThreadId
@@ -111,7 +111,7 @@ def _activity(inside: list[FrameType]) -> tuple[Doing, str]:
     """Return what the frames do that the program's innermost line has called; the outermost is last."""
     if any(frame in waits_for_keyboard for frame in inside):
         return Doing.READS, "input"
-    if not inside:
+    if not inside or inside[-1] in asks_time:
         return Doing.COMPUTES, ""
     code, module = inside[-1].f_code, str(inside[-1].f_globals.get("__name__"))
     name, own = code.co_name, code.co_qualname

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from sim.trace.events import Doing, OwnThreadAt
+from sim.trace.events import CallbackAt, Doing, OwnThreadAt
 from tests.support.engine_runs import run_program
 
 _NODE = """
@@ -43,3 +43,27 @@ def test_a_thread_of_the_program_s_own_is_told_of_while_it_waits(tmp_path: Path)
     taking = next(each for each in told if each.name == "locks")
     assert (taking.call, taking.lock, taking.frames[-1][1:]) == ("Lock.acquire", "lock", ("locks", 18))
     assert [each.name for each in run.timeline.own_threads_at(run.timeline.end - 1)] == ["locks"]
+
+
+_ASKS = """
+import threading, time
+import rclpy
+from rclpy.node import Node
+
+def ask():
+    end = time.monotonic() + 1.5
+    while time.monotonic() < end:
+        time.time(), time.perf_counter_ns(), time.time_ns()
+
+rclpy.init()
+node = Node("n")
+node.create_timer(0.1, ask)
+threading.Thread(target=ask, daemon=True).start()
+rclpy.spin(node)
+"""
+
+
+def test_who_asks_the_time_again_and_again_computes(tmp_path: Path) -> None:
+    events = run_program(tmp_path, _ASKS, 2.0, "real").events
+    assert {each.doing for each in events if isinstance(each, CallbackAt)} == {Doing.COMPUTES}
+    assert not any(isinstance(each, OwnThreadAt) for each in events)
