@@ -1,6 +1,9 @@
 """Looking for what the rules find while a run goes on: how often, and what is kept of it."""
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import pytest
 
 from cbtui.runs.live.findings import FindingsMonitor, problem_count_text
 from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
@@ -11,6 +14,7 @@ from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.trace.timeline import Timeline
 from tests.diagnosis.findings import SetBool, diagnosed, once, serve_outside, spin
 from tests.support.builder import Run, ns
+from tests.support.engine_runs import run_program
 from tests.support.runs import shared_group_run, split_groups_run
 from tests.support.simulation import Simulation
 
@@ -54,6 +58,45 @@ def test_a_program_that_logs_is_not_said_to_stand_still() -> None:
     watch = calling(beats=False, logs=True)
     assert watch.stuck_at(ns(10.0)) is not None
     assert watch.nothing_moves_since() is None
+
+
+_KEEPS = """
+import threading, time
+import rclpy
+from rclpy.node import Node
+
+def compute():
+    end = time.monotonic() + 9
+    while time.monotonic() < end:
+        pass
+
+def keep():
+    with lock:
+        KEEP
+
+def tick():
+    with lock:
+        pass
+
+rclpy.init()
+node = Node("n")
+lock = threading.Lock()
+threading.Thread(target=keep, daemon=True, name="keeper").start()
+node.create_timer(0.2, tick)
+rclpy.spin(node)
+"""
+
+
+@pytest.mark.parametrize(
+    ("keep", "moves"), [("time.sleep(9)", True), ("compute()", True), ("threading.Event().wait()", False)]
+)
+def test_a_program_of_which_a_thread_of_its_own_goes_on_still_moves(
+    tmp_path: Path, keep: str, moves: bool
+) -> None:
+    watch = FindingsMonitor(run_program(tmp_path, _KEEPS.replace("KEEP", keep), 3.0, "real").timeline)
+    watch.update()
+    assert watch.stuck_at(ns(3.0)) is not None
+    assert (watch.nothing_moves_since() is None) is moves
 
 
 class Counting(Rule):

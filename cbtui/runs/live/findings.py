@@ -6,6 +6,7 @@ from time import monotonic
 
 from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
 from sim.quantities.plural import counted
+from sim.trace.events import Doing
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -93,8 +94,24 @@ class FindingsMonitor:
         since = Window(timeline.end - _STANDS_STILL, timeline.end + 1)
         if timeline.logs_until(since.start) < len(timeline.logs):
             return None
+        if self._own_threads_go_on(since.start):
+            return None
         ran = (span.entity for thread in timeline.threads for span in timeline.spans_on(thread, since))
         return found.at if stuck.issuperset(ran) else None
+
+    def _own_threads_go_on(self, since: Nanoseconds) -> bool:
+        """Whether a thread that the program has started sleeps, or went on since, or may do so with a lock.
+
+        Whoever has a lock and is not known to wait may compute, and release it.
+        """
+        timeline = self._timeline
+        own = timeline.own_threads_at(timeline.end)
+        if own != timeline.own_threads_at(since) or any(each.doing is Doing.SLEEPS for each in own):
+            return True
+        waiting = {each.name for each in own} | {each.name for each in timeline.threads.values()}
+        stands = (timeline.position_on(thread, timeline.end) for thread in timeline.threads)
+        wanted = (each for each in stands if each is not None and not each.is_left)
+        return any(each.taken_by and each.taken_by not in waiting for each in wanted)
 
     def update_when_due(self) -> bool:
         """Update if it is time, the run has grown much, or its engine has reported something.
