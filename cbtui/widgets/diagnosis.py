@@ -293,12 +293,21 @@ def response_of(call: Call) -> str:
 
 
 def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
-    """Return the engine's last warning, for as long as it stays on screen."""
+    """Return the engine's last warning, for as long as it stays on screen and its call has not come back."""
     for notice in reversed(timeline.notices):
         if notice.t <= at:
             serious = notice.severity in (Severity.WARN, Severity.ERROR, Severity.FATAL)
-            return notice if serious and at - notice.t <= _NOTICE_STAYS else None
+            stays = serious and at - notice.t <= _NOTICE_STAYS
+            return notice if stays and not _has_come_back(notice, timeline, at) else None
     return None
+
+
+def _has_come_back(notice: Notice, timeline: Timeline, at: Nanoseconds) -> bool:
+    """Whether all calls of a callback are over by a moment of which one was reported not to come back."""
+    if notice.kind is not NoticeKind.NO_PROGRESS:
+        return False
+    calls = timeline.spans_of(notice.entity, Window(notice.t, notice.t + 1))
+    return len(calls) > 0 and all(call.end is not None and call.end <= at for call in calls)
 
 
 def _overdue(entity: EntityInfo, moment: Moment, timeline: Timeline, since: Nanoseconds) -> str:

@@ -22,7 +22,17 @@ from sim.diagnosis import Weight as RuleWeight
 from sim.diagnosis.words import threads_needed
 from sim.engine.setup import ProgramSetup, RealRos, RunSetup
 from sim.trace.descriptions import executor_label
-from sim.trace.events import CallbackAt, CallbackStarted, Doing, OwnThreadAt, Reason, RunEnded, Severity
+from sim.trace.events import (
+    CallbackAt,
+    CallbackStarted,
+    Doing,
+    Notice,
+    NoticeKind,
+    OwnThreadAt,
+    Reason,
+    RunEnded,
+    Severity,
+)
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -274,6 +284,15 @@ def test_a_warning_of_the_engine_comes_first_for_a_while() -> None:
     run.notice("node.py blocks outside the clock", 6.0)
     assert said(run, 7.0) == Diagnosis("node.py blocks outside the clock", DiagnosisLevel.TROUBLE)
     assert said(run, 12.0).text.startswith("odom_callback waits")
+
+
+def test_what_has_come_back_is_not_said_to_be_out() -> None:
+    run, text = Run(clock="real"), "tick has not come back for 1.5 s"
+    timer = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.callback(timer, run.thread("MainThread"), 1.0, 2.0)
+    run.add(Notice(ns(2.5), Severity.WARN, text, timer, kind=NoticeKind.NO_PROGRESS))
+    told = [said(run, at).text == text for at in (2.4, 2.5, 2.9, 3.0, 3.5)]
+    assert told == [False, True, True, False, False]
 
 
 def test_what_the_engine_merely_mentions_does_not_hide_a_wait() -> None:
