@@ -303,11 +303,16 @@ def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
 
 
 def _has_come_back(notice: Notice, timeline: Timeline, at: Nanoseconds) -> bool:
-    """Whether all calls of a callback are over by a moment of which one was reported not to come back."""
+    """Whether no call that ran as a callback was reported runs by a moment for as long as the reported one.
+
+    Which of several it was is unknown: it ran no longer than the first.
+    """
     if notice.kind is not NoticeKind.NO_PROGRESS:
         return False
     calls = timeline.spans_of(notice.entity, Window(notice.t, notice.t + 1))
-    return len(calls) > 0 and all(call.end is not None and call.end <= at for call in calls)
+    longest = max((notice.t - call.start for call in calls), default=0)
+    left = (call for call in calls if call.end is None or call.end > at)
+    return len(calls) > 0 and all(at - call.start < longest for call in left)
 
 
 def _overdue(entity: EntityInfo, moment: Moment, timeline: Timeline, since: Nanoseconds) -> str:

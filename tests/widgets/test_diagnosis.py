@@ -286,13 +286,16 @@ def test_a_warning_of_the_engine_comes_first_for_a_while() -> None:
     assert said(run, 12.0).text.startswith("odom_callback waits")
 
 
-def test_what_has_come_back_is_not_said_to_be_out() -> None:
+@pytest.mark.parametrize(("second", "late"), [(None, False), (2.2, True)])
+def test_what_has_come_back_is_not_said_to_be_out(second: float | None, late: bool) -> None:
     run, text = Run(clock="real"), "tick has not come back for 1.5 s"
-    timer = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    timer = run.timer(run.reentrant(run.node("/n")), "tick", 1.0)
     run.callback(timer, run.thread("MainThread"), 1.0, 2.0)
+    if second is not None:
+        run.callback(timer, run.thread("other"), second)
     run.add(Notice(ns(2.5), Severity.WARN, text, timer, kind=NoticeKind.NO_PROGRESS))
-    told = [said(run, at).text == text for at in (2.4, 2.5, 2.9, 3.0, 3.5)]
-    assert told == [False, True, True, False, False]
+    told = [said(run, at).text == text for at in (2.4, 2.5, 2.9, 3.0, 3.6, 3.8)]
+    assert told == [False, True, True, False, False, late]
 
 
 def test_what_the_engine_merely_mentions_does_not_hide_a_wait() -> None:
