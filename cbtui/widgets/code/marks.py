@@ -76,8 +76,8 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
 
     Also returned are the calls to there.
 
-    Sleeps that follow each other at one line are one position, so the text tells how long it has been there,
-    and whether that may be more than one sleep. Of several threads at one line it tells of the first.
+    Sleeps that follow each other at one line are one position, and a sample between them makes several: of a
+    sleep in a loop the text tells when its call began. Of several threads at one line it tells of the first.
     """
     found: defaultdict[SourceFile, LineMarks] = defaultdict(dict)
     groups, running = list(timeline.groups), timeline.moment(at).running
@@ -88,7 +88,7 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
     for start, position in sorted(since, key=itemgetter(0)):
         number = groups.index(timeline.entities[position.entity].group) if position.entity else -1
         file = files.of(position.file)
-        texts = () if file is None else tuple(_at_line(position, at - start, timeline, file))
+        texts = () if file is None else tuple(_at_line(position, at, start, timeline, file))
         _mark(found, files, position.frames, number, texts)
     for own in timeline.own_threads_at(at):
         frames, name = tuple(Frame(*frame) for frame in own.frames), short_thread(own.name)
@@ -123,18 +123,20 @@ def _there_since(position: Position, timeline: Timeline) -> Nanoseconds:
     return position.start
 
 
-def _at_line(position: Position, lasted: Nanoseconds, timeline: Timeline, file: SourceFile) -> Iterator[str]:
+def _at_line(
+    position: Position, at: Nanoseconds, start: Nanoseconds, timeline: Timeline, file: SourceFile
+) -> Iterator[str]:
     """Yield the texts of the innermost line; how long it has been there only if that is known."""
-    doing = f"▶ {doing_of(position)}"
+    doing, lasted = f"▶ {doing_of(position)}", at - start
+    call = timeline.moment(at).running.get(position.thread)
+    if position.doing is Doing.SLEEPS and position.line in file.looped and call is not None:
+        ran = duration(at - call.start)
+        yield from (f"{doing} in a loop, called {ran} ago", f"▶ {ran}", "▶")
+        return
     if timeline.is_real and lasted < _SAMPLED:
         yield from (doing, "▶")
         return
-    if position.doing is not Doing.SLEEPS:
-        full = f"{doing}, {duration(lasted)}"
-    elif position.line in file.looped:
-        full = f"{doing} in a loop, {duration(lasted)} so far"
-    else:
-        full = f"{doing}, here for {duration(lasted)}"
+    full = f"{doing}, {'here for ' if position.doing is Doing.SLEEPS else ''}{duration(lasted)}"
     taken, line = position.taken_at
     if taken:
         where = f"line {line}" if taken == position.file else f"{Path(taken).name}:{line}"

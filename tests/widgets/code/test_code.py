@@ -112,11 +112,13 @@ def test_a_sleep_inside_a_loop_is_not_told_as_one(tmp_path: Path, loop: str, loo
     path.write_text(f"import time\n{loop}:\n    time.sleep(1)\n")
     timeline = sleeper(str(path))[1]
     thread, timer = next(iter(timeline.threads)), list(timeline.entities)[-1]
+    line = ((str(path), "timer_callback", 3),)
     timeline.extend(
-        [CallbackAt(ns(1.0), timer, thread, Doing.SLEEPS, "", ((str(path), "timer_callback", 3),))]
+        CallbackAt(ns(at), timer, thread, doing, "", line)
+        for at, doing in ((1.0, Doing.SLEEPS), (2.0, Doing.COMPUTES), (2.1, Doing.SLEEPS))
     )
     files = SourceFiles(path)
-    told = "in a loop, 3.5 s so far" if looped else ", here for 3.5 s"
+    told = "in a loop, called 3.5 s ago" if looped else ", here for 2.4 s"
     assert lines_at(timeline, ns(4.5), files)[files.main][3].texts[0].endswith(told)
 
 
