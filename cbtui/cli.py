@@ -64,6 +64,7 @@ def _run_command(words: list[str]) -> int:
     options.arguments = words[split + 1 :]
     if not all(map(is_text, options.arguments)):
         refuse("what follows -- has to be text in UTF-8")
+    appearance.check_theme(options)
     _check_folder()
     _check_memory_limit()
     action: Callable[[argparse.Namespace], int] = options.action

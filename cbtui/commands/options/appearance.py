@@ -74,12 +74,22 @@ def given(options: argparse.Namespace) -> list[str]:
     return [word for name, value in values if value is not None for word in (f"--{name}", value)]
 
 
+def check_theme(options: argparse.Namespace) -> None:
+    """Exit with code 2 and one line if there is no such theme."""
+    if options.theme is None:
+        return
+    from cbtui.keys.config import known, unknown
+
+    if not known("theme", options.theme):
+        refuse(unknown("theme", options.theme))
+
+
 def appearance(options: argparse.Namespace) -> Appearance:
     """Return the appearance by the options, else by the configuration, else by the terminal.
 
     Exits with code 2 if a configuration named with ``--config`` has faults.
     """
-    from cbtui.keys.config import AUTO, Config, ParsedConfig, known, read_file, standard_path, unknown
+    from cbtui.keys.config import AUTO, Config, ParsedConfig, read_file, standard_path
     from cbtui.looks import colour_themes
     from cbtui.terminal.capabilities import charset_of
 
@@ -90,8 +100,6 @@ def appearance(options: argparse.Namespace) -> Appearance:
             refuse("\ncbtui: ".join(reading.complaints))
     elif _may_be_there(standard_path()):
         reading = read_file(standard_path())
-    if options.theme is not None and not known("theme", options.theme):
-        refuse(unknown("theme", options.theme))
     config = reading.config
     configured = options.charset or config.charset or AUTO
     charset = configured

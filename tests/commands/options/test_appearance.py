@@ -81,9 +81,11 @@ def test_an_option_may_stand_before_the_command_or_after_it() -> None:
     assert given(options) == ["--charset", "block", "--theme", "light"]
 
 
-def test_an_unknown_theme_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit):
-        parsed("--theme", "drak")
+@pytest.mark.parametrize("command", [[], ["list"], ["run", "split-groups"]])
+def test_an_unknown_theme_is_refused(command: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["--theme", "drak", *command])
+    assert ended.value.code == 2
     assert capsys.readouterr().err == "cbtui: there is no theme 'drak'; did you mean 'dark'?\n"
 
 
