@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from cbtui.commands import console
-from cbtui.commands.options import appearance, more_lessons
+from cbtui.commands.options import appearance, more_lessons, outputs
 from cbtui.commands.options.command_parser import CommandParser
 from cbtui.commands.options.targets import refuse
 from cbtui.engines.memory_limit import BadMemoryLimitError, memory_limit
@@ -68,7 +68,7 @@ def _run_command(words: list[str]) -> int:
     _check_folder()
     _check_memory_limit()
     action: Callable[[argparse.Namespace], int] = options.action
-    with more_lessons.lessons_added(options):
+    with more_lessons.lessons_added(options), outputs.only_data_to_stdout(options):
         try:
             return action(options)
         except KeyboardInterrupt:

@@ -67,7 +67,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         default=(1, 1),
         help="run part I of N of the schedules, for machines that share them; see --save and --merge",
     )
-    parser.add_argument("--save", metavar="FILE.json", help="write the results to a file, for --merge")
+    parser.add_argument(
+        "--save",
+        metavar="FILE.json",
+        type=outputs.file_or_stream,
+        help="write the results to a file, for --merge; - is standard output",
+    )
     outputs.add_force(parser)
     parser.add_argument(
         "--merge",

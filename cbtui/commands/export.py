@@ -4,7 +4,7 @@ import argparse
 from functools import partial
 from pathlib import Path
 
-from cbtui.commands.options.outputs import add_force, check_outputs
+from cbtui.commands.options.outputs import add_force, check_outputs, file_or_stream
 from cbtui.commands.options.values import moment, whole_number
 from cbtui.commands.run import add_chain
 from cbtui.runs.recorded.exporting import FORMATS, WIDTH, ExportError, ExportRequest, export
@@ -15,7 +15,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the command's arguments."""
     parser.add_argument("file", metavar="FILE.mcap", help="a recording")
     for name, (metavar, about) in FORMATS.items():
-        parser.add_argument(f"--{name}", metavar=metavar, help=about)
+        parser.add_argument(f"--{name}", metavar=metavar, type=file_or_stream, help=about)
     parser.add_argument("--from", dest="start", metavar="S", type=moment, help="where the picture begins (0)")
     parser.add_argument("--to", dest="end", metavar="S", type=moment, help="where it ends (the run's end)")
     add_chain(parser)

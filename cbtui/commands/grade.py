@@ -45,7 +45,12 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         const=_STANDARD_OUTPUT,
         help="write the table as CSV, row by row, to a file or to standard output",
     )
-    parser.add_argument("--junit", metavar="OUT.xml", help="write the results as JUnit XML, for a CI server")
+    parser.add_argument(
+        "--junit",
+        metavar="OUT.xml",
+        type=outputs.file_or_stream,
+        help="write the results as JUnit XML, for a CI server; - is standard output",
+    )
     parser.add_argument(
         "--resume",
         action="store_true",
@@ -63,6 +68,8 @@ def grade(options: argparse.Namespace) -> int:
     papers = _papers(options)
     path = None if options.csv in {None, _STANDARD_OUTPUT} else Path(options.csv)
     junit = None if options.junit is None else Path(options.junit)
+    if (options.csv, options.junit) == (_STANDARD_OUTPUT, outputs.STANDARD_OUTPUT):
+        refuse("--csv and --junit cannot both go to standard output; give one of them a file")
     if options.resume and path is None:
         refuse("--resume goes on with a table; name it with --csv OUT.csv")
     files = [paper.file for paper in papers if paper.file is not None]

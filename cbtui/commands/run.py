@@ -55,14 +55,21 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     add_chain(parser)
     parser.add_argument(
-        "--events", metavar="FILE.jsonl", help="write each event as a line of JSON to this file"
+        "--events",
+        metavar="FILE.jsonl",
+        type=outputs.file_or_stream,
+        help="write each event as a line of JSON to this file; - is standard output",
     )
     parser.add_argument(
-        "--json", metavar="FILE.json", help="write the summary and the diagnosis as JSON, too"
+        "--json",
+        metavar="FILE.json",
+        type=outputs.file_or_stream,
+        help="write the summary and the diagnosis as JSON, too; - is standard output",
     )
     parser.add_argument(
         "--record",
         metavar="FILE.mcap",
+        type=outputs.file_or_stream,
         help="record the run, with its topics as rosbag2 and Foxglove read them",
     )
     outputs.add_force(parser)
@@ -122,7 +129,7 @@ def _run(setup: "RunSetup", options: argparse.Namespace) -> int:
         events_path=options.events,
         summary_path=options.json,
         recording_path=options.record,
-        replace_recording=options.force,
+        replace_recording=options.force or options.record == outputs.STANDARD_OUTPUT,
         chains=options.chains,
     )
 

@@ -2,12 +2,35 @@
 
 import argparse
 import os
-from collections.abc import Iterable, Mapping
+import sys
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 from stat import S_ISDIR, S_ISREG
 
 from cbtui.commands.options.targets import refuse, same_file
 from sim.files.untrusted import mode_of
+
+STANDARD_OUTPUT = "/dev/stdout"
+_STDOUT = 1
+
+
+def file_or_stream(word: str) -> str:
+    """Return the path that an option's word names; ``-`` is standard output."""
+    return STANDARD_OUTPUT if word == "-" else word
+
+
+@contextmanager
+def only_data_to_stdout(options: argparse.Namespace) -> Iterator[None]:
+    """While an option names standard output as its file, send all else that goes there to standard error."""
+    if STANDARD_OUTPUT not in vars(options).values():
+        yield
+        return
+    there = os.fstat(_STDOUT)
+    if S_ISREG(there.st_mode) and there.st_size:
+        refuse("standard output goes to a file with content, which would be lost; name a file, or add | cat")
+    with redirect_stdout(sys.stderr):
+        yield
 
 
 def add_force(parser: argparse.ArgumentParser) -> None:
@@ -28,7 +51,7 @@ def check_outputs(outputs: Mapping[str, str | Path | None], inputs: Iterable[Pat
         for each in taken:
             if same_file(each, path):
                 refuse(f"{option} would overwrite {each}; give it a file of its own")
-        if not force and _is_file(path):
+        if not force and str(path) != STANDARD_OUTPUT and _is_file(path):
             refuse(f"there is a file {path} already; give another name, or --force to replace it")
         _check_writable(path)
         taken.append(path)

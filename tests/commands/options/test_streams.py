@@ -1,6 +1,7 @@
 """Standard streams that are closed, full, or know few signs: the program works, or says one sentence."""
 
 import io
+import json
 import os
 import subprocess
 import sys
@@ -143,3 +144,14 @@ def test_why_a_run_is_given_up_is_told_once(tmp_path: Path) -> None:
     done = _shell(f"{_CBTUI} run --clock virtual {path}")
     assert done.returncode == 1
     assert done.stderr.count("time stands still: MainThread (node.py:3, in <module>)") == 1
+
+
+@pytest.mark.parametrize("option", ["--json", "--events"])
+def test_a_dash_is_standard_output_and_only_data_goes_there(option: str, tmp_path: Path) -> None:
+    run = f"cd {tmp_path} && {_CBTUI} run single-thread --for 0.2 {option} -"
+    piped = _shell(f"{run} | cat")
+    assert all(map(json.loads, piped.stdout.splitlines() if option == "--events" else [piped.stdout]))
+    assert "\nthreads  1 ran callbacks" in piped.stderr
+    (tmp_path / "kept").write_text("earlier\n")
+    assert "would be lost" in _shell(f"{run} >> kept").stderr
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["earlier\n"]
