@@ -70,6 +70,9 @@ def add_commands(parser: CommandParser, whole: Callable[[], argparse.ArgumentPar
         usage="%(prog)s [options] LESSON|FILE.py … [-- ARGUMENTS of the files]",
         description="Run a lesson, or node and launch files, headless: the log goes to stderr, a summary to "
         "stdout. Several files run at once, each as a process of its own would.",
+        epilog="Exit status: 0 if the run came to its end, whatever it found; 1 if it failed, or with "
+        "--fail-on problem if a problem was found; 2 if the command was wrong; 128 and its number if a "
+        "signal ended it.",
     )
     command(
         "explore",

@@ -73,6 +73,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="record the run, with its topics as rosbag2 and Foxglove read them",
     )
     outputs.add_force(parser)
+    parser.add_argument(
+        "--fail-on", choices=("problem",), help="end with 1 if the diagnosis has a problem (!), too"
+    )
     more_lessons.add_option(parser)
 
 
@@ -131,6 +134,7 @@ def _run(setup: "RunSetup", options: argparse.Namespace) -> int:
         recording_path=options.record,
         replace_recording=options.force or options.record == outputs.STANDARD_OUTPUT,
         chains=options.chains,
+        fail_on_problem=options.fail_on == "problem",
     )
 
 

@@ -24,6 +24,12 @@ def test_a_run_and_its_recording_tell_the_same(tmp_path: Path, monkeypatch: pyte
     assert json.loads(cbtui("info", "run.mcap", "--json").stdout) == told
 
 
+@pytest.mark.parametrize(("lesson", "code"), [("call-in-a-callback", 1), ("split-groups", 0)])
+def test_a_run_ends_with_failure_for_a_problem_only_if_asked(lesson: str, code: int) -> None:
+    run = ("run", lesson, "--for", "5", "--no-robot")
+    assert (cbtui(*run).returncode, cbtui(*run, "--fail-on", "problem").returncode) == (0, code)
+
+
 def test_a_summary_that_cannot_be_written_is_refused_before_the_run(tmp_path: Path) -> None:
     ran = cbtui("run", "missed-ticks", "--for", "1", "--json", str(tmp_path / "none" / "run.json"))
     assert (ran.returncode, ran.stdout) == (2, "")

@@ -16,7 +16,7 @@ from cbtui.runs.live.disk_space import DiskSpaceWatch
 from cbtui.runs.setup.unmet_changes import UnmetChanges
 from cbtui.terminal.interrupts import deferred_interrupt, ending_signals
 from cbtui.text.output import CannotSayError, complain, say
-from sim.diagnosis import diagnose, findings_text
+from sim.diagnosis import Weight, diagnose, findings_text
 from sim.engine.commands import Stop
 from sim.engine.setup import Keyboard, RunSetup
 from sim.quantities.durations import timestamp
@@ -38,10 +38,12 @@ def run_headless(
     recording_path: str | None = None,
     replace_recording: bool = False,
     chains: Sequence[Sequence[str]] = (),
+    fail_on_problem: bool = False,
 ) -> int:
     """Run a set-up to its end; returns the exit code.
 
-    0: well, 1: failed, 2: a file cannot be written, or a callback that was to be changed is not there.
+    0: well, 1: failed, or with ``fail_on_problem`` a problem was found, 2: a file cannot be written, or a
+    callback that was to be changed is not there.
 
     Ctrl-C, ``kill`` and a closed terminal end the run early; its summary is still printed and its recording
     finished, and the exit code is 128 plus the signal's number. A live keyboard reads this process's standard
@@ -71,6 +73,8 @@ def run_headless(
         try:
             run = _Headless(setup, file, recorder, chains)
             code = run.run()
+            if fail_on_problem and run.has_problem:
+                code = max(code, 1)
             if summary_path is None or code == 2:
                 return code
             return max(code, run.save_summary(Path(summary_path)))
@@ -102,6 +106,7 @@ class _Headless:
         self._input = StandardInput(self._run.session.send) if setup.keyboard is Keyboard.LIVE else None
         self._log = ProgramLog(echo=self._input is None)
         self._signal: Signals | None = None
+        self.has_problem = False
         self._has_changes = bool(setup.groups or setup.periods) and setup.real is None
         """Whether names of callbacks are still to be compared with those that there are."""
 
@@ -116,7 +121,9 @@ class _Headless:
         self._log.finish()
         if not self._is_unmatched:
             say(plain_text(summarise(self._timeline)))
-            found = findings_text(diagnose(self._timeline), self._timeline)
+            findings = diagnose(self._timeline)
+            self.has_problem = any(each.weight_in(self._timeline) is Weight.PROBLEM for each in findings)
+            found = findings_text(findings, self._timeline)
             say(f"\n{found}" if found else "")
             self._tell_chains()
         if self._setup.seed and any(notice.unrepeatable for notice in self._timeline.notices):
