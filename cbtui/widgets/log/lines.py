@@ -128,6 +128,8 @@ class LogLines(FollowingView):
             self._drawn = drawn
             self.grow(count, self._widest)
             self._widen()
+        elif self._later:
+            self.refresh_lines(count)
         if self._kept is not None:
             self._scroll_to_row(self._search.until(self._kept))
         self.counts = (count, written)

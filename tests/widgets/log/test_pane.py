@@ -1,11 +1,13 @@
 import pytest
 from textual.app import App, ComposeResult
 from textual.pilot import Pilot
+from textual.strip import Strip
 
 import cbtui.widgets.log.lines as lines_module
 from cbtui.widgets.log import LogFilter, LogLines, LogView
 from cbtui.widgets.log.filter import LogEvent
 from cbtui.widgets.log.line import width_of
+from sim.quantities.durations import timestamp
 from sim.trace.events import Logged, Severity
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -267,6 +269,28 @@ async def test_whoever_looks_back_reads_how_many_lines_came_later() -> None:
         assert lines.render_line(0).text.startswith("─ 0.098 s, 1 later line ───")
         await showing(pilot, log_of(100))
         assert "later" not in "".join(lines.render_line(y).text for y in range(9))
+
+
+async def test_the_moment_above_the_later_lines_goes_on_with_the_time(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    drawn: list[str] = []
+    draw = LogLines.render_line
+
+    def watched(lines: LogLines, y: int) -> Strip:
+        drawn.append(draw(lines, y).text)
+        return draw(lines, y)
+
+    monkeypatch.setattr(LogLines, "render_line", watched)
+    app = PaneOnly()
+    async with app.run_test(size=(60, 10)) as pilot:
+        log = log_of(100)
+        await showing(pilot, log, 50_000_000)
+        for now in range(50_100_000, 51_000_000, 200_000):
+            await pilot.pause(0.1)
+            app.query_one(LogView).show(log, now)
+            await pilot.pause(0.1)
+            assert drawn[-1].startswith(f"─ {timestamp(now)}, ")
 
 
 async def test_the_line_of_the_moment_is_set_off_while_looking_back() -> None:
