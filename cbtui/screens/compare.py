@@ -32,7 +32,7 @@ from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
 from sim.quantities.durations import duration, timestamp
-from sim.trace.figures.comparison import compare_incrementally, first_difference
+from sim.trace.figures.comparison import Comparison, compare_incrementally, first_difference
 from sim.trace.figures.comparison_rows import Section, sections
 from sim.trace.figures.comparison_sentences import (
     NO_PROBLEMS,
@@ -44,7 +44,7 @@ from sim.trace.figures.comparison_sentences import (
     stretch,
     verdict,
 )
-from sim.trace.incremental import Incremental
+from sim.trace.incremental import Incremental, within
 from sim.trace.model import Nanoseconds, Window
 
 _PLAIN = Ink(Role.TEXT)
@@ -111,7 +111,7 @@ class CompareScreen(SizedScreen[None]):
         self._told = self._verdict = ""
         self._is_tie = False
         self._judged = Window(0, 0)
-        self._ended_early = ""
+        self._comparison: Comparison | None = None
         self._first_difference: Nanoseconds | None = None
         self._has_moved = bounds is not None
 
@@ -198,53 +198,51 @@ class CompareScreen(SizedScreen[None]):
 
     async def _compare(self, asked: Window) -> None:
         """Compare in slices on the UI thread, which alone reads timelines, and show the result."""
-        began = turn = monotonic()
-        worked = 0.0
-        work = self._figures(asked)
-        while True:
-            try:
-                next(work)
-            except StopIteration as over:
-                words, shown = over.value
-                break
-            now = monotonic()
-            if now - turn >= _TIME_SLICE:
-                worked += now - turn
-                if now - began >= _PROGRESS_AFTER:
-                    self._title(f"Comparing, {now - began:.0f} s so far")
-                await asyncio.sleep(_YIELD_TIME)
-                turn = monotonic()
-        self._title(words)
-        self.query_one(ComparisonTable).show(shown)
-        self._show_first_difference()
-        self._comparing = False
-        self._rest_until = monotonic() + _REST_FACTOR * (worked + monotonic() - turn)
+        began, worked, work = monotonic(), 0.0, self._figures(asked)
+        while self.query(Lanes):  # none are left of a screen that is being closed
+            turn = monotonic()
+            found = within(_TIME_SLICE, work)
+            worked += monotonic() - turn
+            if found is not None:
+                self._title(found[0])
+                self.query_one(ComparisonTable).show(found[1])
+                self._show_first_difference()
+                self._comparing = False
+                self._rest_until = monotonic() + _REST_FACTOR * worked
+                return
+            if monotonic() - began >= _PROGRESS_AFTER:
+                self._title(f"Comparing, {monotonic() - began:.0f} s so far")
+            await asyncio.sleep(_YIELD_TIME)
 
     def _show_first_difference(self) -> None:
-        """Show the verdict on what the table compares; of whole runs, go to their first difference.
-
-        That is not done once the cursor was moved.
-        """
+        """Show the verdict; of whole runs go to where they differ, as long as nobody has moved the cursor."""
         if not self._verdict:
             self.query_one("#verdict", Static).update(self._told)
             return
-        at = self._first_difference
-        notably = " notably" if self._is_real else ""
-        where = f"no call differs{notably}" if at is None else f"they differ from {timestamp(at)} on"
+        at, early = self._first_difference, self._ended_early
+        none = f"no call differs{' notably' if self._is_real else ''}"
+        where = none if at is None else f"they differ from {timestamp(at)} on"
         is_part = self._whole and (self._judged.end < self._end or self._judged.start > 0)
         span = f"in {stretch(self._judged)} " if is_part else ""
         verdict = f"{where}; {span}{self._verdict[0].lower()}{self._verdict[1:]}"
         if not self._whole:
             verdict = f"On screen, {stretch(self._judged)}: {verdict}"
-        elif self._ended_early:
-            verdict = f"{self._ended_early}; {'until then ' if at is None else ''}{where}"
+        elif early:
+            verdict = f"{early}; {'until then ' if at is None else ''}{where}"
         elif self._is_tie and any(side.alive() for side in self._sides):
             verdict = f"{where} so far; neither run is better yet: {shorter(*self._sides)}"
         before = f"{self._told} " if self._told and self._whole else ""
-        verdict = before + capitalised(verdict)
-        self.query_one("#verdict", Static).update(verdict)
-        if at is not None and self._whole and not self._has_moved:
+        self.query_one("#verdict", Static).update(before + capitalised(verdict))
+        at = self._judged.end if at is None and early else at
+        if at is not None and self._whole and not self._has_moved and at != self.navigation.now:
             self.navigation.seek(at)
+            self._has_moved = False
+
+    @property
+    def _ended_early(self) -> str:
+        """Which run an exception ended while the other one goes on, and how far that has come; or ""."""
+        ends = (side.timeline.end for side in self._sides)
+        return "" if self._comparison is None else ended_early(self._comparison, *ends)
 
     def _title(self, words: str) -> None:
         self.query_one("#window", HeadingLine).words = (TextRun(f" {words} ", _STRONG),)
@@ -269,7 +267,7 @@ class CompareScreen(SizedScreen[None]):
             problems = self._problems.compared()
             self._told = problems.told
         self._verdict, self._is_tie = verdict(compared, problems), is_tie(compared, problems)
-        self._judged, self._ended_early = asked, ended_early(compared)
+        self._judged, self._comparison = asked, compared
         for number, kept in enumerate(notable(compared, problems)):
             self._lanes(number).kept = kept
         if self._whole:

@@ -1,6 +1,7 @@
 """Long computations in small steps, so that a screen can handle keys in between."""
 
 from collections.abc import Generator, Iterable, Iterator
+from time import monotonic
 from typing import TypeAlias, TypeVar
 
 from sim.trace.model import Window
@@ -12,6 +13,18 @@ Incremental: TypeAlias = Generator[None, None, T]
 
 STEP_SIZE = 250
 """Items that are processed in a step, which takes from 0.1 ms to a few milliseconds."""
+
+
+def within(seconds: float, work: Incremental[T]) -> T | None:
+    """Go on with a computation for so long; returns its result, None if it is not at its end."""
+    until = monotonic() + seconds
+    try:
+        while monotonic() < until:
+            next(work)
+    except StopIteration as over:
+        result: T = over.value
+        return result
+    return None
 
 
 def run_to_end(work: Incremental[T]) -> T:

@@ -431,6 +431,18 @@ async def test_a_run_that_an_exception_ended_early_is_not_judged_by_what_came_be
         assert "What both runs have, 0 to 0.3 s; run B is" in title(app)
 
 
+async def test_the_cursor_is_where_the_shorter_run_ended_with_an_exception_if_nothing_differs_before() -> (
+    None
+):
+    events = shared_group_run().events
+    failed = Timeline()
+    failed.extend([*(each for each in events if each.t < ns(0.3)), RunEnded(ns(0.3), "x", failed=True)])
+    app = ComparingConsole(ComparedSide("failed", failed), ComparedSide("b", timeline_of(events, 6.0)))
+    async with app.run_test(size=WIDE) as pilot:
+        await drawn(app, pilot)
+        assert app.comparison.navigation.now == failed.end
+
+
 async def test_verdict_and_table_are_about_the_same_span() -> None:
     async with compared(*sides()) as (app, pilot):
         assert "; in 0 to 9.4 s run B is better" in verdict_of(app)
@@ -451,9 +463,14 @@ async def test_a_run_that_has_only_begun_gets_its_verdict_and_the_first_differen
     async with app.run_test(size=WIDE) as pilot:
         await drawn(app, pilot)
         assert "No call differs" not in text_of(app)
-        growing.extend([event for event in split_groups_run().events if event.t <= ns(9.4)])
+        events = split_groups_run().events
+        growing.extend([event for event in events if event.t <= ns(0.5)])
+        await drawn(app, pilot)
+        before = app.comparison.navigation.now
+        growing.extend([event for event in events if ns(0.5) < event.t <= ns(9.4)])
         await drawn(app, pilot)
         at = app.comparison.navigation.now
+        assert before != at
         assert 0 < at < growing.end
         assert f"They differ from {timestamp(at)} on;" in text_of(app)
         await press(app, pilot, "0")

@@ -38,17 +38,19 @@ def is_tie(comparison: Comparison, problems: Problems = NO_PROBLEMS) -> bool:
     )
 
 
-def ended_early(comparison: Comparison) -> str:
+def ended_early(comparison: Comparison, *ends: Nanoseconds) -> str:
     """Return which run an exception ended while the other one goes on, if only to one of its own; or "".
 
-    Of such runs only the part before the exception can be compared, which speaks for no run.
+    Of such runs only the part before the exception can be compared, which speaks for no run. ``ends`` are how
+    far both have come by now, if they went on since.
     """
     runs = comparison.first, comparison.second
+    ends = ends or (runs[0].end, runs[1].end)
     for place, run in enumerate(runs):
         other = runs[1 - place]
-        if run.crashes and not other.crashes and run.end <= comparison.window.end < other.end:
+        if run.crashes and not other.crashes and run.end <= comparison.window.end < ends[1 - place]:
             told = f"{RUNS[place]} ended at {_seconds(run.end)} s with an exception"
-            beside = f"; {RUNS[1 - place]} has none up to {_seconds(other.end)} s"
+            beside = f"; {RUNS[1 - place]} has none up to {_seconds(ends[1 - place])} s"
             if other.fails:
                 beside = f", and {RUNS[1 - place]} at {_seconds(other.end)} s with one"
             return capitalised(told + beside)
