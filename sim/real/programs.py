@@ -199,7 +199,7 @@ class Program:
     def outcome(self) -> Cause:
         """How it ended."""
         uncaught, status = self.link.uncaught, self.status
-        if uncaught is None and status == _RAISED and self.link.hello is None:
+        if uncaught is None and status == _RAISED and not self.link.has_left:
             uncaught = self._traceback.uncaught()
         if uncaught is not None:
             return ended_by(uncaught, "the program", self._advice(uncaught.error))
