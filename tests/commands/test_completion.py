@@ -64,7 +64,8 @@ def test_the_manual_has_every_command(capsys: pytest.CaptureFixture[str]) -> Non
 @pytest.mark.parametrize(
     ("words", "near"),
     [
-        (["opne"], "did you mean open?"),
+        (["opne"], "cbtui: there is no command 'opne'; did you mean open?"),
+        (["rnu"], "did you mean run?"),
         (["completion"], "the following arguments are required: bash|zsh|fish"),
         (["my_node.py"], "my_node.py is not a command; cbtui open my_node.py opens it"),
         (["split-groups", "--threads", "2"], "cbtui run split-groups runs it"),
