@@ -14,7 +14,9 @@ from cbtui.text.cells import fit
 from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
+from sim.trace.events import NoticeKind
 from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
 
 _PLAIN = Ink(Role.TEXT)
 _STRONG = Ink(Role.STRONG)
@@ -88,7 +90,8 @@ def status_of(
     """
     timeline, recording = run.timeline, run.recording
     at = playhead.now(timeline.end)
-    speed = speed_text(run.speed, slow)
+    stands = run.state is RunState.LIVE and run.virtual and _time_stands(timeline)
+    speed = "time stands" if stands else speed_text(run.speed, slow)
     pace = _pace(run, speed)
     return RunStatus(
         title=title,
@@ -107,6 +110,12 @@ def status_of(
         steps=steps,
         still=None if still_since is None else timeline.end - still_since,
     )
+
+
+def _time_stands(timeline: Timeline) -> bool:
+    """Whether the last that is known of the program is that it does not come back to virtual time."""
+    last = timeline.notices[-1] if timeline.notices else None
+    return last is not None and last.kind is NoticeKind.NO_PROGRESS and last.t == timeline.end
 
 
 def _pace(run: ShownRun, speed: str) -> str:

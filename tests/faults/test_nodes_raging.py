@@ -107,6 +107,15 @@ async def test_a_loop_without_end_on_the_real_clock_is_told_on_screen_with_its_p
         assert notice.text.startswith(f"tick has not come back for 1.5 s (node.py:{FIRST}, in fault)")
 
 
+@pytest.mark.slow
+async def test_where_a_loop_without_end_keeps_virtual_time_the_header_says_that_it_stands(
+    folder: Path,
+) -> None:
+    async with console_on(node_with(folder, "while True: pass"), "virtual") as console:
+        await console.until(lambda live: bool(live.timeline.notices))
+        await console.until(lambda _: "● LIVE  virtual time stands" in text_of(console.app))
+
+
 @pytest.mark.parametrize(
     "fault", first_slow("while True: pass", "lock = threading.Lock()\nwith lock, lock: pass")
 )
