@@ -207,7 +207,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("leave", "q", "back", "Leave the comparison"),
         *(
             (f"no_use('{name}')", key, "", "Say why that key does nothing here")
-            for name, key in NOT_IN_COMPARISON.items()
+            for name, (key, _) in NOT_IN_COMPARISON.items()
         ),
     ),
     Scope.FILTER: (

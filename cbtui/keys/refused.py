@@ -34,18 +34,19 @@ NOT_ALWAYS = {
     "record": "R",
 }
 """Actions that make no sense for some of what a run's screen shows, such as a recording."""
+_BEGINNING, _END = "This is the beginning of the runs.", "This is the end of the runs."
 NOT_IN_COMPARISON = {
-    "select": "enter",
-    "diagnoses": "d",
-    "previous_event": "left_curly_bracket",
-    "next_event": "right_curly_bracket",
-    "earlier": "left_square_bracket",
-    "later": "right_square_bracket",
-    "pan_earlier": "left",
-    "pan_later": "right",
-    "step_back": "comma",
-    "step": "full_stop",
-    "zoom_in": "greater_than_sign",
-    "zoom_out": "less_than_sign",
+    "select": ("enter", "Code is shown beside a run: a comparison has only lanes and figures."),
+    "diagnoses": ("d", "Diagnoses are listed in a run; what is gone or new is told at the top."),
+    "previous_event": ("left_curly_bracket", "No bar is earlier on this lane."),
+    "next_event": ("right_curly_bracket", "No bar is later on this lane."),
+    "earlier": ("left_square_bracket", _BEGINNING),
+    "later": ("right_square_bracket", _END),
+    "pan_earlier": ("left", _BEGINNING),
+    "pan_later": ("right", _END),
+    "step_back": ("comma", _BEGINNING),
+    "step": ("full_stop", _END),
+    "zoom_in": ("greater_than_sign", "This is the shortest stretch."),
+    "zoom_out": ("less_than_sign", "This is the longest stretch."),
 }
-"""Actions that a comparison has not, or that lead nowhere at an end of the runs."""
+"""Actions that a comparison has not, or that lead nowhere at an end of the runs; with keys and reasons."""

@@ -101,7 +101,7 @@ class CompareScreen(SizedScreen[None]):
             MomentKey(self, self.navigation),
             self.bars,
             Jumps(self, self),
-            ComparisonAbsences(lambda action: self.check_action(action, ()), self._tell),
+            ComparisonAbsences(self._can, self._tell),
         )
         self._drawn: tuple[object, ...] = ()
         self._compared: tuple[object, ...] | None = None
@@ -320,6 +320,9 @@ class CompareScreen(SizedScreen[None]):
             case "earlier":
                 return self.navigation.now > 0
         return self._parts.offer(action, parameters)
+
+    def _can(self, action: str) -> bool | None:
+        return hasattr(self, f"action_{action}") and self.check_action(action, ())
 
     @on(Lanes.BarPicked)
     def _pick_bar(self, message: Lanes.BarPicked) -> None:
