@@ -45,6 +45,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
             help=f"number of threads of {letter.upper()}'s executor, instead of its own",
         )
         changes.add_groups(parser, f"-{letter}")
+        changes.add_periods(parser, f"-{letter}")
         changes.add_distro(parser, f"-{letter}")
         changes.add_on(parser, f"-{letter}")
     inputs.add_options(parser)
@@ -80,6 +81,7 @@ def _check(options: argparse.Namespace) -> None:
         given_options = {
             "threads": getattr(options, f"threads_{letter}"),
             "group": getattr(options, f"groups_{letter}"),
+            "period": getattr(options, f"periods_{letter}"),
             "distro": getattr(options, f"distro_{letter}"),
             "on": is_real,
         }
@@ -104,10 +106,10 @@ def _changes(options: argparse.Namespace, letter: str) -> "Changes":
     from cbtui.runs.setup.changes import Changes
 
     real = changes.real_ros_of(options, f"-{letter}")
-    threads, groups, distro = (
-        getattr(options, f"{name}_{letter}") for name in ("threads", "groups", "distro")
+    threads, groups, periods, distro = (
+        getattr(options, f"{name}_{letter}") for name in ("threads", "groups", "periods", "distro")
     )
-    return Changes(threads, dict(groups), distro=distro, real=real)
+    return Changes(threads, dict(groups), dict(periods), distro=distro, real=real)
 
 
 def _compared_run(name: str, changed: "Changes", arguments: list[str]) -> "ComparedRun":

@@ -89,6 +89,14 @@ def test_a_lesson_can_be_compared_with_itself_with_a_callback_in_another_group()
     assert figures(text, "odom_callback", "lost")[2].endswith("fewer")
 
 
+def test_a_lesson_can_be_compared_with_itself_with_another_period_of_a_timer() -> None:
+    period = ("--period-b", "timer_callback=2")
+    text = told("compare", "reentrant-2-threads", "reentrant-2-threads", "--to", "8.1", *period)
+    assert "run B  reentrant-2-threads, timer every 2 s" in text.splitlines()
+    one, other, _ = figures(text, "timer_callback", "calls")
+    assert int(one) > int(other) == 4
+
+
 def test_a_program_can_be_compared_with_itself_on_another_release(tmp_path: Path) -> None:
     node = tmp_path / "node.py"
     node.write_text(_CALLS_OUT_OF_TIME)
@@ -169,6 +177,7 @@ LESSONS = ["single-thread", "split-groups"]
         (["RECORDING", "single-thread", "--threads-a", "2"], "leave out --threads-a"),
         (["single-thread", "RECORDING", "--threads-b", "2"], "leave out --threads-b"),
         (["single-thread", "RECORDING", "--group-b", "timer_callback=own"], "leave out --group-b"),
+        (["single-thread", "RECORDING", "--period-b", "timer_callback=1"], "leave out --period-b"),
         (["single-thread", "RECORDING", "--distro-b", "kilted"], "leave out --distro-b"),
         ([*LESSONS, "--distro-a", "noetic"], "'noetic' is no distribution; give humble, jazzy"),
         ([*LESSONS, "--on-a", "ros2", "--distro-a", "jazzy"], "leave out --distro-a; --python-a names"),

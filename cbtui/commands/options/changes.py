@@ -26,15 +26,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="number of threads of the executor, instead of its own",
     )
     add_groups(parser)
-    parser.add_argument(
-        "--period",
-        dest="periods",
-        metavar="CALLBACK=SECONDS",
-        type=values.period_change,
-        action="append",
-        default=[],
-        help="give the timer that calls CALLBACK another period; may be given again",
-    )
+    add_periods(parser)
     parser.add_argument(
         "--sensor-rate",
         metavar="HZ",
@@ -57,6 +49,20 @@ def add_groups(parser: argparse.ArgumentParser, side: str = "") -> None:
         default=[],
         help=f"put a callback{of_run} into another group: own, shared, reentrant or default; NODE:CALLBACK "
         "means one node's; may be given again",
+    )
+
+
+def add_periods(parser: argparse.ArgumentParser, side: str = "") -> None:
+    """Add ``--period``, or ``--period-a`` and ``--period-b`` where two programs are run."""
+    of_run = f" of {side[1:].upper()}" if side else ""
+    parser.add_argument(
+        f"--period{side}",
+        dest=f"periods{side.replace('-', '_')}",
+        metavar="CALLBACK=SECONDS",
+        type=values.period_change,
+        action="append",
+        default=[],
+        help=f"give the timer{of_run} that calls CALLBACK another period; may be given again",
     )
 
 
