@@ -71,10 +71,15 @@ class CallbackPair:
     second: CallbackInRun | None
 
     @property
+    def calls(self) -> tuple[int, int]:
+        """The number of its calls in each run."""
+        first, second = (side.figures.calls if side else 0 for side in (self.first, self.second))
+        return first, second
+
+    @property
     def is_unlike(self) -> bool:
         """Whether it runs in one run only, or there more than twice as often."""
-        calls = [0 if side is None else side.figures.calls for side in (self.first, self.second)]
-        return max(calls) > 2 * min(calls)
+        return max(self.calls) > 2 * min(self.calls)
 
     @property
     def lasts(self) -> bool:

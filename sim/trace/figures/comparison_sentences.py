@@ -109,6 +109,11 @@ def _tie(comparison: Comparison, problems: Problems) -> str:
     if waiting:
         named = " and ".join(waiting[:_NAMED])
         return f"Neither run is better: in both {named} still {'wait' if waiting[1:] else 'waits'}"
+    unlike = [pair for pair in comparison.callbacks if pair.is_unlike]
+    if unlike:
+        most = max(unlike, key=lambda pair: max(pair.calls))
+        calls = f"calls of {most.name} {most.calls[1]} instead of {most.calls[0]}"
+        return f"Neither run is better by errors, losses or waits; but {calls}"
     if comparison.is_real:
         return "Both runs are about the same: what differs may be the real clock's doing"
     return "Neither run is better: no callback fails, loses or waits more in one of them"
