@@ -12,7 +12,7 @@ from textual.strip import Strip
 
 from cbtui.looks.colour_themes import palette_of
 from cbtui.looks.contrast import legible
-from cbtui.looks.theme import Ink, style_of
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, style_of
 from sim.quantities.plural import counted
 from sim.trace.model import Nanoseconds
 
@@ -52,6 +52,14 @@ class InkedView(ScrollView):
             style = self.get_component_rich_style(component) if component else self.rich_style
             self._classes_drawn[component] = style
         return self._classes_drawn[component]
+
+    def cut(self, line: Strip, left: int, width: int) -> Strip:
+        """Return a line from a column on, with an ellipsis where it goes on beyond ``width`` columns."""
+        if line.cell_length <= left + width:
+            return line.crop(left, left + width)
+        ellipsis = Segment(GLYPHS[Charset.BRAILLE].ellipsis, self.in_ink(Ink(Role.FAINT)))
+        shown = line.crop(left, left + width - 1).adjust_cell_length(width - 1, self.in_class(""))
+        return Strip([*shown, ellipsis], width)
 
     def set_off(self, line: Strip, component: str) -> Strip:
         """Return a line with a component's background where it has none of its own."""

@@ -306,7 +306,7 @@ class CodeView(InkedView):
         marked = self._marked_at(number + 1)
         code = self._code(number)
         left = self.scroll_offset.x
-        code_line = Strip([*self._gutter(number + 1, marked), *code.crop(left, left + width - _GUTTER)])
+        code_line = Strip([*self._gutter(number + 1, marked), *self.cut(code, left, width - _GUTTER)])
         if marked is None or marked.first_line != number + 1 or marked.doing is CallbackActivity.IDLE:
             line = code_line.adjust_cell_length(width, self.in_class(""))
         else:

@@ -277,10 +277,7 @@ class LogLines(FollowingView):
         left = self.scroll_offset.x
         has_columns = width >= COLUMNS_FROM and text.cell_length - left <= width - _COLUMNS
         room = width - _COLUMNS if has_columns else width
-        shown = text.crop(left, left + room).adjust_cell_length(room, self.in_class(""))
-        if text.cell_length > left + room:
-            cut = GLYPHS[Charset.BRAILLE].ellipsis
-            shown = Strip([*shown.crop(0, room - 1), Segment(cut, self.in_ink(Ink(Role.FAINT)))])
+        shown = self.cut(text, left, room).adjust_cell_length(room, self.in_class(""))
         return [*shown, *(self._columns(event) if has_columns else [])]
 
     def _ground(self, place: int, row: int) -> str:

@@ -246,11 +246,15 @@ async def test_code_that_is_too_wide_is_scrolled_sideways(tmp_path: Path) -> Non
         app.view.focus()
         assert not app.view.check_action("sideways_left", ())
         before = lines_of(app)[0]
+        assert before[-1] == "…"
         await pilot.press("shift+right", "shift+right")
         await pilot.pause()
         assert lines_of(app)[0][:7] == before[:7]
         assert lines_of(app)[0] != before
-        await pilot.press("shift+left", "shift+left")
+        await pilot.press(*["shift+right"] * 20)
+        await pilot.pause()
+        assert lines_of(app)[0].endswith("   29")
+        await pilot.press(*["shift+left"] * 22)
         await pilot.pause()
         assert lines_of(app)[0] == before
 
