@@ -58,7 +58,7 @@ class Diagnoses:
     def _start_over(self, timeline: Timeline) -> None:
         self._timeline = timeline
         self._concurrency = Concurrency(timeline)
-        self._from = _BEFORE_START
+        self._from = timeline.begun + _BEFORE_START
         self._settled = {}
 
     def _ordered(self, found: Collection[Finding], timeline: Timeline) -> tuple[Finding, ...]:

@@ -55,6 +55,11 @@ class TimelineView:
         """The time of the latest event."""
         return self.timeline.end
 
+    @property
+    def known(self) -> Nanoseconds:
+        """How long the trace has told everything."""
+        return self.timeline.end - self.timeline.begun
+
     @cached_property
     def now(self) -> Moment:
         """The latest moment."""

@@ -48,13 +48,14 @@ class _OpenCall:
 class RunSnapshot:
     """Follows a run, and returns at any time those of its events on which later ones depend.
 
-    These are its participants, the callbacks that run, wait or are suspended, the queues, the pending service
-    calls, the last state of the robot, and all inputs, which a repetition needs. Finished calls and log lines
-    are left out. Not thread-safe.
+    These are its participants, the callbacks that run, wait or are suspended, where threads are in the code,
+    the queues, the pending service calls, the last state of the robot, and all inputs, which a repetition
+    needs. Finished calls and log lines are left out. Not thread-safe.
     """
 
     def __init__(self) -> None:
         self._place = 0
+        self._end = 0
         self._latest: dict[Hashable, _Placed] = {}
         self._queued: defaultdict[EntityId, deque[_Placed]] = defaultdict(lambda: deque(maxlen=_MOST_QUEUED))
         self._published: dict[MessageId, _Placed] = {}
@@ -65,6 +66,7 @@ class RunSnapshot:
         """Follow a batch of events."""
         for event in events:
             self._place += 1
+            self._end = max(self._end, event.t)
             self._take(event)
         if len(self._published) > 2 * _MOST_QUEUED:
             self._forget_messages()
@@ -80,15 +82,12 @@ class RunSnapshot:
                 placed += call.events()
         for waits in self._waits.values():
             placed += waits
-        return _with_depths(event for _, event in sorted(placed, key=lambda each: each[0]))
+        return _with_depths((event for _, event in sorted(placed, key=lambda each: each[0])), self._end)
 
     def _take(self, event: Any) -> None:
         handle = _HANDLERS.get(event.__class__)
         if handle is not None:
             handle(self, event)
-        elif event.__class__ in _ENDS:
-            kind, field = _ENDS[event.__class__]
-            self._latest.pop((kind, getattr(event, field)), None)
         elif event.__class__ in _KEYS:
             kind, field = _KEYS[event.__class__]
             self._latest[kind, getattr(event, field) if field else 0] = (self._place, event)
@@ -96,10 +95,24 @@ class RunSnapshot:
     def _take_published(self, event: ev.Published) -> None:
         self._published[event.message] = (self._place, event)
 
+    def _take_answer(self, event: ev.ServiceReplied | ev.CallUnblocked) -> None:
+        """Forget a call and its reply; both are kept while a thread is blocked in it."""
+        block, reply = ("block", event.call), ("reply", event.call)
+        if isinstance(event, ev.ServiceReplied):
+            self._latest[reply] = (self._place, event)
+        else:
+            self._latest.pop(block, None)
+        if reply in self._latest and block not in self._latest:
+            del self._latest[reply]
+            self._latest.pop(("call", event.call), None)
+
     def _take_gone(self, event: ev.EntityGone) -> None:
         self._queued.pop(event.entity, None)
         self._waits.pop(event.entity, None)
         self._latest.pop(("entity", event.entity), None)
+
+    def _take_line_end(self, event: ev.LineEnded) -> None:
+        self._latest.pop(("line", event.line), None)
 
     def _take_input(self, event: ev.InputGiven) -> None:
         self._latest["input", self._place] = (self._place, event)
@@ -109,6 +122,7 @@ class RunSnapshot:
         self._leave_queue(event)
 
     def _take_suspension(self, event: ev.CallbackSuspended) -> None:
+        self._latest.pop(("position", event.thread), None)
         here = self._here(event)
         if here is not None:
             here.suspended, here.resumed = (self._place, event), None
@@ -119,6 +133,7 @@ class RunSnapshot:
             awaiting.resumed, awaiting.thread = (self._place, event), event.thread
 
     def _take_end(self, event: ev.CallbackEnded) -> None:
+        self._latest.pop(("position", event.thread), None)
         over = self._here(event) or self._awaiting(event.entity)
         if over is not None:
             self._running[event.entity].remove(over)
@@ -179,12 +194,14 @@ def _is_same_wait(known: list[_Placed], event: ev.WaitStarted) -> bool:
     return not over or starts[-1] == event.since
 
 
-def _with_depths(events: Iterable[Any]) -> list[AnyEvent]:
-    """The events, with queue depths that follow from these messages alone."""
+def _with_depths(events: Iterable[Any], end: int) -> list[AnyEvent]:
+    """The events, of a trace that is known from ``end`` on, with queue depths of these messages alone."""
     counts: Counter[EntityId] = Counter()
     numbered: list[AnyEvent] = []
     for event in events:
         match event:
+            case ev.RunStarted():
+                numbered.append(replace(event, known_from=end))
             case ev.EntityReady(entity=entity):
                 counts[entity] += 1
                 numbered.append(replace(event, depth=counts[entity]))
@@ -205,15 +222,12 @@ _HANDLERS: dict[type, Callable[[RunSnapshot, Any], None]] = {
     ev.WaitStarted: RunSnapshot._take_wait,
     ev.WaitEnded: RunSnapshot._take_wait,
     ev.Published: RunSnapshot._take_published,
+    ev.ServiceReplied: RunSnapshot._take_answer,
+    ev.CallUnblocked: RunSnapshot._take_answer,
     ev.EntityGone: RunSnapshot._take_gone,
     ev.InputGiven: RunSnapshot._take_input,
+    ev.LineEnded: RunSnapshot._take_line_end,
 }
-_ENDS: dict[type, tuple[str, str]] = {
-    ev.ServiceReplied: ("call", "call"),
-    ev.CallUnblocked: ("block", "call"),
-    ev.LineEnded: ("line", "line"),
-}
-"""Events that end an event of ``_KEYS``: the kind of its subject, and the field with the subject's id."""
 _KEYS: dict[type, tuple[str, str]] = {
     ev.RunStarted: ("run", ""),
     ev.ProcessAppeared: ("process", "process"),
@@ -229,6 +243,9 @@ _KEYS: dict[type, tuple[str, str]] = {
     ev.ServiceCalled: ("call", "call"),
     ev.RequestLost: ("lost request", "call"),
     ev.CallBlocked: ("block", "call"),
+    ev.CallbackAt: ("position", "thread"),
+    ev.ProgramAt: ("program", "process"),
+    ev.OwnThreadAt: ("own thread", "number"),
     ev.KeyboardAsked: ("keyboard", ""),
     ev.LineGiven: ("line", "line"),
     ev.ArenaShown: ("arena", ""),

@@ -95,6 +95,11 @@ class Timeline:
         self.surfaced: Sequence[ev.ExceptionSurfaced] = run.surfaced
         """The exceptions of callbacks that pools raised out of ``spin()``, in order."""
         self.own_threads_at: Callable[[Nanoseconds], list[ev.OwnThreadAt]] = run.own_threads_at
+        """Where threads that programs have started wait at a moment, outside callbacks."""
+        self.has_nested: Callable[[ThreadId], bool] = run.execution.has_nested
+        """Whether a callback on a thread ever ran inside another one."""
+        self.scan_seen: Callable[[Nanoseconds], ev.Scanned | None] = run.scans.taken
+        """The latest scan that a callback had taken at a moment."""
 
     def program_at(self, at: Nanoseconds) -> ev.ProgramAt | None:
         """Where the only program is at ``at`` outside callbacks, None if it spins, or is unknown."""
@@ -147,6 +152,11 @@ class Timeline:
         return self._run.started
 
     @property
+    def begun(self) -> Nanoseconds:
+        """Where the trace begins: later than 0 if it was begun during the run."""
+        return 0 if self.started is None else self.started.known_from
+
+    @property
     def is_real(self) -> bool:
         """Whether the run is on the real clock."""
         return self.started is not None and self.started.clock != "virtual"
@@ -175,8 +185,6 @@ class Timeline:
     def contents_lost(self) -> int:
         """The number of published messages whose contents were dropped."""
         return self._run.contents_lost
-
-    # participants
 
     @property
     def end(self) -> Nanoseconds:
@@ -220,10 +228,6 @@ class Timeline:
     def has_positions(self, thread: ThreadId) -> bool:
         """Whether it is known of any callback on a thread where it was in its code."""
         return thread in self._run.positions.threads
-
-    def has_nested(self, thread: ThreadId) -> bool:
-        """Whether a callback on a thread ever ran inside another one."""
-        return self._run.execution.has_nested(thread)
 
     def position_on(self, thread: ThreadId, at: Nanoseconds) -> Position | None:
         """Where the callback on a thread is at ``at``; None if that is unknown or none runs."""
@@ -367,10 +371,6 @@ class Timeline:
     def scan(self, at: Nanoseconds) -> ev.Scanned | None:
         """The latest scan at or before ``at``."""
         return self._run.scans.latest(at)
-
-    def scan_seen(self, at: Nanoseconds) -> ev.Scanned | None:
-        """The latest scan that a callback had taken at ``at``."""
-        return self._run.scans.taken(at)
 
     def _moment_at(self, at: Nanoseconds) -> Moment:
         running = {thread: self._run.execution.innermost(thread, at) for thread in self.threads}

@@ -15,7 +15,7 @@ from cbtui.screens.replay import ReplayScreen
 from cbtui.widgets.shell import Prompt
 from lessons.catalogue import lessons
 from sim.engine.setup import ProgramSetup, RunSetup
-from sim.recording import Recording, RecordingMetadata, read
+from sim.recording import Recording, RecordingMetadata, RunSnapshot, read
 from sim.trace.events import AnyEvent, KeyboardAsked, Reading, RunEnded
 from tests.recording.files import timeline_of, write, write_in_chunks
 from tests.support.builder import ns
@@ -49,6 +49,28 @@ async def replayed(shown: Recording) -> AsyncIterator[tuple[ReplayScreen, Pilot[
         screen.draw()
         await settle(pilot)
         yield screen, pilot
+
+
+def begun_late(folder: Path) -> Recording:
+    """A recording that was begun 12 s after its run."""
+    snapshot, events = RunSnapshot(), shared_group_run().events
+    before = [event for event in events if event.t <= ns(12)]
+    snapshot.take(before)
+    late = [*snapshot.events(), *events[len(before) :]]
+    write(folder / "late.mcap", late, RecordingMetadata(title="shared-group", clock="virtual"))
+    return read(folder / "late.mcap")
+
+
+async def test_a_recording_begun_late_is_shown_and_played_from_where_it_was_begun(tmp_path: Path) -> None:
+    async with replayed(begun_late(tmp_path)) as (screen, pilot):
+        begun = screen.runs.timeline.begun
+        assert begun > ns(11.5)
+        await press(pilot, "space")
+        assert screen.navigation.now >= screen.navigation.window.start >= begun
+        await press(pilot, "space")
+        screen.navigation.seek(0)
+        await press(pilot, "left", "[", "comma")
+        assert screen.navigation.now == screen.navigation.window.start == begun
 
 
 def status(pilot: Pilot[None]) -> str:

@@ -31,6 +31,8 @@ class Playhead:
     span: Nanoseconds = 10 * SECOND
     at: Nanoseconds | None = None
     start: Nanoseconds | None = None
+    first: Nanoseconds = 0
+    """The earliest moment that can be shown."""
 
     @property
     def follows(self) -> bool:
@@ -42,8 +44,8 @@ class Playhead:
         return end if self.at is None else min(self.at, end)
 
     def window(self, end: Nanoseconds) -> Window:
-        """The window on screen; it begins no earlier than 0."""
-        start = max(0, self.now(end) - self.span) if self.start is None else self.start
+        """The window on screen; it begins no earlier than ``first``."""
+        start = max(self.first, self.now(end) - self.span) if self.start is None else self.start
         return Window(start, start + self.span)
 
     # the cursor
@@ -53,13 +55,13 @@ class Playhead:
         return self.moved_to(self.now(end) + steps * self.span // _STEPS, end)
 
     def moved_to(self, at: Nanoseconds, end: Nanoseconds) -> "Playhead":
-        """Put the cursor to a moment, no earlier than 0; at or past the end it follows the run.
+        """Put the cursor to a moment, no earlier than ``first``; at or past the end it follows the run.
 
         The window stays if it shows the cursor.
         """
         if at >= end:
             return self.live()
-        at = max(0, at)
+        at = max(self.first, at)
         return replace(self, at=at, start=self._start_that_shows(at, end))
 
     def beside(self, timelines: Sequence[Timeline], end: Nanoseconds, step: int) -> "Playhead":
@@ -71,7 +73,7 @@ class Playhead:
         found = [at for at in neighbours if at is not None]
         if found:
             return self.moved_to(min(found) if step > 0 else max(found), end)
-        return self.live() if step > 0 else self.moved_to(0, end)
+        return self.live() if step > 0 else self.moved_to(self.first, end)
 
     def live(self) -> "Playhead":
         """Follow the end again."""
@@ -84,9 +86,9 @@ class Playhead:
         """
         shown, margin = self.window(end), self.span // (2 * _STEPS)
         if not shown.start - self.span // 2 <= at <= shown.end + self.span // 2:
-            return max(0, at - self.span // 2)
+            return max(self.first, at - self.span // 2)
         if at < shown.start + margin:
-            return max(0, at - 2 * margin)
+            return max(self.first, at - 2 * margin)
         return max(shown.start, at - self.span)
 
     # the window
@@ -108,8 +110,8 @@ class Playhead:
 
     def _beginning_at(self, start: Nanoseconds, end: Nanoseconds) -> "Playhead":
         """A window that begins at ``start``, clamped to the run."""
-        latest = max(0, end - self.span)
-        start = max(0, min(start, latest))
+        latest = max(self.first, end - self.span)
+        start = max(self.first, min(start, latest))
         return replace(self, start=None if self.at is None and start == latest else start)
 
 

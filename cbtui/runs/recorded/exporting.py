@@ -179,7 +179,7 @@ def _critical_steps(timeline: "Timeline", chains: Sequence[Sequence[str]]) -> "l
 def _window(timeline: "Timeline", wish: ExportRequest) -> "Window":
     from sim.trace.model import Window
 
-    start = nearest_ns(wish.start)
+    start = max(nearest_ns(wish.start), timeline.begun)
     end = timeline.end if wish.end is None else nearest_ns(wish.end)
     if wish.start and start >= timeline.end:
         raise ExportError(f"the run is over at {timeline.end / SECOND:g} s, before --from {wish.start:g}")

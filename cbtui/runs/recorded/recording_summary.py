@@ -109,7 +109,9 @@ def _lines(recording: Recording, tally: _Tally, topics: list[Topic], size: int) 
     if changed:
         yield _line("changed", changed)
     ending = "it was going on" if tally.ended is None else tally.ended.reason
-    yield _line("lasts", f"{timestamp(tally.length)}; {ending}")
+    begun = started.known_from if started is not None else 0
+    late = f", from {timestamp(begun)} of its run on" if begun else ""
+    yield _line("lasts", f"{timestamp(tally.length - begun)}{late}; {ending}")
     yield _line("events", f"{tally.events:,}; the file has {size:,} bytes")
     if tally.lost:
         yield _line("lost", f"{tally.lost:,} events came too fast to be kept")

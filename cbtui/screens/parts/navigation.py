@@ -58,11 +58,11 @@ class TimeNavigation(ScreenPart):
         playhead, end = self.playhead, self.end()
         run = self.live()
         meaningless = {
-            "pan_earlier": self.window.start == 0,
+            "pan_earlier": self.window.start == playhead.first,
             "pan_later": playhead.follows or self.window.end > end,
             "step": playhead.at is None and (run is None or not run.can_step),
-            "step_back": self.now == 0,
-            "earlier": self.now == 0,
+            "step_back": self.now == playhead.first,
+            "earlier": self.now == playhead.first,
             "live": playhead.follows or run is None,
             "to_end": playhead.follows or run is not None,
             "later": playhead.at is None,

@@ -1,6 +1,7 @@
 """Playing a recording."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from cbtui.runs.live.replay import RecordedRun
 from cbtui.screens.parts.engine_keys import PaceKeys
@@ -38,6 +39,7 @@ class Playback(PaceKeys):
     def play(self) -> bool:
         """Advance the cursor by the time since the last call; returns whether it is being played."""
         run = self._recorded.run
+        self._navigation.playhead = replace(self._navigation.playhead, first=run.timeline.begun)
         if run.paused:
             return False
         now = self._clock()

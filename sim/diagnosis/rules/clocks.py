@@ -39,7 +39,7 @@ class ClockNeverStarts(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield for each such node the first of its timers."""
         timeline = view.timeline
-        if view.end < self.threshold or _CLOCK in timeline.names_sent:
+        if view.known < self.threshold or _CLOCK in timeline.names_sent:
             return
         every = view.few_entities
         for clock in every:

@@ -48,7 +48,7 @@ class MisspeltTopic(Rule):
             pairs.append((0, nearest(VELOCITY_TOPIC, unheard)))
         for entity, near in pairs:
             first = timeline.sent_on(near)[:1] if near else ()
-            since = first[0].at if first else 0
+            since = first[0].at if first else timeline.begun
             if near and view.end - since >= self.threshold:
                 yield Finding(self, since, view.end, entity, about=near, detail=near if near in sent else "")
 

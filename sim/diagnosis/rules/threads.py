@@ -32,7 +32,7 @@ class ThreadsNeverUsed(Rule):
         """Compare the threads with the groups."""
         timeline = view.timeline
         threads = sum(each.threads for each in _with_workers(timeline))
-        if view.end < _WARMED_UP or not threads or timeline.calls or not view.threads_needed:
+        if view.known < _WARMED_UP or not threads or timeline.calls or not view.threads_needed:
             return
         inhabited = (each for each in timeline.groups.values() if timeline.group_members(each.id))
         groups = list(islice(inhabited, threads))
@@ -63,7 +63,7 @@ class GroupsChangeNothing(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Find several groups with one thread, or several threads with one group."""
-        if view.end < _WARMED_UP or not view.threads_needed:
+        if view.known < _WARMED_UP or not view.threads_needed:
             return
         only = _only_group(view.timeline)
         if only is not None:

@@ -17,6 +17,8 @@ class RunStarted(TraceEvent, frozen=True, tag="run_start"):
     """Time since 1970 at ``t`` = 0, as in log lines."""
     distro: str = ""
     """The release of rclpy that the model is like: ``jazzy@7.1.9``; "" on real ROS 2."""
+    known_from: WireOnly[Nanoseconds] = 0
+    """Where a trace begins that was begun during the run: of earlier events it has what lasts."""
 
 
 class CommandKind(StrEnum):

@@ -89,7 +89,7 @@ def summarise(timeline: Timeline) -> Summary:
     return Summary(
         target=timeline.started.target if timeline.started else "",
         clock=timeline.started.clock if timeline.started else "",
-        length=timeline.end,
+        length=timeline.end - timeline.begun,
         ending=timeline.ended.reason if timeline.ended else "",
         lost=timeline.lost,
         callbacks=tuple(_callbacks(timeline, whole)),
@@ -101,7 +101,7 @@ def summarise(timeline: Timeline) -> Summary:
 
 
 def _callbacks(timeline: Timeline, whole: Window) -> Iterator[CallbackFigures]:
-    names = _names(timeline)
+    names, length = _names(timeline), timeline.end - timeline.begun
     for entity in timeline.entities.values():
         spans = timeline.spans_of(entity.id, whole)
         waits = timeline.waits_of(entity.id, whole)
@@ -109,13 +109,13 @@ def _callbacks(timeline: Timeline, whole: Window) -> Iterator[CallbackFigures]:
         if not (entity.callback or spans or waits or drops):
             continue
         group = timeline.groups.get(entity.group)
-        running = sum(span.end_at(timeline.end) - span.start for span in spans)
+        running = sum(span.end_at(timeline.end) - max(span.start, timeline.begun) for span in spans)
         yield CallbackFigures(
             entity=entity,
             name=names[entity.id],
             group=group.letter if group else "",
             calls=timeline.calls_of(entity.id, whole),
-            running=running / timeline.end if timeline.end else 0.0,
+            running=running / length if length else 0.0,
             longest_wait=_longest(waits, timeline),
             late=max([*(span.age for span in spans), *_pending(entity, waits, timeline)], default=0),
             drops=drops,
