@@ -150,7 +150,7 @@ def compare_runs(
         return 2
     one, other = found.first, found.second
     compared = compare(one.timeline, other.timeline, found.window)
-    problems = ComparedProblems(one.timeline, other.timeline).compared()
+    problems = ComparedProblems(one.timeline, other.timeline).compared(compared)
     if in_lines:
         lines = comparison_lines(compared, one.name, other.name, problems)
         say("".join(f"{line}\n" for line in lines))

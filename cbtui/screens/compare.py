@@ -192,7 +192,7 @@ class CompareScreen(SizedScreen[None]):
         """Update what is gone or new, as a run goes on beyond the end of the other one; but rarely."""
         began = monotonic()
         if began >= self._rest_until and any(side.alive() for side in self._sides):
-            self._told = self._problems.compared().told
+            self._told = self._problems.compared(self._comparison).told
             self._show_first_difference()
             self._rest_until = monotonic() + _REST_FACTOR * (monotonic() - began)
 
@@ -227,6 +227,8 @@ class CompareScreen(SizedScreen[None]):
         verdict = f"{where}; {span}{self._verdict[0].lower()}{self._verdict[1:]}"
         if not self._whole:
             verdict = f"On screen, {stretch(self._judged)}: {verdict}"
+        elif self._comparison is not None and self._comparison.shares_little:
+            verdict = self._verdict
         elif early:
             verdict = f"{early}; {'until then ' if at is None else ''}{where}"
         elif self._is_tie and any(side.alive() for side in self._sides):
@@ -264,7 +266,7 @@ class CompareScreen(SizedScreen[None]):
         problems = NO_PROBLEMS
         if self._whole:
             yield
-            problems = self._problems.compared()
+            problems = self._problems.compared(compared)
             self._told = problems.told
         self._verdict, self._is_tie = verdict(compared, problems), is_tie(compared, problems)
         self._judged, self._comparison = asked, compared

@@ -7,6 +7,9 @@ from msgspec.structs import replace
 
 from cbtui.runs.judged.compared_problems import ComparedProblems
 from sim.engine.setup import GroupChange
+from sim.trace.figures.comparison import compare
+from sim.trace.figures.comparison_sentences import headline, is_tie
+from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.engine_runs import program_setup, run_lesson, run_to_end
 
@@ -184,3 +187,13 @@ def test_of_runs_that_were_not_given_the_same_commands_nothing_is_gone_or_new() 
     assert told(called, uncalled) == ""
     assert speaks(called, uncalled) is None
     assert told(called, again) == "Gone in run B: no free thread."
+
+
+def test_of_programs_that_share_little_neither_is_better_and_each_has_its_own_problems() -> None:
+    starved, stuck = run_of("held_group"), run_of("call_in_timer")
+    compared = compare(starved, stuck, Window(0, starved.end))
+    told = headline(compared, ComparedProblems(starved, stuck).compared(compared))
+    found = "Found in run A: group starvation. Found in run B: deadlock. "
+    shared = "Of 5 callbacks both runs have none: too little in common for one to be better."
+    assert told == found + shared
+    assert not is_tie(compared)

@@ -34,7 +34,7 @@ from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.exercises import until
 from tests.support.pictures import lines_of, text_of
-from tests.support.runs import shared_group_run, split_groups_run
+from tests.support.runs import dummy_server_run, shared_group_run, split_groups_run
 
 
 def timeline_of(events: list[AnyEvent], end: float) -> Timeline:
@@ -308,6 +308,13 @@ async def test_of_runs_in_which_the_service_was_not_called_alike_none_is_called_
         assert "run A has no 'call /motor_power true', run B has 1: only with as many" in verdict_of(app)
         assert "cbtui compare --call SECONDS gives both the same" in verdict_of(app)
         assert "Gone" not in verdict_of(app)
+
+
+async def test_of_runs_that_share_no_callback_none_is_called_better_nor_a_first_difference_named() -> None:
+    other = ComparedSide("other", timeline_of(dummy_server_run().events, 9.4))
+    async with compared(sides()[0], other) as (app, _):
+        told = "Of 4 callbacks both runs have only timer_callback: too little in common for one to be better"
+        assert verdict_of(app) == f"Found in run A: group starvation. {told}"
 
 
 @pytest.mark.parametrize("size", [NARROW, (80, 28)])

@@ -525,8 +525,8 @@ def test_what_differs_by_noise_on_the_real_clock_is_about_the_same() -> None:
     assert rows["lost"] == rows["wait med/max"] == ("about the same", Assessment.SAME)
     calls, *_ = sections(compare(starved_for_real(0), starved_for_real(2), window))[0].rows
     assert (calls.label, calls.difference) == ("calls", "2 more")
-    for first, second, told in ((0, 2, "2 instead of 0"), (3, 1, "1 instead of 3"), (2, 2, "about the same")):
-        assert told in verdict(compare(starved_for_real(first), starved_for_real(second), window))
+    for one, other, told in ((0, 2, "2 instead of 0"), (3, 1, "1 instead of 3"), (2, 2, "about the same")):
+        assert told in verdict(compare(starved_for_real(one), starved_for_real(other), window))
     assert CALLS.is_noise(2, 4)
     assert not CALLS.is_noise(1, 5)
     compared = compare(on_the_real_clock(1.0, 69), on_the_real_clock(1.0, 20), window)

@@ -8,7 +8,7 @@ from cbtui.runs.judged.cures import NOTICED, Problem, name_of, problem_of
 from sim.diagnosis import Diagnoses, Weight, sentence
 from sim.quantities.durations import timestamp
 from sim.quantities.plural import counted
-from sim.trace.figures.comparison import unlike_commands
+from sim.trace.figures.comparison import Comparison, unlike_commands
 from sim.trace.figures.comparison_rows import RUNS
 from sim.trace.figures.comparison_sentences import NO_PROBLEMS, Problems
 from sim.trace.model import Nanoseconds
@@ -37,6 +37,11 @@ class _Found:
     effects: frozenset[str]
 
     @property
+    def listed(self) -> str:
+        """The names of its problems."""
+        return ", ".join(dict.fromkeys((*(each.name for each in self.hangs.values()), *self.others)))
+
+    @property
     def names(self) -> frozenset[str]:
         """What is no news in the other run."""
         return self.effects | self.others.keys()
@@ -54,14 +59,22 @@ class ComparedProblems:
     second: Timeline
     _diagnoses: tuple[Diagnoses, Diagnoses] = field(default_factory=lambda: (Diagnoses(), Diagnoses()))
 
-    def compared(self) -> Problems:
+    def compared(self, comparison: Comparison | None = None) -> Problems:
         """Tell what is gone, new and still there in the second run, what hangs first.
 
-        Nothing is gone or new that the other run has not come to. What hangs weighs more than the rest.
+        Nothing is gone or new that the other run has not come to. What hangs weighs more than the rest. Of
+        runs that share little in their ``comparison`` only what each has is told.
         """
         if unlike_commands(self.first, self.second, min(self.first.end, self.second.end)):
             return NO_PROBLEMS
-        first, second = map(_found, (self.first, self.second), self._diagnoses)
+        first, second = found = [*map(_found, (self.first, self.second), self._diagnoses)]
+        if comparison is not None and comparison.shares_little:
+            told = [
+                f"Found in {run}: {each.listed}."
+                for run, each in zip(RUNS, found, strict=True)
+                if each.listed
+            ]
+            return Problems(" ".join(told))
         gone = _missing(first.others, second.names, self.second)
         new = _missing(second.others, first.names, self.first)
         still = [each.name for name, each in second.others.items() if name in first.names]

@@ -125,7 +125,8 @@ class Comparison:
 
     Callbacks are in order of appearance, the first run's first, without those that are idle in both.
     ``is_real`` is of runs on the real clock, of which what differs little is no difference.
-    ``unlike_commands`` were not given as often in both runs by the window's end.
+    ``unlike_commands`` were not given as often in both runs by the window's end. ``moved`` is the number of
+    callbacks that are in nodes of different names.
     """
 
     window: Window
@@ -134,6 +135,19 @@ class Comparison:
     callbacks: tuple[CallbackPair, ...]
     is_real: bool = False
     unlike_commands: tuple[CommandPair, ...] = ()
+    moved: int = 0
+
+    @property
+    def shared(self) -> list[str]:
+        """The names of the callbacks that are in both runs."""
+        return [pair.name for pair in self.callbacks if pair.first and pair.second]
+
+    @property
+    def shares_little(self) -> bool:
+        """Whether fewer than half of either run's callbacks are in both; those ``moved`` count half."""
+        of_first = sum(pair.first is not None for pair in self.callbacks)
+        of_second = sum(pair.second is not None for pair in self.callbacks)
+        return 2 * len(self.shared) - self.moved < min(of_first, of_second)
 
 
 def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
@@ -169,6 +183,7 @@ def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> 
         ),
         first.is_real or second.is_real,
         unlike_commands(first, second, window.end),
+        sum(key in partners for key, *_ in used),
     )
 
 

@@ -32,6 +32,7 @@ def is_tie(comparison: Comparison, problems: Problems = NO_PROBLEMS) -> bool:
     """Whether neither run is better, though both were given the same commands, and nothing is gone or new."""
     return not (
         comparison.unlike_commands
+        or comparison.shares_little
         or problems.stuck
         or problems.speaks is not None
         or any(_differences(comparison, problems))
@@ -64,7 +65,8 @@ def capitalised(words: str) -> str:
 
 def headline(comparison: Comparison, problems: Problems) -> str:
     """Return the sentences on both runs: what the diagnoses tell, and the verdict."""
-    judged = capitalised(ended_early(comparison) or verdict(comparison, problems))
+    early = "" if comparison.shares_little else ended_early(comparison)
+    judged = capitalised(early or verdict(comparison, problems))
     return f"{problems.told} {judged}.".lstrip()
 
 
@@ -73,8 +75,12 @@ def verdict(comparison: Comparison, problems: Problems = NO_PROBLEMS) -> str:
 
     Errors weigh most, then subscriptions that do not match, losses, collisions, waits, lateness, and the age
     of data; problems that are gone or new in the second run weigh more than all of them. Of runs that were
-    not given the same commands, as calls of a service, it says that.
+    not given the same commands, as calls of a service, or that share few callbacks, it says that.
     """
+    if comparison.shares_little:
+        shared = f"only {' and '.join(comparison.shared)}" if comparison.shared else "none"
+        of = f"of {len(comparison.callbacks)} callbacks both runs have {shared}"
+        return f"{of}: too little in common for one to be better"
     if comparison.unlike_commands:
         text, one, other = comparison.unlike_commands[0]
         given = f"{RUNS[0]} has {one or 'no'} '{text}', {RUNS[1]} has {other or 'none'}"
