@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from sim.diagnosis import diagnose
+from sim.diagnosis.edits.flags import never_set, parties_at
 from sim.diagnosis.rule import Weight
 from sim.trace.timeline import Timeline
 from tests.support.engine_runs import run_program
@@ -64,3 +65,34 @@ def test_of_a_thread_that_may_yet_go_on_nothing_is_said(
 ) -> None:
     before = f"global guards; guards = [threading.Event()]; {first}" if "guards" in first else first
     assert told_of(tmp_path, wait, before, then) == []
+
+
+@pytest.mark.parametrize(
+    ("made", "wait", "use", "missing"),
+    [
+        ("threading.Event()", "wait()", "is_set()", "self.it.set()"),
+        ("threading.Condition()", "wait()", "acquire()", "self.it.notify()"),
+        ("threading.Condition()", "wait()", "notify_all()", ""),
+        ("queue.Queue(5)", "get()", "empty()", "self.it.put()"),
+        ("queue.Queue(5)", "get()", "put_nowait(1)", ""),
+        ("queue.Queue(5)", "get(True, 1.0)", "empty()", ""),
+    ],
+)
+def test_what_would_end_a_wait_is_missing_only_if_the_file_has_nothing_like_it(
+    made: str, wait: str, use: str, missing: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(
+        f"def a(self):\n    self.it = {made}\n    with self.it:\n        self.it.{wait}\n    self.it.{use}\n"
+    )
+    assert never_set(str(path), 4) == missing
+
+
+def test_a_barrier_has_the_functions_that_wait_at_it_and_none_of_another(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    made = "import threading\ngate = threading.Barrier(3)\nother = threading.Barrier(2)\n"
+    path.write_text(
+        f"{made}def a():\n    gate.wait(9.0)\ndef b():\n    gate.wait()\ndef c():\n    other.wait()\n"
+    )
+    assert parties_at(str(path), 5) == ("gate", 3, ("a", "b"))
+    assert parties_at(str(path), 3) == ("", 0, ())

@@ -55,25 +55,64 @@ def awaited_at(source: SourceEditor, line: int) -> str:
 
 @asked_of_file
 def never_set(source: SourceEditor, line: int) -> str:
-    """Return the call that would set the event for which a line waits without a timeout, if there is none.
+    """Return the call that would end the wait of a line without a timeout, if the file has no such call.
 
-    "" if there is one, if the file uses the event otherwise, as by handing it on, or did not make it.
+    "" if it has one, if it uses what is waited for otherwise, as by handing it on, or did not make it.
     """
     there = [each for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0)]
-    waits = [ast.unparse(each.func) for each in there if not (each.args or each.keywords)]
-    events = [each.removesuffix(".wait") for each in waits if each.endswith(".wait")]
-    last = events[0].rpartition(".")[2] if len(events) == 1 else ""
-    named: list[ast.expr] = [each for each in source.nodes(ast.Attribute) if each.attr == last]
-    named += [each for each in source.nodes(ast.Name) if each.id == last]
-    asked = {id(each.value) for each in source.nodes(ast.Attribute) if each.attr in _LEFT_UNSET}
-    made = {
-        id(target)
-        for each in source.nodes(ast.Assign)
-        if ast.unparse(each.value) in ("threading.Event()", "Event()")
-        for target in each.targets
-    }
-    is_own = any(id(each) in made for each in named)
-    return f"{events[0]}.set()" if is_own and all(id(each) in made | asked for each in named) else ""
+    waits = [ast.unparse(each.func).rpartition(".") for each in there if not (each.args or each.keywords)]
+    for kind, (way, end, *others) in _ENDED_BY.items():
+        awaited = {each for each, _, name in waits if name == way}
+        last = awaited.pop().rpartition(".")[2] if len(awaited) == 1 else ""
+        named: list[ast.expr] = [each for each in source.nodes(ast.Attribute) if each.attr == last]
+        named += [each for each in source.nodes(ast.Name) if each.id == last]
+        idle = {id(each.value) for each in source.nodes(ast.Attribute) if each.attr in (way, *others)}
+        idle |= {id(each.context_expr) for each in source.nodes(ast.withitem)}
+        made = {
+            id(target)
+            for each in source.nodes(ast.Assign)
+            if isinstance(each.value, ast.Call) and ast.unparse(each.value.func).rpartition(".")[2] == kind
+            for target in each.targets
+        }
+        if any(id(each) in made for each in named) and all(id(each) in made | idle for each in named):
+            return next(f"{each}.{end}()" for each, _, name in waits if name == way)
+    return ""
+
+
+def wait_at_most(source: SourceEditor, line: int) -> None:
+    """Give the only wait at a line, one without a timeout, a short one."""
+    there = [each for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0)]
+    waits = [each for each in there if ast.unparse(each).endswith(".wait()")]
+    if len(waits) != 1:
+        raise NotSimpleError
+    source.replace(waits[0], f"{source.code_of(waits[0].func)}(timeout=0.1)")
+
+
+@asked_of_file
+def parties_at(source: SourceEditor, line: int) -> tuple[str, int, tuple[str, ...]]:
+    """Return the barrier at which a line waits, its parties (0: unknown), and the functions that do."""
+    with suppress(NotSimpleError):
+        parties, gate = _barrier(source, line)
+        waits = [each for each in source.nodes(ast.Call) if ast.unparse(each.func) == f"{gate}.wait"]
+        functions = tuple(source.function_at(each.lineno).name for each in waits)
+        return gate, int(ast.unparse(parties)), functions
+    return "", 0, ()
+
+
+def set_parties(source: SourceEditor, line: int, parties: int) -> None:
+    """Give the barrier at which a line waits another number of parties."""
+    source.replace(_barrier(source, line)[0], str(parties))
+
+
+def _barrier(source: SourceEditor, line: int) -> tuple[ast.Constant, str]:
+    there = [each for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0)]
+    for each in source.nodes(ast.Assign):
+        match each.value:
+            case ast.Call(func=ast.Attribute(attr="Barrier"), args=[ast.Constant(value=int()) as parties]):
+                gate = ast.unparse(each.targets[0])
+                if f"{gate}.wait" in [ast.unparse(each.func) for each in there]:
+                    return parties, gate
+    raise NotSimpleError
 
 
 def _does(source: SourceEditor, function: ast.FunctionDef, calls: set[str]) -> bool:
@@ -90,8 +129,12 @@ _ENDS = {
 """The methods that end the wait in a method of the same object."""
 
 
-_LEFT_UNSET = ("wait", "is_set", "clear")
-"""The methods after which an event is no more set than before."""
+_ENDED_BY = {
+    "Event": ("wait", "set", "is_set", "clear"),
+    "Condition": ("wait", "notify", "acquire", "release"),
+    "Queue": ("get", "put", "empty", "full", "qsize", "task_done"),
+}
+"""By the class of what is waited for: the method that waits, the one that ends it, and those that do not."""
 
 
 def event_setters(file: str, line: int) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.actions import CancelIgnored, GoalNeverExecuted
 from sim.diagnosis.rules.clocks import AlwaysDue, ClockNeverStarts, TimesKept
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
-from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing, WaitsForLock
+from sim.diagnosis.rules.endless import EndlessWait, StaysInLoop, StillComputing
 from sim.diagnosis.rules.errors import (
     ExceptionCaught,
     ExceptionSwallowed,
@@ -14,6 +14,7 @@ from sim.diagnosis.rules.errors import (
 )
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.leaks import NeverDestroyed
+from sim.diagnosis.rules.locks import WaitsForLock
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, SentTooEarly, StaleData
 from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.overlooked import AnswerOverlooked, Slip

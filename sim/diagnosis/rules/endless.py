@@ -4,10 +4,28 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
-from sim.diagnosis.edits.flags import enders, event_setters, setters, sleeps
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_location, line_of
+from sim.diagnosis.edits.flags import (
+    enders,
+    event_setters,
+    never_set,
+    parties_at,
+    set_parties,
+    setters,
+    sleeps,
+    wait_at_most,
+)
+from sim.diagnosis.rule import (
+    CodeLocation,
+    Explanation,
+    Finding,
+    Rule,
+    Weight,
+    by_edit,
+    line_location,
+    line_of,
+)
 from sim.diagnosis.rules.edits import beside_others, edits_for_reply, edits_for_waiting
-from sim.diagnosis.time_limits import ends_by_itself, goes_on, time_limit
+from sim.diagnosis.time_limits import ends_by_itself, goes_on
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import awaited_lock, listed, must_answer, often, threads_for, who
 from sim.quantities.durations import duration
@@ -21,15 +39,9 @@ _ADVICE = "wait with a timeout, and make sure that something ends the wait"
 """For notices without advice, as of waits on the real clock, and in old recordings."""
 _WAITS = "a thread that waits serves nothing else, and without a timeout it may do so for ever"
 _LEFT = "a lock stays taken when the thread ends that took it, until somebody releases it"
-_IN_TURN = (
-    "a thread that waits for a lock keeps the locks it has: if each has what the other wants, neither ever "
-    "goes on",
-    "take locks in the same order everywhere, and let go of one before you take the next",
-)
-_TAKEN = "a lock stays taken until whoever took it releases it, also when the call is over that took it"
-_RELEASES = "which releases it on every way out, and let go of it before anything that takes long"
 _RELEASE = "take the lock by with, which releases it on every way out"
 _LET_GO = "let go of the lock before anything that takes long"
+_SHORTLY = "wait for 0.1 s at most"
 _KEPT = (
     "while {0} runs, no other callback of its group or thread does: if it waits for what one of them brings, "
     "that never comes"
@@ -59,7 +71,7 @@ class EndlessWait(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each wait that the engine reported."""
-        for notice in _on_waits(view.timeline):
+        for notice in on_waits(view.timeline):
             at = view.timeline.positions_of(notice.entity, Window(notice.t, notice.t + 1))
             if any(goes_on(each, view.timeline) for each in at) and not _is_deadlock(notice):
                 continue
@@ -69,13 +81,13 @@ class EndlessWait(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         notice = _notice_of(found)
-        at = timeline.positions_of(found.subject, _moment(found))
+        at = timeline.positions_of(found.subject, moment_of(found))
         how = "is in a deadlock" if _is_deadlock(notice) else "stands still"
         what = f" {how}: {notice.problem}" if notice.problem else f": {notice.text}"
         if notice.kind is NoticeKind.NO_PROGRESS and at:
             doing = f"waits for {awaited_lock(at[-1], timeline)}," if at[-1].lock else doing_of(at[-1])
             what = f" {doing} and {_how_long(found, timeline)}"
-        place, kept = line_of(found.subject, _moment(found), timeline), kept_waiting(found, timeline)
+        place, kept = line_of(found.subject, moment_of(found), timeline), kept_waiting(found, timeline)
         ends = _enders(found.subject, at[-1] if at else None, timeline)
         what += f"; {listed(ends)} would end it" if ends else ""
         cure = "wait with a timeout, and make sure that it comes" if ends else notice.advice or _ADVICE
@@ -90,7 +102,10 @@ class EndlessWait(Rule):
             cure += f"; give {who(found.subject, timeline)} a MutuallyExclusiveCallbackGroup: {one}"
         elif not _may_help(found, place, kept, at, timeline):
             room = Remedy()
-        if kept and room.words(timeline):
+        missing, instead, edits = _unended(found.subject, at, timeline)
+        if missing:
+            what, cure, room = f"{what}; {missing}", instead, Remedy()
+        if kept and (missing or room.words(timeline)):
             what += f"; {listed(who(each, timeline) for each in kept)} can run only when it is over"
         if room.words(timeline) and calls == 1:
             cure = f"{cure}: {room.words(timeline)}"
@@ -102,14 +117,37 @@ class EndlessWait(Rule):
             cure,
             place,
             for_ever=found.until >= timeline.end,
-            remedies=(room,) if kept else (),
+            remedies=edits if missing else (room,) if kept else (),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Irrelevant if the wait ended after all, be it by an exception that ended the run."""
-        raised = any(span.error for span in timeline.spans_of(found.subject, _moment(found)))
+        raised = any(span.error for span in timeline.spans_of(found.subject, moment_of(found)))
         over = (found.until < timeline.end or raised) and not _is_deadlock(_notice_of(found))
         return None if over else Weight.PROBLEM
+
+
+def _unended(
+    entity: EntityId, at: Sequence[Position], timeline: Timeline
+) -> tuple[str, str, tuple[Remedy, ...]]:
+    """Say that nothing in the program ends a wait, with the cure and its edits; "" if something may."""
+    place = line_location(at[-1].file, at[-1].line) if at else None
+    if place is None:
+        return "", "", ()
+    file, name = place.file, Path(place.file).name
+    if missing := never_set(file, place.first_line):
+        cure = f"call {missing} where {who(entity, timeline)} may go on, or wait with a timeout"
+        return f"nothing in {name} calls {missing}", cure, by_edit(place, _SHORTLY, wait_at_most)
+    gate, parties, functions = parties_at(file, place.first_line)
+    callers = [each for each in timeline.entities.values() if each.spoken_name in functions]
+    kinds = {timeline.groups[each.group].kind for each in callers}
+    is_all = {each.spoken_name for each in callers} == {*functions} and kinds == {GroupKind.EXCLUSIVE}
+    if not is_all or len(callers) >= parties:
+        return "", "", ()
+    what = f"{gate} lets go when {parties} wait at it, and only {listed(functions)} do"
+    fewer = f"make it a Barrier({len(callers)})"
+    edits = by_edit(place, fewer, set_parties, len(callers))
+    return what, f"{fewer}, or wait at it in more callbacks", edits
 
 
 def _may_help(
@@ -133,70 +171,12 @@ def _may_help(
     return any(is_alone or each.id in kept or (is_exclusive and each.group == group) for each in known)
 
 
-class WaitsForLock(Rule):
-    """On the real clock callbacks have waited long for locks, and wait still.
-
-    On real rclpy the holder of a lock is unknown, and whether it ever releases it; where it is known, other
-    rules apply. Callbacks that wait for these are part of the finding.
-    """
-
-    id = "waits-for-lock"
-    summary = "a callback waits for a lock that nobody releases"
-    threshold = 2 * SECOND
-
-    def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield the callback that waits longest, with all that wait."""
-        started = view.timeline.started
-        waiting = [] if started is None or started.clock == "virtual" else _at_locks(view.timeline)
-        if waiting and view.end - waiting[0].start >= self.threshold:
-            first, stuck = waiting[0], frozenset(each.entity for each in waiting)
-            yield Finding(self, first.start, view.end, first.entity, size=view.end - first.start, stuck=stuck)
-
-    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        waiting = _at_locks(timeline)
-        first, *others = (
-            f"{who(each.entity, timeline)} ({Path(each.file).name}:{each.line})"
-            f"{'' if each.lock in ('', waiting[0].lock) else f' for {each.lock}'}"
-            for each in waiting
-        )
-        also = f", and so {'does' if len(others) == 1 else 'do'} {listed(others)}" if others else ""
-        locks = {(timeline.entities[each.entity].node, each.lock) for each in waiting if each.entity}
-        why, cure = _IN_TURN
-        own = all(each.lock.startswith("self.") and len(each.frames) == 1 for each in waiting)
-        if len(locks) == 1 and own:  # else one name may stand for several locks
-            why, cure = _TAKEN, f"take {waiting[0].lock} by with everywhere, {_RELEASES}"
-        lock = waiting[0].lock or "a lock"
-        return Explanation(
-            f"{first} has waited for {lock} for {duration(found.lasted)}{also}",
-            why,
-            cure,
-            line_of(found.subject, _moment(found), timeline),
-        )
-
-
 _OF_WAITS = (NoticeKind.OTHER, NoticeKind.NO_PROGRESS, NoticeKind.ENDLESS_WAIT, NoticeKind.DEADLOCK)
 
 
-def _on_waits(timeline: Timeline) -> Iterator[Notice]:
+def on_waits(timeline: Timeline) -> Iterator[Notice]:
     """Yield the notices on callbacks that do not go on."""
     return (each for each in timeline.notices if each.entity and each.kind in _OF_WAITS)
-
-
-def _at_locks(timeline: Timeline) -> list[Position]:
-    """Return where threads wait for locks at the end of a timeline, the longest wait first, one per thread.
-
-    Callbacks with a notice of the engine are left out.
-    """
-    told = {notice.entity for notice in _on_waits(timeline)}
-    at_end = Window(timeline.end, timeline.end + 1)
-    last = (each for thread in timeline.threads for each in timeline.positions_on(thread, at_end)[-1:])
-    waiting = (
-        each
-        for each in last
-        if each.end is None and each.waits_for_lock and not (each.holder or time_limit(each))
-    )
-    untold = (each for each in waiting if each.entity not in told)
-    return sorted(untold, key=lambda each: each.start)
 
 
 class StillComputing(Rule):
@@ -213,7 +193,7 @@ class StillComputing(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each call that the engine reported."""
-        for notice in _on_waits(view.timeline):
+        for notice in on_waits(view.timeline):
             if notice.kind is NoticeKind.NO_PROGRESS and _computes(notice, view):
                 stuck = frozenset([notice.entity])
                 until = _until(notice, view)
@@ -221,9 +201,9 @@ class StillComputing(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
-        at = timeline.positions_of(found.subject, _moment(found))
+        at = timeline.positions_of(found.subject, moment_of(found))
         loop = line_location(*at[-1].loop) if at else None
-        place = loop or line_of(found.subject, _moment(found), timeline)
+        place = loop or line_of(found.subject, moment_of(found), timeline)
         where = f" in the loop of line {loop.first_line}" if loop else ""
         return Explanation(
             f"{subject} computes{where} and {_how_long(found, timeline)}",
@@ -256,7 +236,7 @@ class StaysInLoop(Rule):
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each running call that was in one loop for all of the last seconds."""
-        told = {notice.entity for notice in _on_waits(view.timeline)}
+        told = {notice.entity for notice in on_waits(view.timeline)}
         for span in view.now.running.values():
             since = _in_loop_since(span, view, self.threshold)
             if since is not None and span.entity not in told:
@@ -267,7 +247,7 @@ class StaysInLoop(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
-        at = timeline.positions_of(found.subject, _moment(found))[-1]
+        at = timeline.positions_of(found.subject, moment_of(found))[-1]
         loop = line_location(*at.loop)
         kept = kept_waiting(found, timeline)
         room = remedy_for_waits(kept, found.subject, Window(found.at, found.until + 1), timeline)
@@ -372,7 +352,8 @@ def _waiting_too(function: str, timeline: Timeline) -> str:
     return doing and f", which {'is' if doing.startswith('in ') else 'itself'} {doing} ({where}),"
 
 
-def _moment(found: Finding) -> Window:
+def moment_of(found: Finding) -> Window:
+    """Return the moment at which a finding begins."""
     return Window(found.at, found.at + 1)
 
 
@@ -383,7 +364,7 @@ def _notice_of(found: Finding) -> Notice:
 
 def _how_long(found: Finding, timeline: Timeline) -> str:
     """For how long a call has not come back: on virtual time, which may stand still, as the engine says."""
-    spans = timeline.spans_of(found.subject, _moment(found))
+    spans = timeline.spans_of(found.subject, moment_of(found))
     if spans and timeline.started is not None and timeline.started.clock == "real":
         return f"has not come back for {duration(found.until - spans[-1].start)}"
     return _notice_of(found).problem or "has not come back for long"

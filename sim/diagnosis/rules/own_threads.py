@@ -12,9 +12,9 @@ from sim.trace.timeline import Timeline
 
 
 class ThreadWaitsForNobody(Rule):
-    """A thread that the program started waits for an event without a timeout, and its file never sets that.
+    """A thread that the program started waits without a timeout for what its file never sets, as an event.
 
-    Not said of an event that the file hands on, for another one may set it then.
+    Not said of what the file hands on, for another one may set it then.
     """
 
     id = "thread-waits-for-nobody"
@@ -26,17 +26,17 @@ class ThreadWaitsForNobody(Rule):
         """Yield each such thread."""
         for at in view.timeline.own_threads_at(view.end):
             file, _, line = at.frames[-1]
-            is_long = at.call == "Event.wait" and view.end - at.t >= self.threshold
+            is_long = at.call != "" and view.end - at.t >= self.threshold
             if is_long and (missing := never_set(file, line)):
                 yield Finding(self, at.t, view.end, about=at.name, detail=missing, event=at)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         assert isinstance(found.event, OwnThreadAt)
         file, _, line = found.event.frames[-1]
-        name = Path(file).name
+        name, call = Path(file).name, found.event.call
         return Explanation(
-            f"the thread {found.about} waits in Event.wait(), and nothing in {name} calls {found.detail}",
-            "without a timeout such a wait ends only if somebody sets the event",
+            f"the thread {found.about} waits in {call}(), and nothing in {name} calls {found.detail}",
+            "without a timeout such a wait ends only if somebody ends it",
             f"call {found.detail} where the thread may go on, or wait with a timeout",
             CodeLocation(file, line, line),
         )
