@@ -383,5 +383,6 @@ def test_a_circle_through_a_joined_thread_names_the_thread_and_is_over_with_its_
         program.write_text(text.replace(end, there))
         timeline = run_to_end(program_setup(program, 4.0)).timeline
         told = [each.explained(timeline) for each in diagnose(timeline)]
-        assert told[0].what.startswith("tick waits in vain for the end of a thread until 9.5 s; ")
+        assert told[0].what.startswith("in vain until 9.5 s: tick (node.py:")
+        assert "tick waits" not in told[0].what, "who waits is named once"
         assert not told[0].for_ever

@@ -290,16 +290,17 @@ def _explanation(
     found: Finding, why: str, cure: str, remedies: tuple[Remedy, ...], timeline: Timeline
 ) -> Explanation:
     subject, wanted, lasts = who(found.subject, timeline), found.ring[1], found.until >= timeline.end
-    if lasts and not found.ends and found.detail.startswith(f"{subject} ("):
-        waits = "deadlock"
+    until = until_when(found.ends, timeline)
+    if found.about in (WaitedFor.LOCK, WaitedFor.THREAD):  # the first obstacle names who waits, and for what
+        waits = f"in vain{until}: " if found.ends or not lasts else "deadlock: "
     elif not lasts:
-        waits = f"{subject} waited in vain for {wanted}"
+        waits = f"{subject} waited in vain for {wanted}; "
     elif found.ends:
-        waits = f"{subject} waits in vain for {wanted}{until_when(found.ends, timeline)}"
+        waits = f"{subject} waits in vain for {wanted}{until}; "
     else:
-        waits = f"deadlock: {subject} waits for {wanted} for ever"
+        waits = f"deadlock: {subject} waits for {wanted} for ever; "
     return Explanation(
-        f"{waits}{': ' if waits == 'deadlock' else '; '}{found.detail}{often(found.count)}",
+        f"{waits}{found.detail}{often(found.count)}",
         why,
         cure,
         _line_of(found.subject, found, timeline),
