@@ -86,7 +86,7 @@ def test_an_exception_that_comes_out_and_is_caught_is_worth_a_remark_at_its_line
     run = raising(threads, ticks_on=True)
     assert run.problems() == set()
     told = run.explained("exception-caught")
-    assert told.what == "fails raised ValueError: no scan, and the program went on"
+    assert told.what == "fails raised ValueError: no scan, and the program caught it"
     assert told.place is not None
     assert Path(__file__).read_text().splitlines()[told.place.first_line - 1].strip().startswith("raise")
 
@@ -107,12 +107,40 @@ def test_what_comes_out_of_a_pool_and_ends_the_program_well_is_not_swallowed() -
     run = diagnosed(program)
     events = [each for each in run.trace.events if not isinstance(each, RunEnded)]
     ended = RunEnded(max(each.t for each in events), "the program returned", failed=False)
-    assert Diagnosed(Trace([*events, ended])).problems() == set()
+    caught = Diagnosed(Trace([*events, ended]))
+    assert caught.problems() == set()
+    assert (
+        caught.explained("exception-caught").what
+        == "fails raised ValueError: no device, and the program caught it"
+    )
     [surfaced] = [each for each in events if isinstance(each, ExceptionSurfaced)]
     kept = [each for each in events if each is not surfaced]
     of_another_line = replace(surfaced, line=surfaced.line + 1)
     for others in ([], [of_another_line]):
         assert Diagnosed(Trace([*kept, *others, ended])).problems() == {("exception-swallowed", "fails")}
+
+
+CAUGHT = "try:\n    rclpy.spin(node)\nexcept BaseException:\n    pass\n"
+IN_A_THREAD = "thread = threading.Thread(target=rclpy.spin, args=(node,))\nthread.start()\nthread.join()\n"
+
+
+@pytest.mark.parametrize(
+    ("raised", "spin", "told"),
+    [
+        ("IndexError('no beam')", CAUGHT, True),
+        ("SystemExit", CAUGHT, False),
+        ("KeyError", IN_A_THREAD, False),
+    ],
+)
+def test_what_main_catches_and_ends_with_is_worth_a_remark_unless_it_is_raised_to_end(
+    raised: str, spin: str, told: bool, tmp_path: Path
+) -> None:
+    text = (
+        "import threading\nimport rclpy\n\nrclpy.init()\nnode = rclpy.create_node('n')\n\n\ndef fails():\n"
+        f"    raise {raised}\n\n\nnode.create_timer(0.5, fails)\n{spin}"
+    )
+    timeline = run_program(tmp_path, text, 2.0).timeline
+    assert ("exception-caught" in [each.rule.id for each in diagnose(timeline)]) is told
 
 
 def test_a_single_threaded_executor_swallows_nothing() -> None:

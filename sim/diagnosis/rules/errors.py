@@ -15,7 +15,7 @@ from sim.diagnosis.words import listed, often, who
 from sim.interpreter.exception_text import UNREADABLE
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, Notice, NoticeKind, Reason, RunEnded
-from sim.trace.model import AxisMarkKind, EntityInfo, Nanoseconds, Window
+from sim.trace.model import AxisMarkKind, EntityInfo, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
 
 
@@ -243,8 +243,7 @@ class ExceptionSwallowed(Rule):
         if timeline.end - found.until < self.threshold and ended is None:
             return None
         span = timeline.spans_of(found.subject, Window(found.at, found.at + 1))[-1]
-        surfaced = {(each.error, each.file, each.line) for each in timeline.surfaced if each.t >= found.until}
-        if (found.detail, *span.raised_at) in surfaced:
+        if _came_out(span, timeline):
             return None
         since = Window(found.until, timeline.end + 1)
         pool = pool_of(found.thread, timeline)
@@ -252,8 +251,18 @@ class ExceptionSwallowed(Rule):
         return None if any(start > found.until for start in handed_out) else Weight.PROBLEM
 
 
+def _came_out(span: Span, timeline: Timeline) -> bool:
+    """Return whether a spin() raised a call's exception: at once, or later if a worker ran it."""
+    came = ((each.error, each.file, each.line) for each in timeline.surfaced if each.t >= span.start)
+    return not is_worker(span.thread, timeline) or (span.error, *span.raised_at) in came
+
+
+_LEAVE = ("SystemExit", "KeyboardInterrupt", "ExternalShutdownException")
+"""What is raised to end a program."""
+
+
 class ExceptionCaught(Rule):
-    """A callback raised, and its node was spun on: the program caught what came out of its executor.
+    """A callback raised, and its node was spun on or the program ended: it caught what its executor raised.
 
     Whether the program says anything of it is unknown.
     """
@@ -263,29 +272,34 @@ class ExceptionCaught(Rule):
     weight = Weight.REMARK
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield each call that raised, if a callback of its node began since."""
+        """Yield each call that raised, if a callback of its node began since, or the program returned."""
         if not any(mark.kind is AxisMarkKind.ERROR for mark in view.timeline.marks(view.window)):
             return
         latest = [(each.node, span.start) for each in view.entities() for span in view.spans(each.id)[-1:]]
-        spun = dict(sorted(latest))
+        spun, ended = dict(sorted(latest)), view.timeline.ended
+        returned = ended is not None and not (ended.failed or ended.time_was_up)
         for entity in view.entities():
             for span in view.spans(entity.id):
                 end = span.end_at(view.end)
-                if span.error and not span.no_response and end < spun[entity.node]:
+                if not span.error or span.no_response or span.error.partition(":")[0] in _LEAVE:
+                    continue
+                if end < spun[entity.node] or (returned and _came_out(span, view.timeline)):
                     yield Finding(self, span.start, end, entity.id, size=span.start, detail=span.error)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
         span = timeline.spans_of(found.subject, Window(found.at, found.at + 1))[0]
         return Explanation(
-            f"{subject} raised {found.detail}{often(found.count)}, and the program went on",
+            f"{subject} raised {found.detail}{often(found.count)}, and the program caught it",
             "what an except clause around spin() or spin_once() takes, and does not log, nobody hears of",
             f"correct the line, or catch the exception in {subject} and log it there",
             line_location(*span.raised_at) or place_of(found.subject, timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Irrelevant if it ended the program, which is told, though another thread began a callback since."""
-        ended = timeline.ended
+        """Irrelevant if it ended the program or a thread, which is told, though others went on since."""
+        ended, told = timeline.ended, timeline.notices
+        if any((each.kind, each.error) == (NoticeKind.THREAD_DIED, found.detail) for each in told):
+            return None
         is_told = ended is not None and ended.failed and (ended.error, found.count) == (found.detail, 1)
         return None if is_told else super().weigh(found, timeline)
