@@ -14,8 +14,8 @@ import msgspec
 from sim.engine.setup import RobotUse
 from sim.real.probe_link import LineReader
 from sim.real.wire import ProbeLine, Sent, decode_lines
-from sim.robot.names import NAMES
-from sim.trace.events import ArenaShown, EntityAppeared, EntityKind
+from sim.robot.names import NAMES, own_sensor
+from sim.trace.events import SENSOR_TOPICS, ArenaShown, EntityAppeared, EntityKind, Notice, Severity
 
 _GRACE = 1.0
 """Seconds that a process has to end by itself."""
@@ -154,7 +154,14 @@ class RunRobot:
             self.process.start()
 
     def hear(self, lines: Sequence[ProbeLine]) -> None:
-        """Note whether a program uses one of its topics or services."""
+        """Note whether a program uses one of its topics or services; it leaves if one publishes for it."""
+        own = next((each for each in lines if isinstance(each, Sent) and each.topic in SENSOR_TOPICS), None)
+        if own is not None and self._use is RobotUse.WHEN_USED:
+            self._use = RobotUse.NEVER
+            self._arena = [ArenaShown(0, (), (0, 0, 0), 0)]
+            self._is_used = False
+            self.process.stop()
+            self._take([Notice(own.t, Severity.INFO, own_sensor(own.topic))])
         if not self._is_used and any(_name(line) in NAMES for line in lines):
             self._is_used = True
             self._take(msgspec.structs.replace(line, t=lines[0].t) for line in self._arena)

@@ -106,6 +106,7 @@ def drive(
     rclpy.init()
     port = RealPort(tell, transforms)
     driver = Driver(port, rate)
+    driver.advertise()
     driver.offer()
     driver.begin(World(physics=physics))
     executor = SingleThreadedExecutor()

@@ -66,12 +66,17 @@ class Driver:
         self._odometry = port.message("nav_msgs", "Odometry")
         self._laser_scan = port.message("sensor_msgs", "LaserScan")
         self._warned = False
+        self._scan: Any = None
+
+    def advertise(self) -> None:
+        """Offer the topics of the sensors, unless that is done."""
+        if self._scan is None:
+            self._odom = self._node.create_publisher(self._odometry, "odom", 10)
+            self._scan = self._port.sensor_publisher(self._laser_scan, "scan")
 
     def offer(self) -> None:
-        """Offer the topics and services, and record the robot's surroundings."""
+        """Offer all but the topics of the sensors, and record the robot's surroundings."""
         node, port = self._node, self._port
-        self._odom = node.create_publisher(self._odometry, "odom", 10)
-        self._scan = port.sensor_publisher(self._laser_scan, "scan")
         port.hear_velocities(port.message("geometry_msgs", "Twist"), self._on_velocity)
         node.create_service(port.service("std_srvs", "Empty"), "reset_world", self._on_reset)
         node.create_service(port.service("std_srvs", "SetBool"), "motor_power", self._on_motor_power)
@@ -88,6 +93,7 @@ class Driver:
         """Start the sensors, which measure while the node is spun."""
         self._world = world
         self._port.sleep(_LATENCY)
+        self.advertise()
         self._node.create_timer(self._tick, self._publish_odometry)
         self._port.sleep(_LATENCY)
         self._node.create_timer(self._tick, self._publish_scan)

@@ -171,7 +171,7 @@ class RunStores:
             ev.ThreadChosen: self.choices.append,
             ev.AccessesConflicted: self.conflicts.append,
             ev.Printed: self._printed,
-            ev.ArenaShown: partial(setattr, self, "arena"),
+            ev.ArenaShown: lambda event: setattr(self, "arena", event if event.walls else None),
             ev.RobotMoved: self.robot.add,
             ev.Scanned: self._scanned,
             ev.VelocityCommanded: self.velocities.add,

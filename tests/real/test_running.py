@@ -15,7 +15,9 @@ from sim.engine.setup import RealRos, RobotUse
 from sim.quantities.nanoseconds import SECOND
 from sim.real.companions import RunRobot, ServiceCaller
 from sim.real.programs import claimed_domain, unbootstrapped
+from sim.real.wire import Sent
 from sim.trace.events import (
+    ArenaShown,
     CallbackFailed,
     CallbackResumed,
     CallbackStarted,
@@ -30,6 +32,7 @@ from sim.trace.events import (
     RunEnding,
     ServiceCalled,
     ServiceReplied,
+    Severity,
     WaitStarted,
 )
 from tests.real import programs
@@ -381,6 +384,18 @@ def test_a_sleep_by_simulated_time_that_stops_its_clock_is_a_deadlock(tmp_path: 
     (found,) = (each for each in diagnose(timeline) if each.rule.id == "self-made-deadlock")
     assert found.rule.kind(found, timeline) == "deadlock-over-the-clock"
     assert "clock_callback" in {each.callback for each in timeline.entities.values()}
+
+
+def test_the_robot_leaves_a_real_run_whose_program_publishes_for_its_sensors() -> None:
+    told: list[object] = []
+    with DefaultSelector() as selector:
+        robot = RunRobot(RobotUse.WHEN_USED, None, None, selector, {}, told.extend)
+        robot.hear([Sent(5, 1, "/numbers", 0, 0, 0, 0)])
+        assert told == []
+        robot.hear([Sent(6, 2, "/scan", 0, 0, 0, 0)])
+        robot.hear([Sent(7, 3, "/scan", 0, 0, 0, 0)])
+    text = "the program publishes /scan itself, so the lessons' robot stays out"
+    assert told == [Notice(6, Severity.INFO, text), ArenaShown(6, (), (0, 0, 0), 0)]
 
 
 def test_what_helps_a_run_leaves_nothing_in_shared_memory(monkeypatch: pytest.MonkeyPatch) -> None:

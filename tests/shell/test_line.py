@@ -153,9 +153,8 @@ def test_the_end_of_the_run_ends_a_line_without_a_status() -> None:
 
 def test_looking_for_a_topic_brings_up_what_waits_for_its_use() -> None:
     def when_used(simulation: Simulation) -> None:
-        simulation.host.network.on_first_use(
-            ["/scan"], lambda: simulation.publisher_at_rate("scan", 0.1, offset=0.5)
-        )
+        once = iter([lambda: simulation.publisher_at_rate("scan", 0.1, offset=0.5)])
+        simulation.host.network.at_use(["/scan"], lambda *_: next(once, lambda: None)())
 
     assert carry_out("topic echo --once /scan", when_used).out == "data: 0\n---\n"
     assert carry_out("topic list", when_used).out.count("/scan") == 0

@@ -29,18 +29,17 @@ class Network:
         self._subscriptions: defaultdict[str, list[TopicEndpoint]] = defaultdict(list)
         self._services: defaultdict[str, list[ServiceEndpoint]] = defaultdict(list)
         self._clients: defaultdict[str, list[ClientEndpoint]] = defaultdict(list)
-        self._demand_actions: dict[str, Callable[[], None]] = {}
+        self._at_use: dict[str, Callable[[str, bool], None]] = {}
 
-    def on_first_use(self, names: Iterable[str], action: Callable[[], None]) -> None:
-        """Call ``action`` once, at the first use of a topic or service of one of these names."""
-        self._demand_actions = dict.fromkeys(names, action)
+    def at_use(self, names: Iterable[str], action: Callable[[str, bool], None]) -> None:
+        """Call ``action`` before each use of such a topic or service, with whether a publisher joins."""
+        self._at_use = dict.fromkeys(names, action)
 
-    def announce_use(self, name: str) -> None:
-        """Announce that a topic or service is used or looked up."""
-        action = self._demand_actions.get(name)
+    def announce_use(self, name: str, publishes: bool = False) -> None:
+        """Announce that a topic or service is used or looked up, or that a publisher joins."""
+        action = self._at_use.get(name)
         if action is not None:
-            self._demand_actions.clear()
-            action()
+            action(name, publishes)
 
     def nodes(self) -> tuple[NetworkNode, ...]:
         """The nodes, oldest first."""
@@ -74,7 +73,7 @@ class Network:
 
     def join_publisher(self, publisher: PublisherEndpoint) -> None:
         """Add a publisher, and match it with the subscriptions."""
-        self.announce_use(publisher.topic_name)
+        self.announce_use(publisher.topic_name, publishes=True)
         self._publishers[publisher.topic_name].append(publisher)
         for subscription in self._subscriptions.get(publisher.topic_name, ()):
             self._match(publisher, subscription)

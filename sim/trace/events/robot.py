@@ -5,7 +5,7 @@ from sim.trace.events.fields import MessageId, Metres, MetresPerSecond, Radians,
 
 
 class ArenaShown(TraceEvent, frozen=True, tag="arena"):
-    """The robot's surroundings."""
+    """The robot's surroundings; without walls the robot has left the run."""
 
     walls: tuple[tuple[float, float, float, float], ...]
     """Walls as x0, y0, x1 and y1 each, in metres."""

@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import pytest
+
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup, TimedLine
 from sim.trace.events import (
     CallbackStarted,
@@ -13,6 +15,7 @@ from sim.trace.events import (
     Printed,
     ProcessAppeared,
     ProcessEnded,
+    RobotMoved,
     ThreadAppeared,
 )
 from sim.trace.timeline import Timeline
@@ -228,6 +231,25 @@ def test_the_robot_comes_with_its_first_use_and_not_before(tmp_path: Path) -> No
     assert [event.text for event in run_files(tmp_path, asked).events if isinstance(event, Printed)] == [
         "True"
     ]
+
+
+@pytest.mark.parametrize("robot_first", [True, False])
+def test_the_robot_stays_out_where_a_program_publishes_what_its_sensors_do(
+    tmp_path: Path, robot_first: bool
+) -> None:
+    body = (
+        "node.create_subscription(Odometry, 'odom', lambda odom: print(odom.child_frame_id), 10)",
+        "odom = node.create_publisher(Odometry, 'odom', 10)",
+        "node.create_timer(0.1, lambda: odom.publish(Odometry(child_frame_id='own')))",
+    )
+    run = run_files(tmp_path, SPINNER.format(body="\n".join(body if robot_first else body[1:] + body[:1])))
+    assert {event.text for event in run.events if isinstance(event, Printed)} == {"own"}
+    told = [event.text for event in run.events if isinstance(event, Notice)]
+    assert told == ["the program publishes /odom itself, so the lessons' robot stays out"]
+    timeline = Timeline()
+    timeline.extend(run.events)
+    assert timeline.arena is None
+    assert not of(run, RobotMoved)
 
 
 def test_lines_are_carried_out_at_their_moments(tmp_path: Path) -> None:
