@@ -19,7 +19,7 @@ from sim.engine.setup import RunSetup
 from sim.quantities.nanoseconds import SECOND, nearest_ns
 from sim.recording import RecordingError, read
 from sim.trace.events import NoticeKind
-from sim.trace.figures.comparison import compare
+from sim.trace.figures.comparison import compare, covered
 from sim.trace.figures.comparison_text import comparison_lines, comparison_text
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -182,7 +182,7 @@ def load_runs(
         side or _run(each, terms, until, tell, given_up)
         for each, side in zip((first, second), known, strict=True)
     )
-    end = min(until, one.timeline.end, other.timeline.end)
+    end = min(until, covered(one.timeline), covered(other.timeline))
     if end <= nearest_ns(terms.start):
         raise CannotCompareError(f"nothing is left to compare: a run ended at {end / SECOND:g} s")
     return RunPair(one, other, Window(nearest_ns(terms.start), end))

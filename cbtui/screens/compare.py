@@ -32,7 +32,7 @@ from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
 from sim.quantities.durations import duration, timestamp
-from sim.trace.figures.comparison import Comparison, compare_incrementally, first_difference
+from sim.trace.figures.comparison import Comparison, compare_incrementally, covered, first_difference
 from sim.trace.figures.comparison_rows import Section, sections
 from sim.trace.figures.comparison_sentences import (
     NO_PROBLEMS,
@@ -235,7 +235,7 @@ class CompareScreen(SizedScreen[None]):
             verdict = f"{where} so far; neither run is better yet: {shorter(*self._sides)}"
         before = f"{self._told} " if self._told and self._whole else ""
         self.query_one("#verdict", Static).update(before + capitalised(verdict))
-        at = self._judged.end if at is None and early else at
+        at = min(side.timeline.end for side in self._sides) if at is None and early else at
         if at is not None and self._whole and not self._has_moved and at != self.navigation.now:
             self.navigation.seek(at)
             self._has_moved = False
@@ -295,10 +295,10 @@ class CompareScreen(SizedScreen[None]):
         """The requested window of the table, which may exceed a run."""
         if not self._whole:
             return self.navigation.window
-        return self._bounds or Window(0, max(side.timeline.end for side in self._sides))
+        return self._bounds or Window(0, max(covered(side.timeline) for side in self._sides))
 
     def _common(self, asked: Window) -> Window:
-        end = min(asked.end, *(side.timeline.end for side in self._sides))
+        end = min(asked.end, *(covered(side.timeline) for side in self._sides))
         return Window(asked.start, max(asked.start, end))
 
     @property

@@ -117,6 +117,17 @@ def test_a_run_that_ends_early_is_compared_until_then_and_that_is_told(tmp_path:
     assert "\n0 to 2 s; run B is 10 s long\n" in told("compare", str(short), str(long), "--to", "10")
 
 
+def test_of_a_run_that_fails_before_anything_runs_is_told_that_it_did_and_the_other_did_not(
+    tmp_path: Path,
+) -> None:
+    failing, well = tmp_path / "failing.py", tmp_path / "well.py"
+    well.write_text(_ENDS_BY_ITSELF)
+    failing.write_text(_ENDS_BY_ITSELF.replace("0.5, tick", "0.5, tock"))
+    done = cbtui("compare", str(failing), str(well), "--to", "5")
+    assert "\nat 0 s; run B is 5 s long\nGone in run B: exception. Run A ended at 0 s with" in done.stdout
+    assert done.stdout.endswith("whole program\n  no callback runs in either\n")
+
+
 @pytest.mark.slow
 def test_lines_and_calls_reach_both_runs() -> None:
     line = "ros2 service call /dummy_server_srv std_srvs/srv/SetBool '{data: true}'"

@@ -6,6 +6,7 @@ import pytest
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
+    CallbackFailed,
     CallbackStarted,
     CommandGiven,
     CommandKind,
@@ -25,7 +26,7 @@ from sim.trace.events import (
     WaitEnded,
     WaitStarted,
 )
-from sim.trace.figures.comparison import compare, first_difference
+from sim.trace.figures.comparison import compare, covered, first_difference
 from sim.trace.figures.comparison_rows import (
     Assessment,
     ComparisonRow,
@@ -219,9 +220,10 @@ def test_what_the_robot_did_is_compared_in_words() -> None:
 
 
 def test_a_run_without_a_robot_has_no_figures_of_one() -> None:
-    rows = rows_of(run([], [moved(0.0, 0.0)]), run([], []), "whole program")
+    rows = rows_of(run([], [moved(0.0, 0.0), moved(1.0, 0.5)]), run([], []), "whole program")
     assert rows["collisions"] == ComparisonRow("collisions", ("0", "-"))
     assert "collisions" not in rows_of(run([], []), run([], []), "whole program")
+    assert "collisions" not in rows_of(run([], [moved(0.0, 0.0)]), run([], []), "whole program")
 
 
 def test_a_run_that_goes_on_past_the_window_is_told_of() -> None:
@@ -231,8 +233,24 @@ def test_a_run_that_goes_on_past_the_window_is_told_of() -> None:
 
 
 def test_a_robot_that_stands_still_in_both_runs_has_no_figures() -> None:
-    stands = run([], [moved(0.0, 0.0)])
+    stands = run([ODOM], [moved(0.0, 0.0), *called(1, 1.0, 1.1)])
     assert list(rows_of(stands, stands, "whole program")) == ["threads used", "at once"]
+
+
+def test_of_runs_in_which_nothing_ran_no_threads_are_counted() -> None:
+    *_, whole = sections(compare(run([ODOM], []), run([], []), Window(0, ns(4.0))))
+    assert (whole.rows, whole.notes) == ((), ("no callback runs in either",))
+
+
+def test_an_exception_that_ends_a_run_belongs_to_what_is_compared_of_it() -> None:
+    for clock in ("virtual", "real"):
+        start = RunStarted(0, "run", clock, 0)
+        raised = CallbackFailed(ns(2.0), 1, 1, "IndexError", "node.py", 2)
+        ended = RunEnded(ns(2.0), "it raised", failed=True)
+        failed = run([ODOM], [start, *called(1, 1.0, 1.0), *called(1, 2.0, 2.0)[:1], raised, ended])
+        longer = run([ODOM], [start, *(each for at in (1.1, 2.1, 3.1) for each in called(1, at, at))])
+        odom, _ = sections(compare(failed, longer, Window(0, covered(failed))))
+        assert {"calls", "errors"} & {row.label for row in odom.rows} == {"calls", "errors"}
 
 
 def test_two_runs_as_lines_name_the_run_of_each_figure() -> None:
@@ -486,6 +504,13 @@ def starved_for_real(calls: int) -> Timeline:
     own = [each for at in range(calls) for each in called(1, at + 0.5, at + 0.6)]
     events = sorted([*ticks, *own], key=lambda each: each.t)
     return run([ODOM, TIMER], [RunStarted(0, "run", "real", 0), *events])
+
+
+@pytest.mark.parametrize(("wait", "has_reason"), [(0.005, False), (0.05, True)])
+def test_the_reason_is_told_of_a_wait_that_can_be_noticed(wait: float, has_reason: bool) -> None:
+    waiting = on_the_real_clock(1.0, 3, wait)
+    odom, _ = sections(compare(waiting, waiting, Window(0, ns(4.0))))
+    assert any("group A held by" in note for note in odom.notes) is has_reason
 
 
 def test_runs_on_the_real_clock_are_compared_from_their_first_calls_on() -> None:

@@ -200,8 +200,18 @@ def _windows(first: Timeline, second: Timeline, window: Window) -> tuple[Window,
     if window.start or not (first.is_real or second.is_real):
         return window, window
     starts = [_first_call(each, window) for each in (first, second)]
-    length = window.end - max(starts)
+    failed = [
+        start
+        for start, run in zip(starts, (first, second), strict=True)
+        if run.end < covered(run) == window.end
+    ]
+    length = window.end - max(failed or starts)
     return Window(starts[0], starts[0] + length), Window(starts[1], starts[1] + length)
+
+
+def covered(timeline: Timeline) -> Nanoseconds:
+    """How long a window can be that a run fills; the moment of an exception that ended it belongs to it."""
+    return timeline.end + (timeline.ended is not None and timeline.ended.failed)
 
 
 def _first_call(timeline: Timeline, window: Window) -> Nanoseconds:

@@ -23,6 +23,7 @@ from sim.trace.figures.comparison_wording import (
 )
 from sim.trace.figures.statistics import Distribution
 from sim.trace.figures.summary import RobotFigures
+from sim.trace.figures.waiting import WORTH_TELLING
 
 RUNS = ("run A", "run B")
 """Names of the runs in a table: single letters are callback groups."""
@@ -74,15 +75,21 @@ def sections(comparison: Comparison) -> tuple[Section, ...]:
     """The whole comparison: callback by callback, then the threads and the robot."""
     return (
         *(_section(pair, is_real=comparison.is_real) for pair in comparison.callbacks),
-        Section("whole program", tuple(_whole(comparison.first, comparison.second))),
+        _whole(comparison.first, comparison.second),
     )
 
 
-def _whole(first: RunFigures, second: RunFigures) -> Iterator[ComparisonRow]:
-    yield _row("threads used", first.threads_used, second.threads_used, COUNTS)
-    yield _row("at once", first.threads_at_once, second.threads_at_once, COUNTS)
-    robots = [run.robot for run in (first, second) if run.robot is not None]
-    if len(robots) != 1 and all(map(_stands, robots)):
+def _whole(first: RunFigures, second: RunFigures) -> Section:
+    robot = tuple(_of_robot(first, second))
+    if not (first.threads_used or second.threads_used):
+        return Section("whole program", robot, ("no callback runs in either",))
+    used = _row("threads used", first.threads_used, second.threads_used, COUNTS)
+    at_once = _row("at once", first.threads_at_once, second.threads_at_once, COUNTS)
+    return Section("whole program", (used, at_once, *robot))
+
+
+def _of_robot(first: RunFigures, second: RunFigures) -> Iterator[ComparisonRow]:
+    if all(_stands(run.robot) for run in (first, second) if run.robot is not None):
         return  # it has no part in either run
     for label, figure, wording in _ROBOT_FIGURES:
         yield _row(label, _apply(figure, first.robot), _apply(figure, second.robot), wording)
@@ -158,7 +165,7 @@ def _section(pair: CallbackPair, *, is_real: bool) -> Section:
     notes = (
         f"{name} waits: {side.waits.why}"
         for name, side in zip(RUNS, (first, second), strict=True)
-        if side and side.waits
+        if side and side.waits and side.longest_wait >= WORTH_TELLING
     )
     return Section(title, tuple(_rows(first, second, is_real=is_real)), tuple(notes))
 
@@ -168,7 +175,7 @@ def _rows(
 ) -> Iterator[ComparisonRow]:
     for label, figure, wording in _FIGURES:
         one, other = _apply(figure, first), _apply(figure, second)
-        if one is not None or other is not None:
+        if (one is not None or other is not None) and (one or other or wording is not ERRORS):
             yield _row(label, one, other, wording.on(is_real=is_real))
     for label, spread, wording in _SPREADS:
         of_first, of_second = _apply(spread, first), _apply(spread, second)
@@ -196,7 +203,7 @@ def _spread(values: Distribution | None, *, lasts: bool) -> _Spread | None:
 
 _FIGURES: tuple[tuple[str, Callable[[CallbackInRun], Figure], Wording], ...] = (
     ("calls", lambda side: side.figures.calls, CALLS),
-    ("errors", lambda side: side.figures.errors or None, ERRORS),
+    ("errors", lambda side: side.figures.errors, ERRORS),
     ("lost", lambda side: side.figures.drops if side.figures.entity.depth else None, LOSSES),
 )
 _SPREADS: tuple[tuple[str, Callable[[CallbackInRun], _Spread | None], Wording], ...] = (

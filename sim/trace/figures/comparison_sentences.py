@@ -256,8 +256,9 @@ def extent(window: Window, *ends: Nanoseconds, is_real: bool = False) -> str:
 
 
 def stretch(window: Window) -> str:
-    """A window as text: ``0 to 12.4 s``."""
-    return f"{_seconds(window.start)} to {_seconds(window.end)} s"
+    """A window as text: ``0 to 12.4 s``, or ``at 0 s`` for a moment."""
+    start, end = _seconds(window.start), _seconds(window.end)
+    return f"at {start} s" if start == end else f"{start} to {end} s"
 
 
 def _seconds(nanoseconds: int) -> str:
