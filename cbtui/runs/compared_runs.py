@@ -19,8 +19,10 @@ from sim.engine.setup import RunSetup
 from sim.quantities.nanoseconds import SECOND, nearest_ns
 from sim.recording import RecordingError, read
 from sim.trace.events import NoticeKind
+from sim.trace.figures.compared_groups import lettered_alike
 from sim.trace.figures.comparison import compare, covered
 from sim.trace.figures.comparison_text import comparison_lines, comparison_text
+from sim.trace.incremental import run_to_end
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -149,7 +151,8 @@ def compare_runs(
         complain(str(error))
         return 2
     one, other = found.first, found.second
-    compared = compare(one.timeline, other.timeline, found.window)
+    alike = run_to_end(lettered_alike(one.timeline, other.timeline, other.timeline))
+    compared = compare(one.timeline, alike, found.window)
     problems = ComparedProblems(one.timeline, other.timeline).compared(compared)
     if in_lines:
         lines = comparison_lines(compared, one.name, other.name, problems)

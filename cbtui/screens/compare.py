@@ -1,6 +1,7 @@
 """Two runs on screen, one above the other on a common time axis, and a table of what differs."""
 
 import asyncio
+from dataclasses import replace
 from time import monotonic
 from typing import ClassVar
 
@@ -32,6 +33,7 @@ from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
 from sim.quantities.durations import duration, timestamp
+from sim.trace.figures.compared_groups import lettered_alike
 from sim.trace.figures.comparison import Comparison, compare_incrementally, covered, first_difference
 from sim.trace.figures.comparison_rows import Section, sections
 from sim.trace.figures.comparison_sentences import (
@@ -47,7 +49,6 @@ from sim.trace.figures.comparison_sentences import (
 from sim.trace.incremental import Incremental, within
 from sim.trace.model import Nanoseconds, Window
 
-_PLAIN = Ink(Role.TEXT)
 _STRONG = Ink(Role.STRONG)
 _FAINT = Ink(Role.FAINT)
 _TABLE_ALONE = "-table-alone"
@@ -110,7 +111,6 @@ class CompareScreen(SizedScreen[None]):
         self._problems = ComparedProblems(first.timeline, second.timeline)
         self._told = self._verdict = ""
         self._is_tie = False
-        self._judged = Window(0, 0)
         self._comparison: Comparison | None = None
         self._first_difference: Nanoseconds | None = None
         self._has_moved = bounds is not None
@@ -216,18 +216,19 @@ class CompareScreen(SizedScreen[None]):
 
     def _show_first_difference(self) -> None:
         """Show the verdict; of whole runs go to where they differ, as long as nobody has moved the cursor."""
-        if not self._verdict:
+        compared = self._comparison
+        if not self._verdict or compared is None:
             self.query_one("#verdict", Static).update(self._told)
             return
         at, early = self._first_difference, self._ended_early
-        none = f"no call differs{' notably' if self._is_real else ''}"
+        none = f"no call differs{' notably' if compared.is_real else ''}"
         where = none if at is None else f"they differ from {timestamp(at)} on"
-        is_part = self._whole and (self._judged.end < self._end or self._judged.start > 0)
-        span = f"in {stretch(self._judged)} " if is_part else ""
+        is_part = self._whole and (compared.window.end < self._end or compared.window.start > 0)
+        span = f"in {stretch(compared.window)} " if is_part else ""
         verdict = f"{where}; {span}{self._verdict[0].lower()}{self._verdict[1:]}"
         if not self._whole:
-            verdict = f"On screen, {stretch(self._judged)}: {verdict}"
-        elif self._comparison is not None and self._comparison.shares_little:
+            verdict = f"On screen, {stretch(compared.window)}: {verdict}"
+        elif compared.shares_little:
             verdict = self._verdict
         elif early:
             verdict = f"{early}; {'until then ' if at is None else ''}{where}"
@@ -261,15 +262,18 @@ class CompareScreen(SizedScreen[None]):
         if asked.length <= 0:
             self._verdict = ""
             return f"{self._what}: nothing that both runs have; {shorter(first, second)}", ()
-        compared = yield from compare_incrementally(first.timeline, second.timeline, asked)
-        self._first_difference = yield from first_difference(first.timeline, second.timeline, asked)
+        alike = yield from lettered_alike(first.timeline, self._problems.second, second.timeline)
+        self._lanes(1).timeline = alike
+        self._sides = first, replace(second, timeline=alike)
+        compared = yield from compare_incrementally(first.timeline, alike, asked)
+        self._first_difference = yield from first_difference(first.timeline, alike, asked)
         problems = NO_PROBLEMS
         if self._whole:
             yield
             problems = self._problems.compared(compared)
             self._told = problems.told
         self._verdict, self._is_tie = verdict(compared, problems), is_tie(compared, problems)
-        self._judged, self._comparison = asked, compared
+        self._comparison = compared
         for number, kept in enumerate(notable(compared, problems)):
             self._lanes(number).kept = kept
         if self._whole:
@@ -287,8 +291,9 @@ class CompareScreen(SizedScreen[None]):
         return "What both runs have" if self._ended_early else "Whole runs"
 
     def _extent(self, compared: Window) -> str:
-        ends = (side.timeline.end for side in self._sides)
-        return f"{self._what}, {extent(compared, *ends, is_real=self._is_real)}"
+        runs = [side.timeline for side in self._sides]
+        is_real = any(run.is_real for run in runs)
+        return f"{self._what}, {extent(compared, *(run.end for run in runs), is_real=is_real)}"
 
     @property
     def _asked(self) -> Window:
@@ -306,10 +311,6 @@ class CompareScreen(SizedScreen[None]):
         """The end of the axis: that of the running run, else that of the longer one."""
         going_on = [side.timeline.end for side in self._sides if side.alive()]
         return max(going_on or [side.timeline.end for side in self._sides])
-
-    @property
-    def _is_real(self) -> bool:
-        return any(side.timeline.is_real for side in self._sides)
 
     def _lanes(self, number: int) -> Lanes:
         return self.query_one(f"#lanes{number}", Lanes)

@@ -69,7 +69,13 @@ class GroupInfo:
     node: NodeId
     kind: GroupKind
     class_name: str
-    letter: str
+    place: int
+
+    @property
+    def letter(self) -> str:
+        """Its letter by its place, from 0: A, B, … Z, A2, B2, …"""
+        turn, within = divmod(self.place, 26)
+        return chr(ord("A") + within) + (str(turn + 1) if turn else "")
 
 
 _NAMES_THAT_SAY_NOTHING = ("callback", "<lambda>")

@@ -26,12 +26,6 @@ _RATES = ("/ros/entities/timer.py", "/rclpy/timer.py")
 """The files of rates, of the model and of rclpy: a timer with a callback there is a rate's."""
 
 
-def letter(place: int) -> str:
-    """The letter of a callback group by its order of appearance, from 0: A, B, … Z, A2, B2, …"""
-    turn, within = divmod(place, 26)
-    return chr(ord("A") + within) + (str(turn + 1) if turn else "")
-
-
 class Participants:
     """The participants of a run by kind, in order of appearance, from the ``…Appeared`` events."""
 
@@ -74,8 +68,8 @@ class Participants:
 
     def add_group(self, event: GroupAppeared) -> None:
         """Add a callback group with the next letter."""
-        name = letter(len(self.groups))
-        self.groups[event.group] = GroupInfo(event.group, event.node, event.kind, event.class_name, name)
+        place = len(self.groups)
+        self.groups[event.group] = GroupInfo(event.group, event.node, event.kind, event.class_name, place)
 
     def add_entity(self, event: EntityAppeared) -> EntityInfo:
         """Add an entity."""

@@ -13,7 +13,7 @@ from sim.trace.decisions import Decisions
 from sim.trace.events import AnyEvent, EntityId, EntityKind
 from sim.trace.execution import Execution
 from sim.trace.makings import Makings
-from sim.trace.model import AxisMark, AxisMarkKind, Blocked, Deed, Nanoseconds, Queue, Span, Window
+from sim.trace.model import AxisMark, AxisMarkKind, Blocked, Deed, Moment, Nanoseconds, Queue, Span, Window
 from sim.trace.participants import Participants
 from sim.trace.positions import Positions
 from sim.trace.publications import Publications
@@ -48,6 +48,7 @@ class RunStores:
         self.lost = 0
         self.contents_lost = 0
         self.end: Nanoseconds = 0
+        self.moment: Moment | None = None
         self.participants = Participants()
         self.makings = Makings()
         self.active = Activity()

@@ -53,7 +53,6 @@ class Timeline:
         self._cut: Callable[[Iterable[AnyEvent]], Iterable[AnyEvent]] = (
             UntilEnding().cut if until_ending else iter
         )
-        self._moment: Moment | None = None
         self.threads: dict[ThreadId, ThreadInfo] = run.participants.threads
         """The threads, in order of appearance."""
         self.processes: dict[ProcessId, str] = run.participants.processes
@@ -136,7 +135,7 @@ class Timeline:
 
     def extend(self, events: Iterable[AnyEvent]) -> None:
         """Add a batch of events; the size of batches makes no difference."""
-        self._moment = None
+        self._run.moment = None
         self._run.extend(self._cut(events))
 
     @property
@@ -277,9 +276,9 @@ class Timeline:
 
         All panes query the same moment: the latest one is cached until new events come.
         """
-        if self._moment is None or self._moment.at != at:
-            self._moment = self._moment_at(at)
-        return self._moment
+        if self._run.moment is None or self._run.moment.at != at:
+            self._run.moment = self._moment_at(at)
+        return self._run.moment
 
     def active_since(self, at: Nanoseconds) -> set[EntityId]:
         """The entities that were active at ``at`` or later, or have a call or wait in progress at the end."""

@@ -23,9 +23,18 @@ from cbtui.screens.windows.moment import MomentScreen
 from cbtui.widgets.comparison import ComparisonTable
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes, start_of
-from cbtui.widgets.lanes.rows import ThreadLane
+from cbtui.widgets.lanes.rows import GroupLane, ThreadLane
 from sim.quantities.durations import timestamp
-from sim.trace.events import AnyEvent, CommandGiven, CommandKind, RobotMoved, RunEnded, ThreadAppeared
+from sim.trace.events import (
+    AnyEvent,
+    CommandGiven,
+    CommandKind,
+    GroupAppeared,
+    GroupKind,
+    RobotMoved,
+    RunEnded,
+    ThreadAppeared,
+)
 from sim.trace.figures.comparison import compare as figures_of
 from sim.trace.figures.comparison_sentences import verdict
 from sim.trace.model import Window
@@ -328,6 +337,23 @@ async def test_both_runs_show_the_same_lanes(size: tuple[int, int]) -> None:
             for each in lanes(app)
         )
         assert names == others
+
+
+async def test_the_same_group_has_the_same_letter_and_colour_in_both_runs() -> None:
+    head, *events = shared_group_run().events
+    more = GroupAppeared(0, 90, 1, GroupKind.EXCLUSIVE, "MutuallyExclusiveCallbackGroup")
+    second = ComparedSide("one more group", timeline_of([head, more, *events], 14.0), "/motor_power")
+    async with compared(sides((14.0, 14.0))[0], second) as (app, _):
+        names = [
+            [
+                row[0]
+                for row, lane in zip(each.picture.rows, each.picture.lanes, strict=False)
+                if isinstance(lane, GroupLane)
+            ]
+            for each in lanes(app)
+            if each.picture
+        ]
+        assert names[0] == names[1] != []
 
 
 @pytest.mark.parametrize("size", [NARROW, WIDE])

@@ -184,7 +184,7 @@ def _marked(entity: EntityInfo, timeline: Timeline, moment: Moment) -> CallbackM
         doing,
         texts,
         group.letter,
-        list(timeline.groups).index(group.id),
+        group.place,
         doing is CallbackActivity.RUNS and moment.at - since >= _LONG,
     )
 

@@ -34,8 +34,7 @@ _NUMBER = Ink(Role.MARK, selected=True)
 class BarPainter:
     """Draws calls and waits into rows, up to ``edge``.
 
-    ``now`` is the cursor's time, ``told`` that of the words and figures. ``numbers`` is the place of each
-    group.
+    ``now`` is the cursor's time, ``told`` that of the words and figures.
     """
 
     timeline: Timeline
@@ -43,7 +42,6 @@ class BarPainter:
     now: Nanoseconds
     told: Nanoseconds
     edge: Nanoseconds
-    numbers: dict[int, int]
 
     def thread(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None]) -> None:
         """Draw a thread's calls: bars with group letter and callback name, ticks for short ones."""
@@ -151,7 +149,7 @@ class BarPainter:
 
     def group(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], group: GroupInfo) -> None:
         """Draw the callback that holds a group: a line, or a point for an instant."""
-        ink = Ink(Role.LINE, self.numbers[group.id])
+        ink = Ink(Role.LINE, group.place)
         if group.kind is GroupKind.REENTRANT:
             self._together(row, columns, ink)
             return
@@ -179,7 +177,7 @@ class BarPainter:
         for first, after, entity in stretches:
             free = [place for place in range(first, after) if row.blank(place, place + 1)]
             for place in free:
-                row.put(place, self.glyphs.line, Ink(Role.LINE, self.numbers[group.id]))
+                row.put(place, self.glyphs.line, Ink(Role.LINE, group.place))
             name = self.timeline.entities[entity].spoken_name
             texts = (
                 f"kept by {name}, which awaits",
@@ -353,7 +351,7 @@ class BarPainter:
                 return
 
     def _number(self, entity: EntityId) -> int:
-        return self.numbers[self.timeline.entities[entity].group]
+        return self.timeline.groups[self.timeline.entities[entity].group].place
 
 
 def _texts_at(position: Position) -> tuple[str, ...]:

@@ -1,6 +1,6 @@
 """The labels at the left of lanes: names, and the letters and textures of groups."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from cbtui.looks.theme import Glyphs, Ink, Role, TextRun, texture_of
@@ -13,7 +13,6 @@ from cbtui.widgets.lanes.names import (
     told_apart,
 )
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
-from sim.trace.events import GroupId
 from sim.trace.model import EntityInfo, GroupInfo
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
@@ -27,12 +26,11 @@ _SWATCH = 2
 
 @dataclass(slots=True)
 class LaneLabels:
-    """Labels of ``width`` columns; ``numbers`` are the places of the groups, by which they are coloured."""
+    """Labels of ``width`` columns; groups are coloured by their places."""
 
     timeline: Timeline
     width: int
     glyphs: Glyphs
-    numbers: Mapping[GroupId, int]
     _names: list[str] = field(init=False)
 
     def __post_init__(self) -> None:
@@ -69,9 +67,8 @@ class LaneLabels:
 
     def _letter(self, group: GroupInfo) -> list[TextRun]:
         """A group's letter, and its texture where there is room."""
-        number = self.numbers[group.id]
-        letter = TextRun(f"{group.letter} ", Ink(Role.LETTER, number))
+        letter = TextRun(f"{group.letter} ", Ink(Role.LETTER, group.place))
         if self.width < _TEXTURED_FROM:
             return [letter]
-        texture = texture_of(number, self.glyphs)
+        texture = texture_of(group.place, self.glyphs)
         return [letter, texture._replace(text=texture.text * _SWATCH), TextRun(" ", _PLAIN)]

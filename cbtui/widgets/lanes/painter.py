@@ -157,9 +157,8 @@ class _LaneFrame:
         self._glyphs = GLYPHS[painter.charset]
         self._edge = max(now, end) if timeline.ended is None else end
         self._calls = LatestCalls(timeline)
-        self._numbers = {group: place for place, group in enumerate(timeline.groups)}
-        self._labels = LaneLabels(timeline, layout.names, self._glyphs, self._numbers)
-        self._bars = BarPainter(timeline, self._glyphs, now, self._told, self._edge, self._numbers)
+        self._labels = LaneLabels(timeline, layout.names, self._glyphs)
+        self._bars = BarPainter(timeline, self._glyphs, now, self._told, self._edge)
         self._status = LaneStatus(timeline, scale.window, moment, self._calls, self._charset, layout.statuses)
 
     def lane(self, lane: Lane) -> list[TextRun]:
@@ -285,7 +284,7 @@ class _LaneFrame:
             if busy:
                 top = max(busy, key=attrgetter("eighths")).top
                 height = -(-sum(column.eighths for column in busy) // len(threads))
-                number = self._numbers[self._timeline.entities[top.entity].group]
+                number = self._timeline.groups[self._timeline.entities[top.entity].group].place
                 row.put(place, self._glyphs.heights[min(8, height)], Ink(Role.LINE, number))
         return row
 

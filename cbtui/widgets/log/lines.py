@@ -294,7 +294,7 @@ class LogLines(FollowingView):
         entity = timeline.entities.get(event.entity)
         name = short_thread(thread.name) if thread else ""
         group = timeline.groups.get(entity.group) if entity else None
-        number = list(timeline.groups).index(group.id) if group else -1
+        number = group.place if group else -1
         letter = group.letter if group else ""
         return [
             Segment(f" {fit(name, _THREAD - 1, Charset.BRAILLE)} ", self.in_ink(Ink(Role.FAINT))),

@@ -227,12 +227,9 @@ def first_difference(first: Timeline, second: Timeline, window: Window) -> Incre
     difference. None: they do not differ.
     """
     real = first.is_real or second.is_real
-    of_first, of_second = _entities_of(first), _entities_of(second)
-    partners = _partners(of_first, of_second)
     windows = _windows(first, second, window)
     start, end = windows[0].start, windows[0].length
-    for key, entity in of_first.items():
-        other = of_second.get(partners.get(key, key))
+    for entity, other in matched(first, second):
         one, another = (
             [] if id_ is None else _times(run.spans_of(id_, Window(own.start, own.start + end)), own.start)
             for run, id_, own in zip((first, second), (entity, other), windows, strict=True)
@@ -241,6 +238,13 @@ def first_difference(first: Timeline, second: Timeline, window: Window) -> Incre
         end = min(end, end if differs is None else differs)
         yield
     return start + max(0, end) if end < windows[0].length else None
+
+
+def matched(first: Timeline, second: Timeline) -> list[tuple[EntityId, EntityId | None]]:
+    """Return the callbacks of the first run, each with its match in the second run, if any."""
+    of_first, of_second = _entities_of(first), _entities_of(second)
+    partners = _partners(of_first, of_second)
+    return [(entity, of_second.get(partners.get(key, key))) for key, entity in of_first.items()]
 
 
 _SAME: Nanoseconds = 1_000_000

@@ -32,7 +32,7 @@ def test_threads_of_programs_that_differ_at_the_end_stay_apart() -> None:
 
 @pytest.mark.parametrize(("room", "shown"), [(9, "exclusive"), (8, "excl")])
 def test_a_groups_kind_is_cut_to_what_it_is_known_by(room: int, shown: str) -> None:
-    assert group_name(GroupInfo(1, 1, GroupKind.EXCLUSIVE, "", "A"), room) == shown
+    assert group_name(GroupInfo(1, 1, GroupKind.EXCLUSIVE, "", 0), room) == shown
 
 
 @pytest.mark.parametrize(
