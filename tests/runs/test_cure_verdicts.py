@@ -34,6 +34,8 @@ def test_a_problem_in_the_place_of_the_one_that_is_gone_is_named() -> None:
     slow, stuck = ("group-starvation", "", ""), ("self-made-deadlock", "", "")
     after = TriedRun({stuck: True}, names={stuck: "deadlock"})
     assert judged(slow, TriedRun({slow: False}), after) == Verdict(False, "deadlock")
+    lesser = TriedRun({slow: False}, names={slow: "long loop"})
+    assert judged(stuck, TriedRun({stuck: True}), lesser) == Verdict(True, "long loop")
 
 
 def test_to_end_an_exception_helps_whatever_the_program_does_wrong_then() -> None:

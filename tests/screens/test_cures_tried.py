@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from pathlib import Path
 from threading import Event
 from time import sleep
 from types import SimpleNamespace
@@ -16,7 +17,7 @@ from cbtui.runs.judged.cures import Cure, TriedRun, Verdict, problem_of
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import RunRequest
-from cbtui.runs.setup.shown_program import ShownProgram
+from cbtui.runs.setup.shown_program import ShownProgram, of_file
 from cbtui.screens.parts import cures
 from cbtui.screens.parts.cures import CureTrial, CureTrials
 from cbtui.screens.windows import diagnoses
@@ -31,7 +32,9 @@ from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.trace.events import RunStarted
 from sim.trace.timeline import Timeline
+from tests import diagnosis
 from tests.screens.test_diagnoses import TURNED, console, press, told_of
+from tests.support.engine_runs import SECOND, run_to_end
 from tests.support.exercises import until
 from tests.support.pictures import text_of
 from tests.support.runs import shared_group_run
@@ -241,6 +244,26 @@ def test_what_was_tried_for_a_run_is_not_tried_again_when_the_window_is_opened_a
     runs.run = SimpleNamespace(timeline=timeline)
     assert trials.begin().judge(found, APART).helps
     assert len(tried) == 4
+
+
+@pytest.mark.slow
+def test_two_cures_of_which_none_helps_alone_are_tried_and_offered_together() -> None:
+    subject = of_file(Path(diagnosis.__file__).parent / "beginners" / "two_callers.py", (), "virtual")
+    setup = subject.set_up(None, None)
+    ran = run_to_end(msgspec.structs.replace(setup, until=3 * SECOND))
+    (found, *_) = told_of(ran.events)
+    material = SimpleNamespace(batches=lambda: ())
+    run = SimpleNamespace(timeline=ran.timeline, setup=setup, material=lambda: material)
+    runs: Any = SimpleNamespace(timeline=ran.timeline, run=run)
+    restarts: Any = SimpleNamespace(changes=Changes())
+    trial = CureTrials(runs, restarts, subject, lambda: None).begin()
+    *alone, last = (trial.judge(found, each) for each in trial.cures(found))
+    assert {each.helps for each in alone} == {False}
+    assert last.helps
+    assert last.both is not None
+    assert last.both.words.startswith("give ask_left a callback group of its own, and ")
+    assert "; for ask_right: go on in a done-callback" in last.both.words
+    assert last.both.code or last.both.diff
 
 
 def test_what_virtual_time_does_not_show_is_tried_on_the_real_clock(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,6 +17,7 @@ from cbtui.runs.setup.changes import Changes
 from sim.diagnosis import Explanation, Finding, Weight, diagnose
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.edits.code_edit import diff
+from sim.diagnosis.words import who
 from sim.engine.setup import RunSetup, TimedInput
 from sim.files.untrusted import MAX_PROGRAM_BYTES, read_text
 from sim.quantities.nanoseconds import SECOND
@@ -91,6 +92,8 @@ class TriedRun:
     since: Mapping[Problem, Nanoseconds] = field(default_factory=dict)
     calls: Mapping[str, int] = field(default_factory=dict)
     """The number of calls of each callback, by its name."""
+    next_cures: "tuple[Cure, ...]" = ()
+    """The cures of its first problem, on top of the changes that it was made with."""
 
     @property
     def badness(self) -> tuple[int, int]:
@@ -108,6 +111,8 @@ class Verdict:
     helps: bool | None
     instead: str = ""
     reason: str = _NOT_SHOWN
+    both: "Cure | None" = None
+    """This cure and another one, if only both together help."""
 
     @property
     def exchange(self) -> str:
@@ -172,6 +177,13 @@ def cures_of(explanation: Explanation, before: Changes, timeline: Timeline) -> I
             yield Cure(changes, remedy.words(timeline), edited, again=remedy.again)
 
 
+def both(first: Cure, then: Cure, before: Changes) -> Cure:
+    """Return a cure and one of a run with it as one cure of the run ``before`` both."""
+    texts = {file: before.texts.get(file) or text_of(Path(file)) for file in then.changes.texts}
+    edits = (diff(file, old, then.changes.texts[file]) for file, old in texts.items())
+    return Cure(then.changes, f"{first.words}; {then.words}", "".join(edits), again=first.again or then.again)
+
+
 def _without_edit(remedy: Remedy, before: Changes, timeline: Timeline) -> Changes:
     changes = before if not remedy.threads else replace(before, threads=remedy.threads)
     for entity in remedy.own_groups:
@@ -215,7 +227,7 @@ def judged(problem: Problem, before: TriedRun, after: TriedRun, *, again: bool =
     goes_on = after.is_whole or after.is_cut
     idle = _called_less(problem, before, after, again)
     helps = goes_on and not idle and replace(after, problems=left).badness < before.badness
-    return Verdict(True) if helps else Verdict(False, idle or instead)
+    return Verdict(helps, idle or instead)
 
 
 def _called_less(problem: Problem, before: TriedRun, after: TriedRun, again: bool) -> str:
@@ -250,8 +262,11 @@ def try_run(
     note: Callable[[Nanoseconds], object] = lambda _: 0,
     *,
     clock: str = "virtual",
+    changes: Changes | None = None,
 ) -> TriedRun:
     """Make a run and return its problems. ``note`` gets its progress in nanoseconds.
+
+    With the changes that the set-up has, it is also told what could be tried next.
 
     Raises:
         GivenUpError: ``given_up`` was set meanwhile.
@@ -280,4 +295,12 @@ def try_run(
     calls: Counter[str] = Counter()
     for each in timeline.entities.values():
         calls[each.spoken_name] += len(timeline.calls_begun(each.id, Window(0, timeline.end + 1)))
-    return TriedRun(lasts, is_whole, frozenset(effects), names, timeline.end, is_cut, since, calls)
+    further = (
+        replace(cure, words=f"for {who(first.subject, timeline)}: {cure.words}")
+        for first, explained in list(told.values())[:1]
+        if changes is not None and first.subject
+        for cure in cures_of(explained, changes, timeline)
+    )
+    return TriedRun(
+        lasts, is_whole, frozenset(effects), names, timeline.end, is_cut, since, calls, (*further,)
+    )

@@ -232,8 +232,9 @@ class CuresByNumber(ScreenPart):
         def try_out() -> None:
             tried: list[tuple[Cure, Verdict]] = []
             for each in offered:
-                tried.append((each, trial.judge(found, each)))
-                if tried[-1][1].helps:
+                verdict = trial.judge(found, each)
+                tried.append((verdict.both or each, verdict))
+                if verdict.helps:
                     break
             self.host.post(
                 lambda: self._take_verdict(found, tried) if self.host.runs.number == number else None

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import chain, takewhile
+from itertools import chain, islice, takewhile
 from threading import Event, Lock
 
 from cbtui.engines.follow import GivenUpError
@@ -13,6 +13,7 @@ from cbtui.runs.judged.cures import (
     Problem,
     TriedRun,
     Verdict,
+    both,
     cures_of,
     judged,
     problem_of,
@@ -39,6 +40,8 @@ _LONGEST_REAL: Nanoseconds = 8 * SECOND
 _SHOWS: Nanoseconds = 3 * SECOND
 """How long a trial goes on after now: on virtual time a wait is told later than on the real clock."""
 
+_PAIRS = 6
+"""How many pairs of cures are tried of which none helps alone."""
 _ONLY_ON_MODEL = "Cures are tried only on the model: open the program without --on ros2 to have them tried."
 
 Note = Callable[[int], object]
@@ -99,6 +102,8 @@ class CureTrial:
     _before: dict[str, TriedRun] = field(default_factory=dict)
     """The runs without a cure, by the clock."""
     _verdicts: dict[tuple[Problem, str], Verdict] = field(default_factory=dict)
+    _pairs: dict[Problem, list[Cure]] = field(default_factory=dict)
+    """Cures that did not help, each with one of what was left."""
 
     @property
     def refusal(self) -> str:
@@ -109,18 +114,18 @@ class CureTrial:
         """Return the cures of a finding that can be tried: only for problems, and only on the model."""
         if not found.is_problem or self.refusal:
             return ()
-        setup, timeline = self.run.setup, self.run.timeline
-        about = changeable(self.trials.subject, setup, timeline)
+        return tuple(map(self._with_code, cures_of(found.explanation, self.changes, self.run.timeline)))
+
+    def _with_code(self, cure: Cure) -> Cure:
+        about = changeable(self.trials.subject, self.run.setup, self.run.timeline)
         source = text_of(self.trials.subject.node_path)
-        return tuple(
-            replace(each, code=tuple(code_of_cure(each.changes.without(self.changes), about, source)))
-            for each in cures_of(found.explanation, self.changes, timeline)
-        )
+        return replace(cure, code=tuple(code_of_cure(cure.changes.without(self.changes), about, source)))
 
     def judge(self, found: ExplainedFinding, cure: Cure, note: Note = lambda _: None) -> Verdict:
         """Tell whether a cure ends a finding; takes two runs, for further cures of a finding one.
 
         Who asks while another thread does waits for that one, and is told the progress in its place.
+        If none of its cures helps alone, the verdict on the last one is on pairs of them, too.
         Unknown if the run without a cure does not show the finding in time: then no cure is tried. What a run
         on the real clock shows, and one on virtual time does not, such as a long computation, is tried on the
         real clock too.
@@ -136,6 +141,11 @@ class CureTrial:
                     verdict = self._judged(problem, cure, clock)
                     if verdict.helps is not None:
                         break
+                if verdict.helps is False and self._is_last(found, problem, cure):
+                    pairs = islice(self._pairs.get(problem, ()), _PAIRS)
+                    helpful = (each for each in pairs if self._judged(problem, each, clock).helps)
+                    if (pair := next(helpful, None)) is not None:
+                        verdict = Verdict(True, both=self._with_code(pair))
                 if verdict != Verdict(None):
                     self._verdicts[problem, cure.key] = verdict
             return verdict
@@ -144,7 +154,19 @@ class CureTrial:
         before = self._without(problem, clock)
         if problem not in before.problems:
             return Verdict(None)
-        return judged(problem, before, self._try(cure.changes, clock, 50), again=cure.again)
+        after = self._try(cure.changes, clock, 50)
+        verdict = judged(problem, before, after, again=cure.again)
+        self._pairs.setdefault(problem, []).extend(
+            both(cure, each, self.changes) for each in after.next_cures[:2]
+        )
+        return verdict
+
+    def _is_last(self, found: ExplainedFinding, problem: Problem, cure: Cure) -> bool:
+        """Tell whether a cure is the last one of a finding, and none before it helps."""
+        others = (
+            self._verdicts.get((problem, each.key)) for each in self.cures(found) if each.key != cure.key
+        )
+        return all(each is not None and each.helps is False for each in others)
 
     def _without(self, problem: Problem, clock: str) -> TriedRun:
         """Return the run without a cure; another one up to now, if the one before does not show a problem."""
@@ -174,4 +196,5 @@ class CureTrial:
             self.given_up,
             lambda end: self._note(done + 50 * end // until),
             clock=clock,
+            changes=changes,
         )

@@ -239,7 +239,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         self._percent[place] = 0
         self._verdicts.append((place, cure, verdict))
         if verdict.helps:
-            self._helpful.append((place, cure))
+            self._helpful.append((place, verdict.both or cure))
         self._rows = tuple(self._list_rows())
         self._show_options().highlighted = 0 if chosen is None else self._rows.index(chosen)
         self._tell_highlighted()
