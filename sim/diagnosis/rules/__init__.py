@@ -14,11 +14,9 @@ from sim.diagnosis.rules.errors import (
 )
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.leaks import NeverDestroyed
-from sim.diagnosis.rules.locks import WaitsForLock
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, SentTooEarly, StaleData
 from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.overlooked import AnswerOverlooked, Slip
-from sim.diagnosis.rules.own_threads import ThreadWaitsForNobody
 from sim.diagnosis.rules.parameters import ParameterOverruled
 from sim.diagnosis.rules.services import (
     NobodyOffers,
@@ -37,6 +35,7 @@ from sim.diagnosis.rules.synchronisers import NeverSynchronised
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
 from sim.diagnosis.rules.timing import FallsBehind, MeantInMilliseconds, OverlappingCallback, OverrunTimer
 from sim.diagnosis.rules.transforms import LookupKeepsTransform
+from sim.diagnosis.rules.unended import ThreadWaitsForNobody, WaitsForLock
 from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NodeNeverSpins, NoFreeWorker
 
 RULES: tuple[Rule, ...] = (

@@ -4,27 +4,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
-from sim.diagnosis.edits.flags import (
-    enders,
-    event_setters,
-    never_set,
-    parties_at,
-    set_parties,
-    setters,
-    sleeps,
-    wait_at_most,
-)
-from sim.diagnosis.rule import (
-    CodeLocation,
-    Explanation,
-    Finding,
-    Rule,
-    Weight,
-    by_edit,
-    line_location,
-    line_of,
-)
+from sim.diagnosis.edits.flags import enders, event_setters, setters, sleeps
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_location, line_of
 from sim.diagnosis.rules.edits import beside_others, edits_for_reply, edits_for_waiting
+from sim.diagnosis.rules.unended import on_waits, unended
 from sim.diagnosis.time_limits import ends_by_itself, goes_on
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import awaited_lock, listed, must_answer, often, threads_for, who
@@ -41,7 +24,6 @@ _WAITS = "a thread that waits serves nothing else, and without a timeout it may 
 _LEFT = "a lock stays taken when the thread ends that took it, until somebody releases it"
 _RELEASE = "take the lock by with, which releases it on every way out"
 _LET_GO = "let go of the lock before anything that takes long"
-_SHORTLY = "wait for 0.1 s at most"
 _KEPT = (
     "while {0} runs, no other callback of its group or thread does: if it waits for what one of them brings, "
     "that never comes"
@@ -81,13 +63,13 @@ class EndlessWait(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         notice = _notice_of(found)
-        at = timeline.positions_of(found.subject, moment_of(found))
+        at = timeline.positions_of(found.subject, _moment(found))
         how = "is in a deadlock" if _is_deadlock(notice) else "stands still"
         what = f" {how}: {notice.problem}" if notice.problem else f": {notice.text}"
         if notice.kind is NoticeKind.NO_PROGRESS and at:
             doing = f"waits for {awaited_lock(at[-1], timeline)}," if at[-1].lock else doing_of(at[-1])
             what = f" {doing} and {_how_long(found, timeline)}"
-        place, kept = line_of(found.subject, moment_of(found), timeline), kept_waiting(found, timeline)
+        place, kept = line_of(found.subject, _moment(found), timeline), kept_waiting(found, timeline)
         ends = _enders(found.subject, at[-1] if at else None, timeline)
         what += f"; {listed(ends)} would end it" if ends else ""
         cure = "wait with a timeout, and make sure that it comes" if ends else notice.advice or _ADVICE
@@ -102,7 +84,8 @@ class EndlessWait(Rule):
             cure += f"; give {who(found.subject, timeline)} a MutuallyExclusiveCallbackGroup: {one}"
         elif not _may_help(found, place, kept, at, timeline):
             room = Remedy()
-        missing, instead, edits = _unended(found.subject, at, timeline)
+        file, line = (at[-1].file, at[-1].line) if at else ("", 0)
+        missing, instead, edits = unended(found.subject, file, line, timeline)
         if missing:
             what, cure, room = f"{what}; {missing}", instead, Remedy()
         if kept and (missing or room.words(timeline)):
@@ -122,32 +105,9 @@ class EndlessWait(Rule):
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Irrelevant if the wait ended after all, be it by an exception that ended the run."""
-        raised = any(span.error for span in timeline.spans_of(found.subject, moment_of(found)))
+        raised = any(span.error for span in timeline.spans_of(found.subject, _moment(found)))
         over = (found.until < timeline.end or raised) and not _is_deadlock(_notice_of(found))
         return None if over else Weight.PROBLEM
-
-
-def _unended(
-    entity: EntityId, at: Sequence[Position], timeline: Timeline
-) -> tuple[str, str, tuple[Remedy, ...]]:
-    """Say that nothing in the program ends a wait, with the cure and its edits; "" if something may."""
-    place = line_location(at[-1].file, at[-1].line) if at else None
-    if place is None:
-        return "", "", ()
-    file, name = place.file, Path(place.file).name
-    if missing := never_set(file, place.first_line):
-        cure = f"call {missing} where {who(entity, timeline)} may go on, or wait with a timeout"
-        return f"nothing in {name} calls {missing}", cure, by_edit(place, _SHORTLY, wait_at_most)
-    gate, parties, functions = parties_at(file, place.first_line)
-    callers = [each for each in timeline.entities.values() if each.spoken_name in functions]
-    kinds = {timeline.groups[each.group].kind for each in callers}
-    is_all = {each.spoken_name for each in callers} == {*functions} and kinds == {GroupKind.EXCLUSIVE}
-    if not is_all or len(callers) >= parties:
-        return "", "", ()
-    what = f"{gate} lets go when {parties} wait at it, and only {listed(functions)} do"
-    fewer = f"make it a Barrier({len(callers)})"
-    edits = by_edit(place, fewer, set_parties, len(callers))
-    return what, f"{fewer}, or wait at it in more callbacks", edits
 
 
 def _may_help(
@@ -169,14 +129,6 @@ def _may_help(
     is_alone = threads_for([found.subject], found.until, timeline) == 1
     is_exclusive = timeline.groups[group].kind is GroupKind.EXCLUSIVE
     return any(is_alone or each.id in kept or (is_exclusive and each.group == group) for each in known)
-
-
-_OF_WAITS = (NoticeKind.OTHER, NoticeKind.NO_PROGRESS, NoticeKind.ENDLESS_WAIT, NoticeKind.DEADLOCK)
-
-
-def on_waits(timeline: Timeline) -> Iterator[Notice]:
-    """Yield the notices on callbacks that do not go on."""
-    return (each for each in timeline.notices if each.entity and each.kind in _OF_WAITS)
 
 
 class StillComputing(Rule):
@@ -201,9 +153,9 @@ class StillComputing(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
-        at = timeline.positions_of(found.subject, moment_of(found))
+        at = timeline.positions_of(found.subject, _moment(found))
         loop = line_location(*at[-1].loop) if at else None
-        place = loop or line_of(found.subject, moment_of(found), timeline)
+        place = loop or line_of(found.subject, _moment(found), timeline)
         where = f" in the loop of line {loop.first_line}" if loop else ""
         return Explanation(
             f"{subject} computes{where} and {_how_long(found, timeline)}",
@@ -247,7 +199,7 @@ class StaysInLoop(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
-        at = timeline.positions_of(found.subject, moment_of(found))[-1]
+        at = timeline.positions_of(found.subject, _moment(found))[-1]
         loop = line_location(*at.loop)
         kept = kept_waiting(found, timeline)
         room = remedy_for_waits(kept, found.subject, Window(found.at, found.until + 1), timeline)
@@ -352,8 +304,7 @@ def _waiting_too(function: str, timeline: Timeline) -> str:
     return doing and f", which {'is' if doing.startswith('in ') else 'itself'} {doing} ({where}),"
 
 
-def moment_of(found: Finding) -> Window:
-    """Return the moment at which a finding begins."""
+def _moment(found: Finding) -> Window:
     return Window(found.at, found.at + 1)
 
 
@@ -364,7 +315,7 @@ def _notice_of(found: Finding) -> Notice:
 
 def _how_long(found: Finding, timeline: Timeline) -> str:
     """For how long a call has not come back: on virtual time, which may stand still, as the engine says."""
-    spans = timeline.spans_of(found.subject, moment_of(found))
+    spans = timeline.spans_of(found.subject, _moment(found))
     if spans and timeline.started is not None and timeline.started.clock == "real":
         return f"has not come back for {duration(found.until - spans[-1].start)}"
     return _notice_of(found).problem or "has not come back for long"

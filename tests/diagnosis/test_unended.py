@@ -1,4 +1,4 @@
-"""Threads of a program's own that wait for an event: told only if nothing in their file can set it."""
+"""Waits for what nothing in a file sets: told of a thread, and of a callback, only if that is sure."""
 
 from pathlib import Path
 
