@@ -1,4 +1,4 @@
-"""Records where threads wait or sleep that programs start themselves."""
+"""Records where programs, and the threads that they start, are in their code outside callbacks."""
 
 import sys
 import threading
@@ -7,10 +7,10 @@ from itertools import islice
 from typing import TypeAlias
 
 from sim.clock import RunClock
-from sim.engine.callback_positions import position_of
+from sim.engine.callback_positions import PositionFields, position_of
 from sim.probes.probe import Probe
 from sim.ros.middleware.process import Process
-from sim.trace.events import AnyEvent, Doing, OwnThreadAt
+from sim.trace.events import AnyEvent, Doing, OwnThreadAt, ProgramAt
 
 _EVERY = 250_000_000
 """Nanoseconds of the run between two samples."""
@@ -19,12 +19,11 @@ _MOST = 16
 _LOOKED_AT = 64
 """The most threads of which one sample reads the stack."""
 
-
 _Fields: TypeAlias = tuple[Doing, str, tuple[tuple[str, str, int], ...], str]
 
 
 class OwnThreads:
-    """Samples threads that run no callback, and records where they wait if that has changed.
+    """Samples the programs' main threads and those that run no callback, and records changed positions.
 
     ``main_threads`` returns the running programs, each with the identifier of its main thread.
     """
@@ -41,8 +40,12 @@ class OwnThreads:
         self._record = record
         self._main_threads = main_threads
         self._due = 0
+        self._programs: dict[int, tuple[object, ...]] = {}
+        """The frames of each program, by its number."""
         self._latest: dict[int, OwnThreadAt] = {}
         """By the identifier of the thread."""
+        self._computing: set[int] = set()
+        """Threads that computed at the last sample; one that has just run a callback may seem to."""
 
     def look(self) -> None:
         """Take a sample if one is due; one thread at a time may call this."""
@@ -50,7 +53,24 @@ class OwnThreads:
         if now < self._due:
             return
         self._due = now + _EVERY
-        found = self._positions()
+        in_callbacks, programs = self._probe.running().keys(), list(self._main_threads())
+        for ident, process in programs:
+            found = None if ident in in_callbacks else position_of(sys._current_frames().get(ident))
+            if found is not None:
+                self._tell_of_program(now, process, *found)
+        self._tell_of_threads(now, self._positions(in_callbacks | {ident for ident, _ in programs}))
+
+    def _tell_of_program(self, now: int, process: Process, position: PositionFields, timeout: int) -> None:
+        """Record where a program is; without frames if it spins, but not in a node's constructor."""
+        doing, call, frames, loop, _ = position
+        if process.spinning and all(function != "__init__" for _, function, _ in frames):
+            frames = ()
+        if frames != self._programs.get(process.number, ()):
+            self._programs[process.number] = frames
+            until = now + timeout if timeout else 0
+            self._record(ProgramAt(now, doing, call, frames, loop, until, process.number))
+
+    def _tell_of_threads(self, now: int, found: dict[int, _Fields]) -> None:
         for ident in [each for each in self._latest if each not in found]:
             gone = self._latest.pop(ident)
             self._record(OwnThreadAt(now, gone.number, gone.name, Doing.COMPUTES, "", ()))
@@ -66,16 +86,19 @@ class OwnThreads:
         taken = {each.number for each in self._latest.values()}
         return next(number for number in range(_MOST) if number not in taken)
 
-    def _positions(self) -> dict[int, _Fields]:
-        """Return where threads wait; those of which it is known already come first."""
+    def _positions(self, others: set[int]) -> dict[int, _Fields]:
+        """Return where threads are; those of which it is known already come first."""
         tops = sys._current_frames()
-        others = self._probe.running().keys() | {ident for ident, _ in self._main_threads()}
+        computed, self._computing = self._computing, set()
         unknown = (ident for ident in tops if ident not in self._latest)
         found: dict[int, _Fields] = {}
         for ident in (*self._latest, *islice(unknown, _LOOKED_AT)):
             at = None if ident in others else position_of(tops.get(ident))
-            if at is not None and len(found) < _MOST:
-                (doing, call, frames, _, lock), _ = at
-                if doing is not Doing.COMPUTES and "spin" not in call:
-                    found[ident] = doing, call, frames, lock.lock
+            if at is None or len(found) == _MOST:
+                continue
+            (doing, call, frames, _, lock), _ = at
+            if doing is Doing.COMPUTES:
+                self._computing.add(ident)
+            if "spin" not in call and (doing is not Doing.COMPUTES or ident in computed):
+                found[ident] = doing, call, frames, lock.lock
         return found

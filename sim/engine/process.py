@@ -30,7 +30,6 @@ from sim.engine.failures.tracebacks import leave_out_own_frames
 from sim.engine.failures.uncaught_exceptions import report_uncaught
 from sim.engine.outbox import Outbox
 from sim.engine.own_threads import OwnThreads
-from sim.engine.program_position import ProgramPosition
 from sim.engine.programs.children import allow_children, refuse_children
 from sim.engine.programs.ending import finalise, set_engine_apart
 from sim.engine.programs.exit_functions import share_exit_functions
@@ -115,7 +114,6 @@ class Engine:
         self._endless = None if virtual is None else EndlessWaits(virtual, self._host, record)
         self._descriptors = Descriptors(lambda text, error: record(Printed(clock.now(), text, error)))
         self._programs = ProgramSupervisor(self._host, record)
-        self._program_position = ProgramPosition(self._probe, clock, record, self._programs.main_threads)
         self._own_threads = OwnThreads(self._probe, clock, record, self._programs.main_threads)
         self._starter = ProgramStarter(self._programs, setup, _launch)
         self._lines = Ros2Lines(self._host, record, self._starter, self._programs.look)
@@ -245,7 +243,6 @@ class Engine:
         assert self._endless is not None
         due = self._endless.look()
         self._positions.look()
-        self._program_position.look()
         self._own_threads.look()
         if self._shutdown.has_begun:
             return None
@@ -257,7 +254,6 @@ class Engine:
             self._periods += 1
             if self._periods % _PERIODS_A_LOOK == 0:
                 self._positions.look()
-                self._program_position.look()
                 self._own_threads.look()
 
     def _make_room(self) -> None:

@@ -172,7 +172,7 @@ class RunStores:
             ev.ThreadChosen: self.choices.append,
             ev.AccessesConflicted: self.conflicts.append,
             ev.Printed: self._printed,
-            ev.ArenaShown: lambda event: setattr(self, "arena", event if event.walls else None),
+            ev.ArenaShown: lambda event: setattr(self, "arena", event if event.robot_radius else None),
             ev.RobotMoved: self.robot.add,
             ev.Scanned: self._scanned,
             ev.VelocityCommanded: self.velocities.add,

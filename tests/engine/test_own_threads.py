@@ -58,7 +58,7 @@ def ask():
 rclpy.init()
 node = Node("n")
 node.create_timer(0.1, ask)
-threading.Thread(target=ask, daemon=True).start()
+threading.Thread(target=ask, name="asks", daemon=True).start()
 rclpy.spin(node)
 """
 
@@ -66,4 +66,6 @@ rclpy.spin(node)
 def test_who_asks_the_time_again_and_again_computes(tmp_path: Path) -> None:
     events = run_program(tmp_path, _ASKS, 2.0, "real").events
     assert {each.doing for each in events if isinstance(each, CallbackAt)} == {Doing.COMPUTES}
-    assert not any(isinstance(each, OwnThreadAt) for each in events)
+    own = [each for each in events if isinstance(each, OwnThreadAt)]
+    assert {(each.name, each.doing, each.call) for each in own} == {("asks", Doing.COMPUTES, "")}
+    assert (bool(own[0].frames), own[-1].frames) == (True, ()), "it is told of until it is over"

@@ -78,22 +78,41 @@ def tick():
     with lock:
         pass
 
+def look():
+    pass
+
+def beside():
+    BESIDE
+
 rclpy.init()
 node = Node("n")
 lock = threading.Lock()
 threading.Thread(target=keep, daemon=True, name="keeper").start()
+threading.Thread(target=beside, daemon=True, name="beside").start()
 node.create_timer(0.2, tick)
 rclpy.spin(node)
 """
 
 
+_WAITS = "threading.Event().wait()"
+
+
 @pytest.mark.parametrize(
-    ("keep", "moves"), [("time.sleep(9)", True), ("compute()", True), ("threading.Event().wait()", False)]
+    ("keep", "beside", "moves"),
+    [
+        ("time.sleep(9)", "pass", True),
+        ("compute()", "pass", True),
+        (_WAITS, "pass", False),
+        (_WAITS, "compute()", True),
+        (_WAITS, "while True:\n        time.sleep(0.4)", False),
+        (_WAITS, "while rclpy.ok():\n        time.sleep(0.4)\n        look()", True),
+    ],
 )
 def test_a_program_of_which_a_thread_of_its_own_goes_on_still_moves(
-    tmp_path: Path, keep: str, moves: bool
+    tmp_path: Path, keep: str, beside: str, moves: bool
 ) -> None:
-    watch = FindingsMonitor(run_program(tmp_path, _KEEPS.replace("KEEP", keep), 3.0, "real").timeline)
+    program = _KEEPS.replace("KEEP", keep).replace("BESIDE", beside)
+    watch = FindingsMonitor(run_program(tmp_path, program, 3.0, "real").timeline)
     watch.update()
     assert watch.stuck_at(ns(3.0)) is not None
     assert (watch.nothing_moves_since() is None) is moves

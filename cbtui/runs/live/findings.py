@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from time import monotonic
 
 from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
+from sim.diagnosis.edits.flags import only_sleeps
 from sim.quantities.plural import counted
 from sim.trace.events import Doing
 from sim.trace.model import Nanoseconds, Window
@@ -100,13 +101,16 @@ class FindingsMonitor:
         return found.at if stuck.issuperset(ran) else None
 
     def _own_threads_go_on(self, since: Nanoseconds) -> bool:
-        """Whether a thread that the program has started sleeps, or went on since, or may do so with a lock.
+        """Whether a thread that the program has started computes, sleeps, went on, or may do so with a lock.
 
+        Sleeping in a loop that does nothing else is no going on.
         Whoever has a lock and is not known to wait may compute, and release it.
         """
         timeline = self._timeline
         own = timeline.own_threads_at(timeline.end)
-        if own != timeline.own_threads_at(since) or any(each.doing is Doing.SLEEPS for each in own):
+        acts = (each for each in own if each.doing in (Doing.SLEEPS, Doing.COMPUTES))
+        idle = (only_sleeps(each.frames[-1][0], each.frames[-1][2]) for each in acts)
+        if own != timeline.own_threads_at(since) or not all(idle):
             return True
         waiting = {each.name for each in own} | {each.name for each in timeline.threads.values()}
         stands = (timeline.position_on(thread, timeline.end) for thread in timeline.threads)

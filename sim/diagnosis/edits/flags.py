@@ -24,6 +24,17 @@ def setters(source: SourceEditor, line: int) -> tuple[str, ...]:
 
 
 @asked_of_file
+def only_sleeps(source: SourceEditor, line: int) -> bool:
+    """Return whether a line is in a ``while True`` or ``while rclpy.ok()`` in which nothing is done."""
+    around = [each for each in source.nodes(ast.While) if each.lineno <= line <= (each.end_lineno or 0)]
+    return any(
+        ast.unparse(each.test) in ("True", "1", "rclpy.ok()")
+        and all(is_idle(part) and "spin" not in ast.unparse(part) for part in each.body)
+        for each in around
+    )
+
+
+@asked_of_file
 def enders(source: SourceEditor, line: int) -> tuple[tuple[str, str, int], ...]:
     """Return what ends the wait of a line: the functions, the calls there, and their lines.
 

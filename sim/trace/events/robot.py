@@ -5,14 +5,14 @@ from sim.trace.events.fields import MessageId, Metres, MetresPerSecond, Radians,
 
 
 class ArenaShown(TraceEvent, frozen=True, tag="arena"):
-    """The robot's surroundings; without walls the robot has left the run."""
+    """The robot's surroundings."""
 
     walls: tuple[tuple[float, float, float, float], ...]
     """Walls as x0, y0, x1 and y1 each, in metres."""
     sphere: tuple[float, float, float]
     """Obstacle as x, y and radius, in metres."""
     robot_radius: Metres
-    """Distance from the middle of the robot to its rim."""
+    """Distance from the middle of the robot to its rim; 0 once it has left the run."""
 
 
 class RobotMoved(TraceEvent, frozen=True, tag="robot"):
