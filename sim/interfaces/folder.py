@@ -66,24 +66,9 @@ class DefinitionFolder:
         return tuple(self._files.get((package, kind), ()))
 
     def parts(self, package: str, kind: Kind, name: str) -> tuple[Definition, ...]:
-        """Read a file; lines of ``---`` divide the parts of a service or an action."""
-        path = self._files[package, kind][name].path
-        text = self.text(package, kind, name)
-        if kind == "msg":
-            return (parse(text, package, kind, name, origin=str(path)),)
-        lines = text.splitlines()
-        divisions = [index for index, line in enumerate(lines) if line.strip() == "---"]
-        if len(divisions) != len(_PARTS[kind]) - 1:
-            raise DefinitionError(f"{path}: {_DIVISIONS[kind]}, not {len(divisions)}")
-        starts = [0, *(division + 1 for division in divisions)]
-        ends = [*divisions, len(lines)]
-        # Blank lines replace the parts before, so that errors have the right line numbers.
-        return tuple(
-            parse(
-                "\n".join([""] * start + lines[start:end]), package, kind, f"{name}_{part}", origin=str(path)
-            )
-            for part, start, end in zip(_PARTS[kind], starts, ends, strict=True)
-        )
+        """Read a file."""
+        origin = str(self._files[package, kind][name].path)
+        return interface_parts(self.text(package, kind, name), package, kind, name, origin)
 
     def text(self, package: str, kind: Kind, name: str) -> str:
         """Return the content of the file.
@@ -103,6 +88,26 @@ class DefinitionFolder:
             return content.decode("utf-8-sig")
         except UnicodeDecodeError as error:
             raise DefinitionError(f"{path}:{decoding_fault(error)}") from None
+
+
+def interface_parts(text: str, package: str, kind: Kind, name: str, origin: str) -> tuple[Definition, ...]:
+    """Parse a definition: lines of ``---`` divide the parts of a service or an action.
+
+    ``origin`` is its file, which errors name.
+    """
+    if kind == "msg":
+        return (parse(text, package, kind, name, origin=origin),)
+    lines = text.splitlines()
+    divisions = [index for index, line in enumerate(lines) if line.strip() == "---"]
+    if len(divisions) != len(_PARTS[kind]) - 1:
+        raise DefinitionError(f"{origin}: {_DIVISIONS[kind]}, not {len(divisions)}")
+    starts = [0, *(division + 1 for division in divisions)]
+    ends = [*divisions, len(lines)]
+    # Blank lines replace the parts before, so that errors have the right line numbers.
+    return tuple(
+        parse("\n".join([""] * start + lines[start:end]), package, kind, f"{name}_{part}", origin=origin)
+        for part, start, end in zip(_PARTS[kind], starts, ends, strict=True)
+    )
 
 
 def is_package(folder: Path) -> bool:

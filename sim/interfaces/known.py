@@ -87,10 +87,10 @@ def message_of_type(type_name: str) -> type[Message]:
 
 @cache
 def _registry() -> Registry:
-    from sim.interfaces.folder import DefinitionFolder
+    from sim.interfaces.bundles import DefinitionBundles
     from sim.interfaces.jazzy import JazzyMessages
 
-    return Registry(JazzyMessages(), DefinitionFolder(Path(__file__).parent / "definitions"))
+    return Registry(JazzyMessages(), DefinitionBundles(Path(__file__).parent / "definitions"))
 
 
 look_up_by(message_of_type)

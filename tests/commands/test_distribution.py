@@ -59,7 +59,7 @@ def test_the_wheel_has_every_file_but_pages_and_nothing_else(wheel: set[str]) ->
 
 def test_the_wheel_has_what_is_no_python_too(wheel: set[str]) -> None:
     kinds = Counter(Path(name).suffix for name in wheel)
-    kinds_needed = {".toml", ".md", ".tcss", ".urdf", ".msg", ".srv", ".action", ".html", ".xml", ".typed"}
+    kinds_needed = {".toml", ".md", ".tcss", ".urdf", ".interfaces", ".html", ".xml", ".typed"}
     assert kinds_needed <= set(kinds)
     assert {f"{package}/py.typed" for package in _PACKAGES} < wheel
     launch_files = {name for name in wheel if ".launch." in name}

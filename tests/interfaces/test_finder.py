@@ -24,7 +24,7 @@ from sim.interfaces import (
     packages,
     service,
 )
-from sim.interfaces.folder import DefinitionFolder
+from sim.interfaces.bundles import DefinitionBundles
 from sim.interfaces.jazzy import JazzyMessages
 from sim.interfaces.registry import Registry
 
@@ -148,7 +148,7 @@ def test_the_first_finder_of_a_process_does_not_ask_itself_without_end() -> None
 def test_own_packages_win_over_the_bare_folders_python_sees(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    registry = Registry(DefinitionFolder(DEFINITIONS), JazzyMessages())
+    registry = Registry(DefinitionBundles(DEFINITIONS), JazzyMessages())
     monkeypatch.setattr(known, "_registry", lambda: registry)
     folder = tmp_path / "course" / "my_interfaces" / "msg"
     folder.mkdir(parents=True)

@@ -9,6 +9,7 @@ import pytest
 
 from sim import interfaces
 from sim.interfaces import DefinitionError
+from sim.interfaces.bundles import DefinitionBundles
 from sim.interfaces.folder import DefinitionFolder
 from sim.interfaces.jazzy import JazzyMessages
 from sim.interfaces.registry import Registry
@@ -28,7 +29,7 @@ class Workspace:
         file.write_text(text)
 
     def registry(self) -> Registry:
-        return Registry(JazzyMessages(), DefinitionFolder(DEFINITIONS), DefinitionFolder(self.root))
+        return Registry(JazzyMessages(), DefinitionBundles(DEFINITIONS), DefinitionFolder(self.root))
 
 
 @pytest.fixture

@@ -14,7 +14,8 @@ from lessons.lesson import BadLesson, read_lesson
 from lessons.progress import Progress
 from sim.engine.setup import ProgramSetup, RunSetup, TimedCall, TimedInput, TimedLine
 from sim.files import plain_yaml
-from sim.interfaces import DefinitionError, known, message
+from sim.interfaces import DefinitionError, Kind, known, message
+from sim.interfaces.bundles import DefinitionBundles
 from sim.interfaces.folder import DefinitionFolder
 from sim.interfaces.jazzy import JazzyMessages
 from sim.interfaces.registry import Registry
@@ -195,14 +196,21 @@ def _read_parameters(data: bytes, _: Path) -> None:
 
 def interfaces() -> Target:
     """``.msg``, ``.srv`` and ``.action`` files, and the classes made of them."""
-    paths = sorted(path for path in DEFINITIONS.rglob("*") if path.suffix in {".msg", ".srv", ".action"})
-    assert paths
+    bundles = DefinitionBundles(DEFINITIONS)
+    kinds: tuple[Kind, ...] = ("msg", "srv", "action")
+    every = [
+        bundles.text(package, kind, name).encode()
+        for package in sorted(bundles.packages())
+        for kind in kinds
+        for name in bundles.names(package, kind)
+    ]
+    assert every
     own = (
         b"uint8 A=1\nstring<=5 name 'x'\nint32[<=3] few [1, 2]\nfloat64[2] two\n"
         b"std_msgs/Header header\n---\nbool ok\n",
         b'wstring W="\\"a\\""\nbyte b 7\nchar[] c\nbool t true\n---\n---\nOther other\n',
     )
-    samples = (*own, *(path.read_bytes() for path in paths))
+    samples = (*own, *every)
     words = (
         b"---\n",
         b"int32",
@@ -230,8 +238,8 @@ def _read_interfaces(data: bytes, folder: Path) -> None:
 
 
 @cache
-def _others() -> tuple[JazzyMessages, DefinitionFolder]:
-    return JazzyMessages(), DefinitionFolder(DEFINITIONS)
+def _others() -> tuple[JazzyMessages, DefinitionBundles]:
+    return JazzyMessages(), DefinitionBundles(DEFINITIONS)
 
 
 def packages() -> Target:
