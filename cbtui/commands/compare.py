@@ -44,8 +44,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
             type=values.threads,
             help=f"number of threads of {letter.upper()}'s executor, instead of its own",
         )
-        changes.add_groups(parser, f"-{letter}")
-        changes.add_periods(parser, f"-{letter}")
+        changes.add_groups_and_periods(parser, f"-{letter}")
         changes.add_distro(parser, f"-{letter}")
         changes.add_on(parser, f"-{letter}")
     inputs.add_options(parser)

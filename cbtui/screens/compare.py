@@ -13,11 +13,11 @@ from textual.widgets import Static
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
+from cbtui.keys.refused import NOT_IN_COMPARISON
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.compared_runs import ComparedSide
 from cbtui.runs.judged.compared_problems import ComparedProblems
 from cbtui.runs.live.playhead import SPANS, Playhead
-from cbtui.screens.compare_absences import ComparisonAbsences
 from cbtui.screens.compare_words import about, shorter
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.bars import BarSelection
@@ -102,7 +102,6 @@ class CompareScreen(SizedScreen[None]):
             MomentKey(self, self.navigation),
             self.bars,
             Jumps(self, self),
-            ComparisonAbsences(self._can, self._tell),
         )
         self._drawn: tuple[object, ...] = ()
         self._compared: tuple[object, ...] | None = None
@@ -322,10 +321,10 @@ class CompareScreen(SizedScreen[None]):
                 return self.bars.selection is not None
             case "earlier":
                 return self.navigation.now > 0
+            case "no_use":
+                wanted = str(parameters[0])
+                return not (hasattr(self, f"action_{wanted}") and self.check_action(wanted, ()))
         return self._parts.offer(action, parameters)
-
-    def _can(self, action: str) -> bool | None:
-        return hasattr(self, f"action_{action}") and self.check_action(action, ())
 
     @on(Lanes.BarPicked)
     def _pick_bar(self, message: Lanes.BarPicked) -> None:
@@ -335,8 +334,9 @@ class CompareScreen(SizedScreen[None]):
     def _turn(self, message: Lanes.WheelTurned) -> None:
         self.navigation.zoom(message.steps)
 
-    def _tell(self, sentence: str) -> None:
-        self.notify(sentence, markup=False)
+    def action_no_use(self, wanted: str) -> None:
+        """Say why a key does nothing here."""
+        self.notify(NOT_IN_COMPARISON[wanted][1], markup=False)
 
     def action_deselect(self) -> None:
         """Select nothing."""

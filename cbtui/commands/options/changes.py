@@ -25,8 +25,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=values.threads,
         help="number of threads of the executor, instead of its own",
     )
-    add_groups(parser)
-    add_periods(parser)
+    add_groups_and_periods(parser)
     parser.add_argument(
         "--sensor-rate",
         metavar="HZ",
@@ -37,8 +36,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_distro(parser)
 
 
-def add_groups(parser: argparse.ArgumentParser, side: str = "") -> None:
-    """Add ``--group``, or ``--group-a`` and ``--group-b`` where two programs are run."""
+def add_groups_and_periods(parser: argparse.ArgumentParser, side: str = "") -> None:
+    """Add ``--group`` and ``--period``, or ``--group-a`` and so on where two programs are run."""
     of_run = f" of {side[1:].upper()}" if side else ""
     parser.add_argument(
         f"--group{side}",
@@ -50,11 +49,6 @@ def add_groups(parser: argparse.ArgumentParser, side: str = "") -> None:
         help=f"put a callback{of_run} into another group: own, shared, reentrant or default; NODE:CALLBACK "
         "means one node's; may be given again",
     )
-
-
-def add_periods(parser: argparse.ArgumentParser, side: str = "") -> None:
-    """Add ``--period``, or ``--period-a`` and ``--period-b`` where two programs are run."""
-    of_run = f" of {side[1:].upper()}" if side else ""
     parser.add_argument(
         f"--period{side}",
         dest=f"periods{side.replace('-', '_')}",

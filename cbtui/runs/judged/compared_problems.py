@@ -69,12 +69,8 @@ class ComparedProblems:
             return NO_PROBLEMS
         first, second = found = [*map(_found, (self.first, self.second), self._diagnoses)]
         if comparison is not None and comparison.shares_little:
-            told = [
-                f"Found in {run}: {each.listed}."
-                for run, each in zip(RUNS, found, strict=True)
-                if each.listed
-            ]
-            return Problems(" ".join(told))
+            of_runs = zip(RUNS, found, strict=True)
+            return Problems(" ".join(f"Found in {run}: {has.listed}." for run, has in of_runs if has.listed))
         gone = _missing(first.others, second.names, self.second)
         new = _missing(second.others, first.names, self.first)
         still = [each.name for name, each in second.others.items() if name in first.names]

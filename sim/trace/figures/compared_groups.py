@@ -45,11 +45,8 @@ def lettered_alike(first: Timeline, second: Timeline, before: Timeline) -> Incre
             taken.add(place)
     yield
     used = taken.union(each.place for each in first.groups.values() if first.group_members(each.id))
-    free = (place for place in count(len(first.groups)) if place not in used)
-    for group, known in tuple(second.groups.items()):
-        if group not in places:
-            places[group] = next(free) if known.place in used else known.place
-            used.add(places[group])
+    free = (place for place in count() if place not in used)
+    places |= {group: next(free) for group in second.groups if group not in places}
     if {group: each.place for group, each in before.groups.items()} == places:
         return before
     view = copy(second)

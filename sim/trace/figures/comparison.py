@@ -144,10 +144,9 @@ class Comparison:
 
     @property
     def shares_little(self) -> bool:
-        """Whether fewer than half of either run's callbacks are in both; those ``moved`` count half."""
-        of_first = sum(pair.first is not None for pair in self.callbacks)
-        of_second = sum(pair.second is not None for pair in self.callbacks)
-        return 2 * len(self.shared) - self.moved < min(of_first, of_second)
+        """Whether each run has more callbacks of its own than are in both and not ``moved``."""
+        alone = Counter((pair.first is None, pair.second is None) for pair in self.callbacks)
+        return len(self.shared) - self.moved < min(alone[True, False], alone[False, True])
 
 
 def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
@@ -200,12 +199,8 @@ def _windows(first: Timeline, second: Timeline, window: Window) -> tuple[Window,
     if window.start or not (first.is_real or second.is_real):
         return window, window
     starts = [_first_call(each, window) for each in (first, second)]
-    failed = [
-        start
-        for start, run in zip(starts, (first, second), strict=True)
-        if run.end < covered(run) == window.end
-    ]
-    length = window.end - max(failed or starts)
+    ends = [at for at, run in zip(starts, (first, second), strict=True) if run.end + 1 == window.end]
+    length = window.end - max(ends or starts)
     return Window(starts[0], starts[0] + length), Window(starts[1], starts[1] + length)
 
 
