@@ -41,12 +41,12 @@ def enders(source: SourceEditor, line: int) -> tuple[tuple[str, str, int], ...]:
     The wait is for an event, a future, a condition, a semaphore, an item of a queue, or room in it. What a
     function both takes and gives, such as a lock, it keeps meanwhile: that ends nobody's wait.
     """
-    there = [each for each in source.nodes(ast.expr) if each.lineno <= line <= (each.end_lineno or 0)]
+    there = source.around(ast.expr, line)
     waits = {ast.unparse(each.func) for each in there if isinstance(each, ast.Call)}
     waits |= {f"{ast.unparse(each.value)}.wait" for each in there if isinstance(each, ast.Await)}
     parts = (each.rpartition(".") for each in waits)
     wakes = {f"{awaited}.{name}" for awaited, _, way in parts if awaited for name in _ENDS.get(way, ())}
-    around = [each for each in source.nodes(ast.ClassDef) if each.lineno <= line <= (each.end_lineno or 0)]
+    around = source.around(ast.ClassDef, line)
     own = around[-1] if around and all(each.startswith("self.") for each in wakes) else source.tree
     return tuple(
         (function.name, ast.unparse(each.func), each.lineno)
@@ -60,7 +60,7 @@ def enders(source: SourceEditor, line: int) -> tuple[tuple[str, str, int], ...]:
 @asked_of_file
 def awaited_at(source: SourceEditor, line: int) -> str:
     """Return the one expression that a line awaits; "" if there is none, or another, or it is a call."""
-    there = [each.value for each in source.nodes(ast.Await) if each.lineno <= line <= (each.end_lineno or 0)]
+    there = [each.value for each in source.around(ast.Await, line)]
     return ast.unparse(there[0]) if len(there) == 1 and isinstance(there[0], ast.Attribute | ast.Name) else ""
 
 
@@ -70,8 +70,8 @@ def never_set(source: SourceEditor, line: int) -> str:
 
     "" if it has one, if it uses what is waited for otherwise, as by handing it on, or did not make it.
     """
-    there = [each for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0)]
-    waits = [ast.unparse(each.func).rpartition(".") for each in there if not (each.args or each.keywords)]
+    there = [each for each in source.around(ast.Call, line) if not (each.args or each.keywords)]
+    waits = [ast.unparse(each.func).rpartition(".") for each in there]
     for kind, (way, end, *others) in _ENDED_BY.items():
         awaited = {each for each, _, name in waits if name == way}
         last = awaited.pop().rpartition(".")[2] if len(awaited) == 1 else ""
@@ -92,11 +92,8 @@ def never_set(source: SourceEditor, line: int) -> str:
 
 def wait_at_most(source: SourceEditor, line: int) -> None:
     """Give the only wait at a line, one without a timeout, a short one."""
-    there = [each for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0)]
-    waits = [each for each in there if ast.unparse(each).endswith(".wait()")]
-    if len(waits) != 1:
-        raise NotSimpleError
-    source.replace(waits[0], f"{source.code_of(waits[0].func)}(timeout=0.1)")
+    wait = source.call_at(line, "wait".__eq__)
+    source.replace(wait, f"{source.code_of(wait.func)}(timeout=0.1)")
 
 
 @asked_of_file
@@ -116,12 +113,11 @@ def set_parties(source: SourceEditor, line: int, parties: int) -> None:
 
 
 def _barrier(source: SourceEditor, line: int) -> tuple[ast.Constant, str]:
-    there = [each for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0)]
+    waits = ast.unparse(source.call_at(line, "wait".__eq__).func)
     for each in source.nodes(ast.Assign):
         match each.value:
             case ast.Call(func=ast.Attribute(attr="Barrier"), args=[ast.Constant(value=int()) as parties]):
-                gate = ast.unparse(each.targets[0])
-                if f"{gate}.wait" in [ast.unparse(each.func) for each in there]:
+                if waits == f"{(gate := ast.unparse(each.targets[0]))}.wait":
                     return parties, gate
     raise NotSimpleError
 
@@ -191,7 +187,7 @@ def _sleeps(loop: ast.While) -> bool:
 
 def _asking(source: SourceEditor, line: int) -> ast.While:
     """Return the innermost ``while`` around a line if all it does is to ask, to log, and to let time pass."""
-    loops = [each for each in source.nodes(ast.While) if each.lineno <= line <= (each.end_lineno or 0)]
+    loops = source.around(ast.While, line)
     if not loops or not all(is_idle(each) or _asks_or_logs(each) for each in loops[-1].body):
         raise NotSimpleError
     return loops[-1]

@@ -2,14 +2,14 @@
 
 import ast
 
-from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
+from sim.diagnosis.edits.source_editor import SourceEditor
 
 _GROUP = "MutuallyExclusiveCallbackGroup"
 
 
 def give_own_group(source: SourceEditor, *lines: int) -> None:
     """Give what is made at each of the lines, such as a timer, a callback group of its own."""
-    for made in {_made_at(source, line) for line in lines}:
+    for made in {source.call_at(line, _makes) for line in lines}:
         values = [*made.args, *(each.value for each in made.keywords)]
         given = [each.value for each in made.keywords if each.arg == "callback_group"]
         if ast.unparse(made.func).endswith("create_timer"):
@@ -22,17 +22,5 @@ def give_own_group(source: SourceEditor, *lines: int) -> None:
     source.import_names("rclpy.callback_groups", [_GROUP])
 
 
-def _made_at(source: SourceEditor, line: int) -> ast.Call:
-    made = [
-        call
-        for call in source.nodes(ast.Call)
-        if call.lineno <= line <= (call.end_lineno or 0) and _makes(ast.unparse(call.func))
-    ]
-    if len(made) != 1:
-        raise NotSimpleError
-    return made[0]
-
-
-def _makes(function: str) -> bool:
-    name = function.rpartition(".")[2]
+def _makes(name: str) -> bool:
     return name.startswith("create_") or name in ("ActionServer", "ActionClient")

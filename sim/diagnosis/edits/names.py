@@ -9,8 +9,7 @@ from sim.diagnosis.edits.source_editor import Function, NotSimpleError, SourceEd
 
 def rename(source: SourceEditor, line: int, name: str, new: str) -> None:
     """Change the topic or service of the endpoint that is created at a line, if a string names it."""
-    calls = (each for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0))
-    _rename(source, calls, name, new)
+    _rename(source, source.around(ast.Call, line), name, new)
 
 
 def rename_publisher(source: SourceEditor, _line: int, name: str, new: str) -> None:
@@ -34,7 +33,7 @@ def served_at(source: SourceEditor, name: str) -> tuple[str, int]:
 @asked_of_file
 def made_for(source: SourceEditor, line: int) -> tuple[int, ...]:
     """Return the lines that make the clients for which a line calls ``wait_for_service()``."""
-    calls = (each.func for each in source.nodes(ast.Call) if each.lineno <= line <= (each.end_lineno or 0))
+    calls = (each.func for each in source.around(ast.Call, line))
     waits = (each for each in calls if isinstance(each, ast.Attribute) and each.attr == "wait_for_service")
     names = {ast.unparse(each.value) for each in waits}
     made = (each for each in source.nodes(ast.Assign) if names & set(map(ast.unparse, each.targets)))

@@ -123,16 +123,8 @@ def _fails(source: SourceEditor, policy: str, *lines: int) -> bool:
 
 def _endpoint(source: SourceEditor, line: int) -> tuple[ast.Call, str]:
     """Return the call that creates the publisher or subscription at a line, and its function's name."""
-    found = [
-        (each, each.func.attr)
-        for each in source.nodes(ast.Call)
-        if isinstance(each.func, ast.Attribute)
-        and each.func.attr in _PLACES
-        and each.lineno <= line <= (each.end_lineno or 0)
-    ]
-    if len(found) != 1:
-        raise NotSimpleError
-    return found[0]
+    made = source.call_at(line, _PLACES.__contains__)
+    return made, ast.unparse(made.func).rpartition(".")[2]
 
 
 def _profile_of(call: ast.Call, end: str) -> ast.expr:

@@ -73,11 +73,7 @@ def futures_used(source: SourceEditor, line: int, attribute: str) -> list[ast.ex
     within: ast.AST = source.tree
     with suppress(NotSimpleError):
         within = source.function_at(line)
-    asked = [
-        each.value
-        for each in source.nodes(ast.Attribute)
-        if each.attr == attribute and each.lineno <= line <= (each.end_lineno or 0)
-    ]
+    asked = [each.value for each in source.around(ast.Attribute, line) if each.attr == attribute]
     names = {ast.unparse(each) for each in asked}
     named = [
         each.value for each in source.nodes(ast.Assign, within) if names & set(map(ast.unparse, each.targets))

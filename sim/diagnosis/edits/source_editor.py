@@ -3,7 +3,7 @@
 import ast
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from textwrap import indent
 from typing import TypeAlias, TypeVar
@@ -11,6 +11,7 @@ from typing import TypeAlias, TypeVar
 Function: TypeAlias = ast.FunctionDef | ast.AsyncFunctionDef
 Positioned: TypeAlias = ast.stmt | ast.expr | ast.alias | ast.arg
 Node = TypeVar("Node", bound=ast.AST)
+Line = TypeVar("Line", bound=ast.stmt | ast.expr)
 
 
 class NotSimpleError(Exception):
@@ -44,6 +45,18 @@ class SourceEditor:
         """Return the nodes of a kind, in the whole source or a part."""
         return [each for each in ast.walk(within or self.tree) if isinstance(each, kind)]
 
+    def around(self, kind: type[Line], line: int) -> list[Line]:
+        """Return the nodes of a kind that a line is a part of, the outer ones first."""
+        return [each for each in self.nodes(kind) if each.lineno <= line <= (each.end_lineno or 0)]
+
+    def call_at(self, line: int, fits: Callable[[str], bool]) -> ast.Call:
+        """Return the only call at a line of a function with a fitting name, without what precedes its dot."""
+        calls = self.around(ast.Call, line)
+        found = [each for each in calls if fits(ast.unparse(each.func).rpartition(".")[2])]
+        if len(found) != 1:
+            raise NotSimpleError
+        return found[0]
+
     def function_at(self, line: int) -> Function:
         """Return the innermost function around a line, without its decorators."""
         functions: list[Function] = [*self.nodes(ast.FunctionDef), *self.nodes(ast.AsyncFunctionDef)]
@@ -54,8 +67,7 @@ class SourceEditor:
 
     def statement_at(self, line: int) -> ast.stmt:
         """Return the innermost statement at a line."""
-        around = [each for each in self.nodes(ast.stmt) if each.lineno <= line <= (each.end_lineno or 0)]
-        if not around:
+        if not (around := self.around(ast.stmt, line)):
             raise NotSimpleError
         return around[-1]
 

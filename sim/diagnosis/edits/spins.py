@@ -137,8 +137,7 @@ def spin_beside(source: SourceEditor, line: int) -> None:
 
     Only if the rate is an attribute of the node, or an assignment tells whose rate it is.
     """
-    loops = [each for each in source.nodes(ast.stmt) if isinstance(each, ast.While | ast.For)]
-    around = [each for each in loops if each.lineno <= line <= (each.end_lineno or 0)]
+    around = [*source.around(ast.While, line), *source.around(ast.For, line)]
     makers = {
         ast.unparse(each.targets[0]): each.value.func.value
         for each in source.nodes(ast.Assign)

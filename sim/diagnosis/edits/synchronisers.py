@@ -33,13 +33,7 @@ def lengthen_queues(source: SourceEditor, line: int) -> None:
 
 
 def _made_at(source: SourceEditor, line: int) -> ast.Call:
-    found = [
-        each
-        for each in source.nodes(ast.Call)
-        if each.lineno <= line <= (each.end_lineno or 0)
-        and source.code_of(each.func).rpartition(".")[2] in (_EXACT, _APPROXIMATE)
-        and each.args
-    ]
-    if len(found) != 1:
+    made = source.call_at(line, (_EXACT, _APPROXIMATE).__contains__)
+    if not made.args:
         raise NotSimpleError
-    return found[0]
+    return made
