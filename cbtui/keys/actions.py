@@ -32,6 +32,11 @@ _BARS = "Go to the clicked lane's bar before or after the cursor"
 _WIDTH = "Make the pane wider or narrower; that is remembered"
 _HEIGHT = "Make the pane, or the lanes, taller or lower"
 _JUMP = "Show a letter on each place; type it to go there"
+_PAUSING = "Pause: stop time for every thread, or let it go on"
+_END = "Go back to the present; of what is over, to the end"
+_AGAIN = "Put the robot back to its start, or run again"
+_EXERCISE = "Do the exercise in your own file; there, back to the lesson"
+_LEAVING = "End the run; go back to the menu, or to the run before it"
 _OPTION = "Highlight another thread, and its line"
 _OPTION_NUMBER = "Let the thread with this number go on"
 _ANSWER_NUMBER = "Highlight the answer with this number"
@@ -95,25 +100,25 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
     Scope.LESSON: (
         ("call_service", "s", "service", "Call the lesson's SetBool service with true"),
         ("call_service_off", "S", "false", "Call the lesson's SetBool service with false"),
-        ("pause", "space", "pause", "Pause: stop time for every thread"),
-        ("resume", "space", "go on", "Resume: let time go on"),
+        ("pause", "space", "pause", "Pause: stop time for every thread", _PAUSING),
+        ("resume", "space", "go on", "Resume: let time go on", _PAUSING),
         ("undo", "u", "undo", "Take back the last choice of who goes on"),
-        ("live", "0", "live", "Go back to the present"),
-        ("to_end", "0", "end", "Go to the end"),
+        ("live", "0", "live", "Go back to the present", _END),
+        ("to_end", "0", "end", "Go to the end", _END),
         ("predict", "P", "predict", "Say what you expect of the run; your answer is final"),
         ("explain", "a", "explain", "Explain what happened in the run, and why"),
         ("step", "full_stop", "step", "Go on by one decision; looking back, by one event"),
-        ("run_again", "r", "run again", "Run again, when the run is over"),
+        ("run_again", "r", "run again", "Run again, when the run is over", _AGAIN),
         ("threads", "t", "threads", "Choose how many threads the executor gets, and run again"),
-        ("exercise", "e", "exercise", "Do the exercise, in a file of your own in the current folder"),
+        ("exercise", "e", "exercise", "Do the exercise, in a file of your own", _EXERCISE),
         ("watch", "w", "watch", "Run your file again at real-time speed"),
         ("hint", "h", "hint", "Take the next hint for the exercise"),
-        ("lesson", "e", "lesson", "Go from the exercise or puzzle to its lesson"),
+        ("lesson", "e", "lesson", "Go from the exercise or puzzle to its lesson", _EXERCISE),
         ("next_lesson", "n", "next", "Open the next lesson"),
         ("solution", "H", "solution", "Look at the solution of the exercise or puzzle"),
         ("group", "g", "group", "Give the selected callback another group, and run again"),
         ("set_up", "p", "set-up", "Change timer periods and the rest of the set-up"),
-        ("reset_world", "r", "reset", "Put the robot back to its start"),
+        ("reset_world", "r", "reset", "Put the robot back to its start", _AGAIN),
         ("compare", "C", "compare", "Compare this run with the one before"),
         ("no_call_service", "s", "", "Say why no service is called"),
         ("no_call_service_off", "S", "", "Say why no service is called"),
@@ -179,8 +184,8 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("usual_sizes", "equals_sign", "usual sizes", "Give lanes and panes their usual sizes"),
         ("chain", "k", "chain", "Follow messages between topics: their path on the lanes"),
         ("take_over", "W", "choose", "From a paused moment on, choose which thread goes on"),
-        ("leave", "q", "menu", "End the run and go back to the menu"),
-        ("go_back", "q", "back", "End the run and go back to the run that led here"),
+        ("leave", "q", "menu", "End the run and go back to the menu", _LEAVING),
+        ("go_back", "q", "back", "End the run and go back to the run that led here", _LEAVING),
     ),
     Scope.COMPARE: (
         ("window", "w", "whole or screen", "Let the table cover whole runs, or only what is on screen"),
@@ -348,7 +353,7 @@ ACTIONS = tuple(KeyAction(scope, *row) for scope, rows in _ROWS.items() for row 
 TASKS = {
     task: tuple(names.split())
     for task, names in {
-        "Learn": "predict explain exercise watch hint solution lesson next_lesson leave go_back",
+        "Learn": "predict explain exercise lesson watch hint solution next_lesson leave go_back",
         "Act on the run": (
             "call_service call_service_off prompt prompt_here type reset_world run_again start_over undo "
             "take_over"

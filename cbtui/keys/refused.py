@@ -32,6 +32,13 @@ NOT_ALWAYS = {
     "call_service_off": "S",
     "prompt": "colon",
     "record": "R",
+    "live": "0",
+    "undo": "u",
+    "watch": "w",
+    "chain": "k",
+    "type": "i",
+    "export": "x",
+    "usual_sizes": "equals_sign",
 }
 """Actions that make no sense for some of what a run's screen shows, such as a recording."""
 _BEGINNING, _END = "This is the beginning of the runs.", "This is the end of the runs."

@@ -138,6 +138,13 @@ class Absences(ScreenPart):
             "step": f"{pauses}{key('step_back')} looks back, event by event.",
             "cycle_camera": "There is no robot here whose map or camera could be shown.",
             "next_lesson": f"No lesson follows {'this one' if self.lesson else 'here'}: {lessons}",
+            "live": f"The {'present' if run.alive else 'end'} is on screen already.",
+            "undo": "Nothing was chosen that could be taken back.",
+            "watch": "Only an exercise is watched again.",
+            "chain": "No message has been sent so far.",
+            "export": "Nothing has happened yet that could be exported.",
+            "usual_sizes": "Lanes and panes have their usual sizes already.",
+            "type": "No program reads from the keyboard now.",
             "compare": "There is only one run so far: nothing to compare it with.",
         }
         if self.is_available("faster") or self.is_available("slower"):

@@ -1,7 +1,7 @@
 """The help: the signs of the screen, then every key by what it is for, with a search."""
 
 from collections.abc import Callable, Iterable, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeAlias
 
 from textual import on
 from textual.app import ComposeResult
@@ -9,7 +9,7 @@ from textual.containers import Horizontal, VerticalScroll
 from textual.content import Content
 from textual.widgets import Input, Static
 
-from cbtui.keys.action import KeyAction, Scope, group_by
+from cbtui.keys.action import KeyAction, Scope, group_by, method_of
 from cbtui.keys.actions import ACTIONS, TASKS
 from cbtui.keys.keymap import Keymap, keymap_of
 from cbtui.keys.refused import OWN_TIME
@@ -39,14 +39,16 @@ _SHOWN = (
 _WIDEST = 160
 """The most columns of the window."""
 
+_AbsenceOf: TypeAlias = Callable[[Sequence[KeyAction]], str | None]
+
 
 class _HelpRow(NamedTuple):
     """A key or a sign, and what it means."""
 
     sign: str
     meaning: str
-    is_refused: bool = False
-    """Whether real ROS 2 rules it out."""
+    absence: str | None = None
+    """What is added to the meaning of a key that does nothing at the moment."""
     labels: str = ""
     """The words of the footer, which a search finds too."""
 
@@ -69,12 +71,12 @@ class _HelpPage(NamedTuple):
 class HelpScreen(WindowScreen[None]):
     """Lists signs and keys; a search leaves the rows that contain all of its words.
 
-    A wide window has the keys by task beside the signs.
+    A wide window has the keys by task beside the signs. Keys that do nothing now are in brackets.
     """
 
     SCOPE = Scope.HELP
     HAS_HELP = False
-    heading = "Signs and keys"
+    heading = "Signs and keys · in brackets: not now"
 
     def content(self) -> ComposeResult:
         """Lay out the search and the list."""
@@ -88,14 +90,14 @@ class HelpScreen(WindowScreen[None]):
         below = self.app.screen_stack[-2]
         scope = getattr(below, "SCOPE", None)
 
-        def is_refused(action: KeyAction) -> bool:
-            return (
-                scope is Scope.LESSON
-                and action.name in OWN_TIME
-                and below.check_action("no_time", (action.name,)) is True
-            )
+        def absence(actions: Sequence[KeyAction]) -> str | None:
+            if actions[0].scope is not scope or any(below.check_action(*method_of(each)) for each in actions):
+                return None
+            is_timed = scope is Scope.LESSON and actions[0].name in OWN_TIME
+            is_real = is_timed and below.check_action("no_time", (actions[0].name,))
+            return " (not on real ROS 2)" if is_real else ""
 
-        self._page = _page(scope, keymap_of(self.app), self._charset, is_refused)
+        self._page = _page(scope, keymap_of(self.app), self._charset, absence)
         self._headings: list[tuple[int, str]] = []
         """The headings, and the rows on which they stand."""
         self.query_one(Input).display = False
@@ -180,26 +182,24 @@ def _shown(section: _Section, width: int, charset: Charset) -> list[Content]:
     """Return the lines of a section, and an empty one."""
     lines = [Content.styled(section.heading, "bold $text-primary")]
     for row in section.rows:
-        meaning = f"{row.meaning} (not on real ROS 2)" if row.is_refused else row.meaning
-        styles = ("$text-muted",) * 2 if row.is_refused else ("bold $text-accent", "$text")
-        for place, text in enumerate(lines_of_text(meaning, width - 11, charset)):
-            sign = "" if place else row.sign
+        is_absent = row.absence is not None
+        styles = ("$text-muted",) * 2 if is_absent else ("bold $text-accent", "$text")
+        for place, text in enumerate(lines_of_text(f"{row.meaning}{row.absence or ''}", width - 11, charset)):
+            sign = "" if place else f"({row.sign})" if is_absent else row.sign
             lines.append(Content.assemble((f"{sign:>9}", styles[0]), (f"  {text}", styles[1])))
     return [*lines, Content("")]
 
 
-def _page(
-    scope: Scope | None, keymap: Keymap, charset: Charset, is_refused: Callable[[KeyAction], bool]
-) -> _HelpPage:
+def _page(scope: Scope | None, keymap: Keymap, charset: Charset, absence: _AbsenceOf) -> _HelpPage:
     """Return the help over a screen of ``scope``, whose own keys come before those of others."""
-    tasks = [_of_task(task, ids, keymap, charset, is_refused) for task, ids in TASKS.items()]
-    others = {each: _of_scope(each, keymap, charset) for each in _SHOWN}
+    tasks = [_of_task(task, ids, keymap, charset, absence) for task, ids in TASKS.items()]
+    others = {each: _of_scope(each, keymap, charset, absence) for each in _SHOWN}
     if scope in (Scope.MENU, Scope.SEARCH):
         first = [_stages(), others.pop(scope), _lane_signs(charset)]
         return _HelpPage(first, tasks, [*others.values()])
     if scope in others:
         tasks.insert(0, others.pop(scope))
-    own = [] if scope in (None, Scope.LESSON, *_SHOWN) else [_of_scope(scope, keymap, charset)]
+    own = [] if scope in (None, Scope.LESSON, *_SHOWN) else [_of_scope(scope, keymap, charset, absence)]
     return _HelpPage([*own, _lane_signs(charset)], tasks, [*others.values(), _stages()])
 
 
@@ -246,16 +246,16 @@ def _of_task(
     ids: Sequence[str],
     keymap: Keymap,
     charset: Charset,
-    is_refused: Callable[[KeyAction], bool],
+    absence: _AbsenceOf,
 ) -> _Section:
     actions = [action for action in ACTIONS if action.scope is Scope.LESSON and action.name in ids]
     actions.sort(key=lambda action: ids.index(action.name))
-    return _keys(task, actions, keymap, charset, is_refused)
+    return _keys(task, actions, keymap, charset, absence)
 
 
-def _of_scope(scope: Scope, keymap: Keymap, charset: Charset) -> _Section:
+def _of_scope(scope: Scope, keymap: Keymap, charset: Charset, absence: _AbsenceOf) -> _Section:
     own = [action for action in ACTIONS if action.scope is scope and not action.refused]
-    return _keys(scope.value, own, keymap, charset)
+    return _keys(scope.value, own, keymap, charset, absence)
 
 
 def _keys(
@@ -263,7 +263,7 @@ def _keys(
     actions: Sequence[KeyAction],
     keymap: Keymap,
     charset: Charset,
-    is_refused: Callable[[KeyAction], bool] = lambda _: False,
+    absence: _AbsenceOf,
 ) -> _Section:
     groups = group_by(keymap.of(actions), "line")
     return _Section(
@@ -272,7 +272,7 @@ def _keys(
             _HelpRow(
                 signs_of(group, charset),
                 group[0].line,
-                is_refused(group[0]),
+                absence(group),
                 " ".join(action.label for action in group),
             )
             for group in groups

@@ -1,5 +1,7 @@
 import asyncio
+import re
 import threading
+from collections import Counter
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
@@ -8,8 +10,9 @@ from textual.pilot import Pilot
 from textual.widget import Widget
 from textual.widgets import Static
 
-from cbtui.keys.action import Scope
+from cbtui.keys.action import Scope, method_of
 from cbtui.keys.actions import ACTIONS
+from cbtui.keys.signs import character_of
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.live.live_run import RunState
 from cbtui.screens.lesson import LessonScreen
@@ -384,6 +387,29 @@ async def test_a_key_that_does_nothing_here_says_why() -> None:
         assert told[0] == "One shared group has no exercise: the lesson is done once it is explained."
         assert told[1].startswith("There is only one run so far"), "a repeated sentence is shown once"
         assert "e exercise" not in text_of(app)
+
+
+@pytest.mark.parametrize("moment", [0.0, 13.15])
+async def test_each_sign_of_the_help_does_something_at_any_moment_or_says_why_not(moment: float) -> None:
+    app = RecordedConsole("shared-group", EVENTS, moment)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        of_lesson = [action for action in ACTIONS if action.scope is Scope.LESSON]
+        answered = {each.key for each in of_lesson if app.screen.check_action(*method_of(each))}
+        assert {each.key for each in of_lesson if character_of(each.key)} - answered == {"7"}
+
+
+async def test_the_help_has_what_does_nothing_now_in_brackets_and_each_key_once_for_a_task() -> None:
+    async with console(WIDE) as (app, pilot):
+        await press(pilot, "question_mark")
+        assert "in brackets: not now" in lines_of(app)[0]
+        text = text_of(app)
+        assert " (e)  Do the exercise in your own file; there, back to" in text
+        assert "  a  Explain what happened" in text
+        learn = re.findall(r"  (\S+)  [A-Z]", text.partition("Learn")[2].partition("Act on the run")[0])
+        assert all(count == 1 for count in Counter(learn).values())
+        await press(pilot, "escape", "a", "question_mark")
+        assert "  a  Explain what happened" in text_of(app)
 
 
 async def test_a_narrow_screen_shows_the_pane_of_a_number() -> None:
