@@ -55,6 +55,13 @@ def clear_hints(app: App[Any]) -> None:
         app.clear_notifications()
 
 
+def unsay(app: App[Any], sentence: str) -> None:
+    """Clear the notification of a sentence; a later one of the same identity would end when it does."""
+    for each in list(app._notifications):
+        if each.message == sentence:
+            app._unnotify(each)
+
+
 def paint_now(widget: Widget) -> None:
     """Send a widget's picture to the terminal before what takes long in the same message."""
     screen = widget.screen

@@ -389,6 +389,18 @@ async def test_a_key_that_does_nothing_here_says_why() -> None:
         assert "e exercise" not in text_of(app)
 
 
+async def test_what_is_said_again_is_shown_once_and_begins_its_time_anew() -> None:
+    app = RecordedConsole("shared-group", EVENTS, 13.15)
+    async with app.run_test(size=NARROW, notifications=True) as pilot:
+        await settle(pilot)
+        await press(pilot, "e")
+        await until(pilot, lambda: len(app.screen.query("Toast")) == 1)
+        before = app.screen.query("Toast").first()
+        await press(pilot, "e")
+        await until(pilot, lambda: [before] != list(app.screen.query("Toast")) != [])
+        assert len(app.screen.query("Toast")) == len(app._notifications) == 1
+
+
 @pytest.mark.parametrize("moment", [0.0, 13.15])
 async def test_each_sign_of_the_help_does_something_at_any_moment_or_says_why_not(moment: float) -> None:
     app = RecordedConsole("shared-group", EVENTS, moment)
