@@ -77,10 +77,7 @@ def exercise_of(name: str) -> "Lesson":
     """Return the lesson with that id; exits with code 2 and one line if it has no exercise."""
     lesson = lesson_of(name)
     if lesson.exercise is None:
-        from lessons.catalogue import lessons
-
-        others = ", ".join(each.id for each in lessons() if each.exercise is not None)
-        refuse(f"the lesson {name} has no exercise; these have one: {others}")
+        refuse(f"the lesson {name} has no exercise; cbtui list shows which lessons have one")
     return lesson
 
 

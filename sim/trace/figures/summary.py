@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 
 from sim.trace.descriptions import node_name, why_waiting
-from sim.trace.events import EntityId, EntityKind, RobotMoved, VelocityCommanded
+from sim.trace.events import EntityId, RobotMoved, VelocityCommanded
 from sim.trace.figures.concurrency import threads_at_once
 from sim.trace.figures.waiting import waited_by
 from sim.trace.incremental import Incremental, collect, run_to_end, split
@@ -30,8 +30,7 @@ class CallbackFigures:
     """The figures of one callback.
 
     ``running`` is the share (0 upwards; above 1 if calls overlap) of the run that its calls took; ``late``
-    the age of the oldest message it took, or a timer's greatest lateness, that of a call which waits at the
-    end included.
+    the age of the oldest message it took, or a timer's greatest lateness, or how long a call waits at the end.
     """
 
     entity: EntityInfo
@@ -117,7 +116,7 @@ def _callbacks(timeline: Timeline, whole: Window) -> Iterator[CallbackFigures]:
             calls=timeline.calls_of(entity.id, whole),
             running=running / length if length else 0.0,
             longest_wait=_longest(waits, timeline),
-            late=max([*(span.age for span in spans), *_pending(entity, waits, timeline)], default=0),
+            late=max([*(span.age for span in spans), *_pending(waits, timeline)], default=0),
             drops=drops,
             errors=sum(bool(span.error) for span in spans),
         )
@@ -157,10 +156,9 @@ def _longest(waits: Iterable[Wait], timeline: Timeline) -> LongestWait | None:
     return longest
 
 
-def _pending(timer: EntityInfo, waits: Iterable[Wait], timeline: Timeline) -> Iterator[Nanoseconds]:
-    """How late the call of a timer is that has not begun when the run ends."""
-    if timer.kind is EntityKind.TIMER:
-        yield from (timeline.end - wait.since for wait in waits if wait.end is None)
+def _pending(waits: Iterable[Wait], timeline: Timeline) -> Iterator[Nanoseconds]:
+    """How late a call is that has not begun when the run ends."""
+    yield from (timeline.end - wait.since for wait in waits if wait.end is None)
 
 
 def _services(calls: Iterable[Call]) -> Iterator[ServiceFigures]:

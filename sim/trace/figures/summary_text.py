@@ -8,7 +8,7 @@ from sim.quantities.plural import counted
 from sim.trace.figures.summary import CallbackFigures, RobotFigures, ServiceFigures, Summary
 
 HEADS = ("callback", "group", "calls", "running", "late by", "lost", "errors")
-LATE_BY = "late by: the oldest message it took, or how late its timer was at worst"
+LATE_BY = "late by: its oldest message, taken or waiting, or how late its timer was"
 
 
 def plain_text(summary: Summary) -> str:
