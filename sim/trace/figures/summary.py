@@ -30,7 +30,7 @@ class CallbackFigures:
     """The figures of one callback.
 
     ``running`` is the share (0 upwards; above 1 if calls overlap) of the run that its calls took; ``late``
-    the age of the oldest message it took, or a timer's greatest lateness, or how long a call waits at the end.
+    the age of the oldest message it took, a timer's greatest lateness, or how long a call waits at the end.
     """
 
     entity: EntityInfo
