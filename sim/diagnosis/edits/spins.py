@@ -137,7 +137,7 @@ def spin_beside(source: SourceEditor, line: int) -> None:
 
     Only if the rate is an attribute of the node, or an assignment tells whose rate it is.
     """
-    around = [*source.around(ast.While, line), *source.around(ast.For, line)]
+    around = [each for each in source.around(ast.stmt, line) if isinstance(each, ast.While | ast.For)]
     makers = {
         ast.unparse(each.targets[0]): each.value.func.value
         for each in source.nodes(ast.Assign)

@@ -144,7 +144,15 @@ LOOP = "import rclpy\n{0}while rclpy.ok():\n    for _ in range(3):\n        {1}.
 def test_the_node_of_a_rate_is_spun_in_a_thread_that_begins_before_the_outermost_loop(
     made: str, rate: str, node: str
 ) -> None:
-    assert changed(LOOP.format(made, rate), spin_beside) == [
+    inside_out = LOOP.replace("while rclpy.ok()", "for _ in range(3)", 1).replace(
+        "    for _ in range(3)", "    while rclpy.ok()"
+    )
+    for loop in (LOOP, inside_out):
+        assert changed(loop.format(made, rate), spin_beside) == spun_before_loop(node)
+
+
+def spun_before_loop(node: str) -> list[str]:
+    return [
         "+from threading import Thread",
         "+",
         f"+Thread(target=rclpy.spin, args=({node},), daemon=True).start()",
