@@ -243,13 +243,17 @@ def test_of_runs_in_which_nothing_ran_no_threads_are_counted() -> None:
 
 
 def test_an_exception_that_ends_a_run_belongs_to_what_is_compared_of_it() -> None:
-    for clock in ("virtual", "real"):
+    for clock, later in (("virtual", 0.0), ("real", 0.1)):
         start = RunStarted(0, "run", clock, 0)
         raised = CallbackFailed(ns(2.0), 1, 1, "IndexError", "node.py", 2)
         ended = RunEnded(ns(2.0), "it raised", failed=True)
         failed = run([ODOM], [start, *called(1, 1.0, 1.0), *called(1, 2.0, 2.0)[:1], raised, ended])
-        longer = run([ODOM], [start, *(each for at in (1.1, 2.1, 3.1) for each in called(1, at, at))])
-        odom, _ = sections(compare(failed, longer, Window(0, covered(failed))))
+        longer = run(
+            [ODOM], [start, *(each for at in (1, 2, 3) for each in called(1, at + later, at + later))]
+        )
+        window = Window(0, covered(failed))
+        assert (run_to_end(first_difference(failed, longer, window)) == ns(2.0)) is (clock == "virtual")
+        odom, _ = sections(compare(failed, longer, window))
         assert {"calls", "errors"} & {row.label for row in odom.rows} == {"calls", "errors"}
 
 

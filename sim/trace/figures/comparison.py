@@ -253,17 +253,19 @@ class _Call(NamedTuple):
 
     start: Nanoseconds
     end: Nanoseconds | None
+    error: str
 
     def parts_from(self, other: "_Call", same: Nanoseconds) -> Nanoseconds | None:
-        """When this call and the other one differ by so much; None if they do not."""
+        """When this call and the other one differ by so much, or only one has an error; None for never."""
         if abs(self.start - other.start) >= same:
             return min(self.start, other.start)
         ends = [call.end for call in (self, other) if call.end is not None]
-        return min(ends) if ends and (len(ends) == 1 or abs(ends[0] - ends[1]) >= same) else None
+        differ = len(ends) == 1 or bool(self.error) != bool(other.error)
+        return min(ends) if ends and (differ or abs(ends[0] - ends[1]) >= same) else None
 
 
 def _times(spans: Sequence[Span], zero: Nanoseconds) -> list[_Call]:
-    return [_Call(span.start - zero, None if span.end is None else span.end - zero) for span in spans]
+    return [_Call(each.start - zero, each.end and each.end - zero, each.error) for each in spans]
 
 
 def _first_different(first: Sequence[_Call], second: Sequence[_Call]) -> Nanoseconds | None:
