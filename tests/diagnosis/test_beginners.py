@@ -59,6 +59,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "give tick a callback group of its own, and let on_start complete it",
         ),
         ("await_in_own_group", "overrun-timer", "await self.ready", "let on_start complete it"),
+        ("type_mismatch", "qos-mismatch", "create_subscription(String", "the same message type"),
         ("event_never_set", "endless-wait", "self.go.wait()", "call self.go.set() where start may go on"),
         ("barrier_of_more", "endless-wait", "self.gate.wait()", "make it a Barrier(1)"),
         ("wait_for_event", "endless-wait", "self.opened.wait()", "give go a callback group of its own"),

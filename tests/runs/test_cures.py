@@ -90,6 +90,8 @@ FIT = "define it with the parameters it is called with (diff)"
         ("misspelt_service", ["call /motor_power (diff)"]),
         ("rate_in_main", ["spin the node in a thread beside the loop (diff)"]),
         ("spin_once", ["return from go, and go on where what it waits for is set (diff)"]),
+        ("type_mismatch", ["take the type that is published (diff)"]),
+        ("spin_with_timeout", [DONE, AWAIT.format("tick")]),
         ("event_never_set", ["wait for 0.1 s at most (diff)"]),
         ("barrier_of_more", ["make it a Barrier(1) (diff)"]),
         ("wait_for_event", [APART.replace("tick", "go")]),

@@ -23,8 +23,13 @@ def match_quality(source: SourceEditor, line: int, policy: str, other: int = 0) 
 
     The profile is a number, or a ``QoSProfile(…)`` that nothing else uses; another one by name, as an
     imported one, is copied. The other end, at the line ``other`` (0: not in this source), may show that a
-    second policy does not match either.
+    second policy does not match either. It has the type that an end takes over, where the types differ.
     """
+    if policy == "TYPE" and other:
+        mine, theirs = (_endpoint(source, each)[0].args for each in (line, other))
+        for old, new in zip(mine[:1], theirs[:1], strict=True):
+            source.replace(old, source.code_of(new))
+        return
     if policy not in _KINDS:
         raise NotSimpleError
     call, end = _endpoint(source, line)

@@ -201,7 +201,8 @@ def future_of(wait: ast.stmt) -> str:
         function = wait.value.func
         if isinstance(function, ast.Attribute) and function.attr == _SPIN:
             for each in wait.value.args[-1:]:
-                if isinstance(each, ast.Name | ast.Attribute) and not wait.value.keywords:
+                more = {each.arg for each in wait.value.keywords} - {"timeout_sec"}
+                if isinstance(each, ast.Name | ast.Attribute) and not more:
                     return ast.unparse(each)
     future = _loop_future(wait)
     if not future:

@@ -307,8 +307,9 @@ class QosMismatch(Rule):
             lines = (publisher.first_line, subscription.first_line)
             also = unmatched_beside(publisher.file, found.detail, *lines)
         same, differs = "QoSProfile", f"{listed([found.detail, *also])} do{'' if also else 'es'} not match"
+        words = _PROFILE_WORDS[bool(publisher) and (not subscription or found.detail == "DURABILITY")]
         if found.detail == _TYPE:
-            same, differs = "message type", "message types differ"
+            same, differs, words = "message type", "message types differ", "take the type that is published"
         cure = f"give both ends of {found.about} the same {same}"
         cure += f": {' and '.join(ends)}" if ends else ""
         if len(ends) == 1:
@@ -325,9 +326,7 @@ class QosMismatch(Rule):
             _POLICY_RULES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
             cure,
             place or place_of(found.subject, timeline),
-            remedies=by_edit(
-                edited, _PROFILE_WORDS[edited is not subscription], match_quality, found.detail, seen
-            ),
+            remedies=by_edit(edited, words, match_quality, found.detail, seen),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
