@@ -270,6 +270,11 @@ def test_what_asyncio_misses_in_a_callback_is_told_with_what_to_await_instead(th
             "or the file of parameters",
         ),
         (
+            "InvalidHandle: cannot use Destroyable because destruction was requested",
+            "what this line uses was destroyed before, itself or with its node",
+            "destroy it only when nothing uses it any more, or make it again before this line",
+        ),
+        (
             "RuntimeError: dictionary changed size during iteration",
             "the dictionary was changed while this line went through it, by this loop or by another thread",
             "go through a copy, such as list(...) of it; and where another thread changes it, hold one lock "

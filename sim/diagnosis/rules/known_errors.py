@@ -123,6 +123,11 @@ _KNOWN = tuple(
             r"if this line publishes, give create_publisher() the class itself: Int32, not Int32()",
         ),
         (
+            r"InvalidHandle: cannot use Destroyable because destruction was requested",
+            r"what this line uses was destroyed before, itself or with its node",
+            r"destroy it only when nothing uses it any more, or make it again before this line",
+        ),
+        (
             r"EOFError: EOF when reading a line",
             r"nobody types into this run, so input() found the end of what there is to read",
             r"run it where somebody can type; in a callback, which keeps its thread so long, read in another "
