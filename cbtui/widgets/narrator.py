@@ -178,8 +178,12 @@ def _waits(timeline: Timeline, at: Nanoseconds, since: Nanoseconds) -> Sequence[
     moment = timeline.moment(at)
     turns = next_in_turn(moment, timeline).items()
     told_too = [_turn(each, begun, timeline, at) for each, begun in turns if not left or begun >= since]
-    late = [late_reply(each, moment, timeline) for each in moment.blocked.values()]
-    told = (*_by_cause(left, timeline, at), "; ".join(told_too), *late)
+    calls = [
+        late_reply(each, moment, timeline) or _in_its_call(each, timeline)
+        for each in moment.blocked.values()
+        if each.start < since
+    ]
+    told = (*_by_cause(left, timeline, at), "; ".join(told_too), *calls)
     return tuple(filter(None, told)) or (_at_rest(timeline, at),)
 
 
@@ -264,6 +268,11 @@ def _blocked(blocked: Blocked, deed: Deed, timeline: Timeline) -> str:
         return f"{caller} goes on after its call of {blocked.service}"
     group = " and its group" if blocked.entity and _exclusive_group(blocked.entity, timeline) else ""
     return f"{caller} calls {blocked.service}, and keeps its thread{group} until the reply"
+
+
+def _in_its_call(blocked: Blocked, timeline: Timeline) -> str:
+    caller = name_of(blocked.entity, timeline) if blocked.entity else "the program"
+    return f"{caller} has stood in its call of {blocked.service} since {timestamp(blocked.start)}"
 
 
 def _lost(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:

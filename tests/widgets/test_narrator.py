@@ -166,6 +166,23 @@ def test_a_callback_that_its_own_last_call_keeps_waiting_is_told() -> None:
     )
 
 
+def test_a_callback_that_stands_in_its_call_is_told_after_it_has_begun_to() -> None:
+    run = Run()
+    group, thread = run.exclusive(run.node("/n")), run.thread("MainThread")
+    ask, heard = run.timer(group, "ask", 1.0), run.subscription(group, "/a", "heard")
+    run.callback(ask, thread, 1.0, 4.0)
+    run.blocked(run.call("/ask", 1.5, ask), "/ask", thread, ask, 1.5)
+    run.message(heard, 2.5)
+    run.wait(heard, 2.5, 4.0, Reason.GROUP_HELD, ask)
+    timeline = told(run)
+    assert narration(timeline, ns(3.0)) == (
+        "2.500 s: heard is ready",
+        "heard has waited since 2.500 s, 1 queued: group A held by ask",
+        "ask has stood in its call of /ask since 1.500 s",
+    )
+    assert not any("has stood" in told for told in narration(timeline, ns(1.5)))
+
+
 def test_in_a_reentrant_group_a_callback_waits_for_a_thread_and_not_for_its_own_last_call() -> None:
     run = Run()
     run.executor("MultiThreadedExecutor", 1)
