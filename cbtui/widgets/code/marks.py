@@ -1,6 +1,6 @@
 """The activity of each callback in the source files at a moment: running, waiting and why, or just run."""
 
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
@@ -77,18 +77,22 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
     Also returned are the calls to there.
 
     Sleeps that follow each other at one line are one position, and a sample between them makes several: of a
-    sleep in a loop the text tells when its call began. Of several threads at one line it tells of the first.
+    sleep in a loop the text tells when its call began. Of several threads at one line it tells how many they
+    are, and what the first one does.
     """
     found: defaultdict[SourceFile, LineMarks] = defaultdict(dict)
     groups, running = list(timeline.groups), timeline.moment(at).running
     positions = [each for thread in running if (each := timeline.position_on(thread, at)) is not None]
     for thread in timeline.threads:
         positions += timeline.program_waits_on(thread, Window(at, at + 1))
+    together = Counter((position.file, position.line) for position in positions)
     since = [(_there_since(position, timeline), position) for position in positions]
     for start, position in sorted(since, key=itemgetter(0)):
         number = groups.index(timeline.entities[position.entity].group) if position.entity else -1
         file = files.of(position.file)
         texts = () if file is None else tuple(_at_line(position, at, start, timeline, file))
+        if texts and (many := together[position.file, position.line]) > 1:
+            texts = (f"▶ {many} threads, the first{texts[0].removeprefix('▶')}", *texts)
         _mark(found, files, position.frames, number, texts)
     for own in timeline.own_threads_at(at):
         frames, name = tuple(Frame(*frame) for frame in own.frames), short_thread(own.name)

@@ -208,7 +208,9 @@ def test_of_several_calls_of_a_callback_each_is_told_with_its_own_time_or_the_lo
     assert mark.texts == ("▶ Pool-0_1 2.0 s, Pool-0_0 1.0 s", "▶ 2 calls, longest 2.0 s", "▶ 2.0 s")
     files = SourceFiles(path)
     lines = lines_at(timeline, ns(3.0), files)[files.main]
-    assert lines[36].texts[0] == "▶ sleeps, here for 1.5 s"
+    first = "sleeps, here for 1.5 s"
+    assert lines[36].texts[:2] == (f"▶ 2 threads, the first {first}", f"▶ {first}")
+    assert lines_at(timeline, ns(2.4), files)[files.main][36].texts[0] == "▶ sleeps, here for 900 ms"
     assert lines[31].texts == ()
 
 
