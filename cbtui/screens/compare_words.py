@@ -11,11 +11,13 @@ _STRONG = Ink(Role.STRONG)
 
 
 def about(number: int, side: ComparedSide) -> tuple[TextRun, ...]:
-    """Return the line above a run's lanes: its name, its end, what it lost and its executor."""
+    """Return the line above a run's lanes: its name, end and failure, what it lost and its executor."""
     timeline = side.timeline
     state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
     lost = f"lost {timeline.dropped(timeline.end)}"
-    facts = [text for text in (state, lost, executor_label(timeline)) if text]
+    ended = timeline.ended
+    failure = ended.reason if ended is not None and ended.failed else ""
+    facts = [text for text in (state, failure, lost, executor_label(timeline)) if text]
     name = TextRun(f" {RUNS[number]}  {side.name}", _STRONG)
     return (name, *(TextRun(f"   {fact}", _PLAIN) for fact in facts))
 

@@ -518,6 +518,7 @@ async def test_how_a_run_failed_and_what_of_a_recording_is_lost_is_said() -> Non
     ):
         told = {notification.message for notification in app._notifications}
         assert told == {"a: it broke", "it breaks off"}
+        assert "run A  a   ends at 1.000 s   it broke   lost 0" in text_of(app)
 
 
 @pytest.mark.slow

@@ -187,6 +187,14 @@ def test_a_difference_has_a_word_and_a_meaning() -> None:
     assert back["age med/max"].difference == "max 1.8 s older"
 
 
+def test_the_callbacks_for_which_a_run_is_better_or_worse_are_listed_first() -> None:
+    compared = compare(healthy(), starved(), Window(0, ns(4.0)))
+    assert [pair.name for pair in compared.callbacks] == [TIMER, ODOM]
+    assert [section.title for section in sections(compared)] == [ODOM, TIMER, "whole program"]
+    compared = compare(run([TIMER, ODOM], called(1, 1.0, 1.1)), healthy(), Window(0, ns(4.0)))
+    assert [section.title for section in sections(compared)] == [ODOM, TIMER, "whole program"]
+
+
 def test_the_usual_is_what_differs_where_the_longest_does_not() -> None:
     ages = (0.2, 0.2, 0.5), (0.1, 0.1, 0.5)
     one, other = (

@@ -59,6 +59,11 @@ class Section:
     rows: tuple[ComparisonRow, ...]
     notes: tuple[str, ...] = ()
 
+    @property
+    def is_even(self) -> bool:
+        """Whether no row is better or worse in a run."""
+        return {Assessment.BETTER, Assessment.WORSE}.isdisjoint(row.assessment for row in self.rows)
+
 
 Figure: TypeAlias = float | None
 
@@ -72,11 +77,12 @@ class _Spread(NamedTuple):
 
 
 def sections(comparison: Comparison) -> tuple[Section, ...]:
-    """The whole comparison: callback by callback, then the threads and the robot."""
-    return (
-        *(_section(pair, is_real=comparison.is_real) for pair in comparison.callbacks),
-        _whole(comparison.first, comparison.second),
+    """The whole comparison: first callbacks that do better or worse, then those that run far more often."""
+    told = [(pair, _section(pair, is_real=comparison.is_real)) for pair in comparison.callbacks]
+    told.sort(
+        key=lambda each: (each[1].is_even, not (each[0].is_unlike and each[0].first and each[0].second))
     )
+    return (*(section for _, section in told), _whole(comparison.first, comparison.second))
 
 
 def _whole(first: RunFigures, second: RunFigures) -> Section:
