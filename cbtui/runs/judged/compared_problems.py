@@ -37,11 +37,6 @@ class _Found:
     effects: frozenset[str]
 
     @property
-    def listed(self) -> str:
-        """The names of its problems."""
-        return ", ".join(dict.fromkeys((*(each.name for each in self.hangs.values()), *self.others)))
-
-    @property
     def names(self) -> frozenset[str]:
         """What is no news in the other run."""
         return self.effects | self.others.keys()
@@ -69,8 +64,11 @@ class ComparedProblems:
             return NO_PROBLEMS
         first, second = found = [*map(_found, (self.first, self.second), self._diagnoses)]
         if comparison is not None and comparison.shares_little:
-            of_runs = zip(RUNS, found, strict=True)
-            return Problems(" ".join(f"Found in {run}: {has.listed}." for run, has in of_runs if has.listed))
+            names = [
+                dict.fromkeys((*(each.name for each in run.hangs.values()), *run.others)) for run in found
+            ]
+            told = [f"Found in {run}: {', '.join(has)}." for run, has in zip(RUNS, names, strict=True) if has]
+            return Problems(" ".join(told))
         gone = _missing(first.others, second.names, self.second)
         new = _missing(second.others, first.names, self.first)
         still = [each.name for name, each in second.others.items() if name in first.names]

@@ -1,7 +1,6 @@
 """The letters of callback groups in two runs: the same group has the same letter in both."""
 
 from collections import Counter
-from collections.abc import Mapping
 from copy import copy
 from dataclasses import replace
 from itertools import count
@@ -16,7 +15,7 @@ from sim.trace.timeline import Timeline
 class _Lettered(dict[GroupId, GroupInfo]):
     """Groups of a run in the order of new letters; those that appear later keep their own."""
 
-    def __init__(self, groups: dict[GroupId, GroupInfo], places: Mapping[GroupId, int]) -> None:
+    def __init__(self, groups: dict[GroupId, GroupInfo], places: dict[GroupId, int]) -> None:
         lettered = {group: replace(groups[group], place=place) for group, place in places.items()}
         super().__init__(sorted(lettered.items(), key=lambda each: each[1].place))
         self._all = groups

@@ -82,19 +82,15 @@ def sections(comparison: Comparison) -> tuple[Section, ...]:
     told.sort(
         key=lambda each: (each[1].is_even, not (each[0].is_unlike and each[0].first and each[0].second))
     )
-    return (*(section for _, section in told), _whole(comparison.first, comparison.second))
+    whole = tuple(_whole(comparison.first, comparison.second))
+    notes = () if whole else ("no callback runs in either",)
+    return (*(section for _, section in told), Section("whole program", whole, notes))
 
 
-def _whole(first: RunFigures, second: RunFigures) -> Section:
-    robot = tuple(_of_robot(first, second))
-    if not (first.threads_used or second.threads_used):
-        return Section("whole program", robot, ("no callback runs in either",))
-    used = _row("threads used", first.threads_used, second.threads_used, COUNTS)
-    at_once = _row("at once", first.threads_at_once, second.threads_at_once, COUNTS)
-    return Section("whole program", (used, at_once, *robot))
-
-
-def _of_robot(first: RunFigures, second: RunFigures) -> Iterator[ComparisonRow]:
+def _whole(first: RunFigures, second: RunFigures) -> Iterator[ComparisonRow]:
+    if first.threads_used or second.threads_used:
+        yield _row("threads used", first.threads_used, second.threads_used, COUNTS)
+        yield _row("at once", first.threads_at_once, second.threads_at_once, COUNTS)
     if all(_stands(run.robot) for run in (first, second) if run.robot is not None):
         return  # it has no part in either run
     for label, figure, wording in _ROBOT_FIGURES:
