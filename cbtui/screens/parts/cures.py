@@ -104,6 +104,8 @@ class CureTrial:
     _verdicts: dict[tuple[Problem, str], Verdict] = field(default_factory=dict)
     _pairs: dict[Problem, list[Cure]] = field(default_factory=dict)
     """Cures that did not help, each with one of what was left."""
+    _offered: dict[Problem, tuple[frozenset[str], Callable[[Cure], Cure]]] = field(default_factory=dict)
+    """The keys of the cures of each problem, and what adds its code to one."""
 
     @property
     def refusal(self) -> str:
@@ -114,12 +116,18 @@ class CureTrial:
         """Return the cures of a finding that can be tried: only for problems, and only on the model."""
         if not found.is_problem or self.refusal:
             return ()
-        return tuple(map(self._with_code, cures_of(found.explanation, self.changes, self.run.timeline)))
+        timeline, source = self.run.timeline, text_of(self.trials.subject.node_path)
+        about = changeable(self.trials.subject, self.run.setup, timeline)
 
-    def _with_code(self, cure: Cure) -> Cure:
-        about = changeable(self.trials.subject, self.run.setup, self.run.timeline)
-        source = text_of(self.trials.subject.node_path)
-        return replace(cure, code=tuple(code_of_cure(cure.changes.without(self.changes), about, source)))
+        def with_code(cure: Cure) -> Cure:
+            return replace(cure, code=tuple(code_of_cure(cure.changes.without(self.changes), about, source)))
+
+        offered = tuple(map(with_code, cures_of(found.explanation, self.changes, timeline)))
+        self._offered[problem_of(found.finding, timeline)] = (
+            frozenset(each.key for each in offered),
+            with_code,
+        )
+        return offered
 
     def judge(self, found: ExplainedFinding, cure: Cure, note: Note = lambda _: None) -> Verdict:
         """Tell whether a cure ends a finding; takes two runs, for further cures of a finding one.
@@ -141,11 +149,8 @@ class CureTrial:
                     verdict = self._judged(problem, cure, clock)
                     if verdict.helps is not None:
                         break
-                if verdict.helps is False and self._is_last(found, problem, cure):
-                    pairs = islice(self._pairs.get(problem, ()), _PAIRS)
-                    helpful = (each for each in pairs if self._judged(problem, each, clock).helps)
-                    if (pair := next(helpful, None)) is not None:
-                        verdict = Verdict(True, both=self._with_code(pair))
+                if verdict.helps is False and clock == "virtual":
+                    verdict = self._with_pairs(problem, cure, verdict)
                 if verdict != Verdict(None):
                     self._verdicts[problem, cure.key] = verdict
             return verdict
@@ -161,12 +166,16 @@ class CureTrial:
         )
         return verdict
 
-    def _is_last(self, found: ExplainedFinding, problem: Problem, cure: Cure) -> bool:
-        """Tell whether a cure is the last one of a finding, and none before it helps."""
-        others = (
-            self._verdicts.get((problem, each.key)) for each in self.cures(found) if each.key != cure.key
-        )
-        return all(each is not None and each.helps is False for each in others)
+    def _with_pairs(self, problem: Problem, cure: Cure, verdict: Verdict) -> Verdict:
+        """Judge pairs if a cure is the last of those offered, and none of these helps."""
+        keys, with_code = self._offered.get(problem, (frozenset[str](), None))
+        others = [self._verdicts.get((problem, each)) for each in keys - {cure.key}]
+        if with_code is None or not all(each is not None and each.helps is False for each in others):
+            return verdict
+        pairs = islice(self._pairs[problem], _PAIRS)
+        helpful = (each for each in pairs if self._judged(problem, each, "virtual").helps)
+        pair = next(helpful, None)
+        return verdict if pair is None else Verdict(True, both=with_code(pair))
 
     def _without(self, problem: Problem, clock: str) -> TriedRun:
         """Return the run without a cure; another one up to now, if the one before does not show a problem."""
