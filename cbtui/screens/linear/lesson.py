@@ -8,7 +8,7 @@ from threading import Thread
 from typing import TypeAlias
 
 from cbtui.engines.session import Deliver, Ended, OpenSession
-from cbtui.learning.lesson_page import introduction
+from cbtui.learning.lesson_page import PageSection, introduction
 from cbtui.learning.outcome import Observe
 from cbtui.runs.judged.compared_problems import ComparedProblems
 from cbtui.runs.judged.cures import Cure, Verdict, tried_in_vain
@@ -116,6 +116,7 @@ class LessonConsole(LinearConsole[LiveRun]):
             if teaching.can_predict and not changed and self._opening_exercise is None:
                 yield from teaching.predict()
             self.tell_page(teaching.lesson.task or "")
+            teaching.tell_page(PageSection.GUIDE)
         self.tell(self.runs.run.start())
         self.tell("The run begins. ? tells the keys, q leaves.")
         if self._opening_exercise is not None:

@@ -6,7 +6,7 @@ from threading import Thread
 
 from cbtui.learning.lesson_page import PageSection, PageState, page_of
 from cbtui.learning.outcome import Observe, OutcomeRun, PredictionOutcome
-from cbtui.learning.stage import all_predicted
+from cbtui.learning.stage import all_predicted, is_revealed
 from cbtui.screens.linear.dialogue import Dialogue, LineHost
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.teaching.learning import signs
@@ -55,23 +55,34 @@ class Teaching(ScreenPart):
             self.progress.answer(self.lesson.id, place, int(line) - 1)
 
     def action_predict(self) -> None:
-        """Ask the open questions."""
-        self.host.ask(self.predict())
+        """Ask the open questions, and tell what to watch for."""
+        self.host.ask(self._predict_and_watch())
+
+    def _predict_and_watch(self) -> Dialogue:
+        yield from self.predict()
+        self.tell_page(PageSection.GUIDE)
 
     def action_explain(self) -> None:
         """Print the true answers and their reasons; open questions are asked first."""
         self.host.ask(self._explain())
 
     def _explain(self) -> Dialogue:
+        is_new = not is_revealed(self.lesson, self.progress.of(self.lesson.id))
         if self.can_predict:
             yield from self.predict()
         self.progress.explain(self.lesson.id)
+        if is_new:
+            self.tell_page(PageSection.GUIDE)
         run = OutcomeRun(self.lesson, self.observe, self.real())
         self.host.tell("The lesson runs once more, in the background.")
         Thread(target=lambda: self.found(run.run()), name="outcome", daemon=True).start()
 
     def tell_explanation(self, outcome: PredictionOutcome) -> None:
         """Print the true answers, and the explanation."""
+        self.tell_page(PageSection.SHOWN, PageSection.EXPLANATION, outcome=outcome)
+
+    def tell_page(self, *sections: PageSection, outcome: PredictionOutcome | None = None) -> None:
+        """Print those of some sections of the lesson's page that are unlocked."""
         page = page_of(self.lesson, PageState(self.progress.of(self.lesson.id), outcome), signs())
-        for section in (PageSection.SHOWN, PageSection.EXPLANATION):
+        for section in sections:
             self.host.tell_page(page.get(section, ""))

@@ -103,7 +103,26 @@ def test_a_lesson_is_predicted_watched_and_explained_in_lines() -> None:
     assert Progress().of("shared-group").answers == (1, *[0] * (questions - 1))
     assert Progress().of("shared-group").explained
     assert any(line.startswith("What the run showed: You got") for line in lines)
+    assert _told_once("Watch", lines) < next(at for at, line in enumerate(lines) if "The run begins" in line)
     assert not any(sign in line for line in lines for sign in "│─█▸✓→●")
+
+
+def _told_once(line: str, lines: list[str]) -> int:
+    assert lines.count(line) == 1
+    return lines.index(line)
+
+
+def test_what_to_watch_for_gives_no_answer_away_before_it_is_given() -> None:
+    lines = Lesson(
+        [
+            ("Your answer is final", ""),
+            ("problem: ", "a"),
+            ("Your answer is final", ""),
+            ("Checked against", "q"),
+        ]
+    ).run()
+    asked = max(at for at, line in enumerate(lines) if "Your answer is final" in line)
+    assert asked < _told_once("Watch", lines) < _told_once("Why", lines)
 
 
 def test_keys_labels_and_lines_are_carried_out() -> None:
