@@ -42,8 +42,7 @@ class CommandParser(argparse.ArgumentParser):
                 ways = f"cbtui open {value} opens it, cbtui run {value} runs it"
                 shown_how = f"{value} is not a command; {ways}"
                 raise argparse.ArgumentError(None, shown_how) from None
-            likeness = 0.6 if isinstance(action, argparse._SubParsersAction) else 0.7
-            near = _nearest(str(value), {str(each): str(each) for each in action.choices or ()}, likeness)
+            near = _nearest(str(value), {str(each): str(each) for each in action.choices or ()})
             if isinstance(action, argparse._SubParsersAction):
                 raise argparse.ArgumentError(None, f"there is no command {value!r}{near}") from None
             if not near:
@@ -75,8 +74,8 @@ def _can_be_opened(word: str) -> bool:
     return is_file_name(word) or any(word == lesson.id for lesson in lessons())
 
 
-def _nearest(word: str, known: Mapping[str, str], likeness: float = 0.7) -> str:
-    """A question after the nearest of the known words, by what stands for it; empty if none is so alike."""
+def _nearest(word: str, known: Mapping[str, str]) -> str:
+    """A question after the nearest of the known words, by what stands for it; empty if none is near."""
     from difflib import get_close_matches  # only needed for a wrong word
 
-    return "".join(f"; did you mean {known[near]}?" for near in get_close_matches(word, known, 1, likeness))
+    return "".join(f"; did you mean {known[near]}?" for near in get_close_matches(word, known, 1, 0.65))

@@ -72,10 +72,14 @@ class RunTargets(NamedTuple):
 def targets_of(targets: Sequence[str]) -> RunTargets:
     """Return the lesson or the files of some targets; neither if there are no targets."""
     if not targets or is_file_name(targets[0]):
+        for name in targets[1:]:
+            if not is_file_name(name) and not os.path.lexists(name):
+                refuse(f"there is no file {name}; for an argument of the program, put -- before it")
         return RunTargets(None, [file_of(name) for name in targets])
+    lesson = lesson_of(targets[0], or_file=True)
     if len(targets) > 1:
         refuse("one lesson runs at a time; several targets must all be files")
-    return RunTargets(lesson_of(targets[0], or_file=True), [])
+    return RunTargets(lesson, [])
 
 
 def is_file_name(target: str) -> bool:
@@ -102,7 +106,12 @@ def file_of(name: str) -> Path:
         if S_ISDIR(mode):
             refuse(f"{name} is a folder; name the file in it to run")
         if not mode:
-            refuse(f"there is no file {name}; give a Python file, or a lesson of cbtui list")
+            from difflib import get_close_matches  # only needed for a wrong name
+
+            beside = [each.name for each in path.parent.glob("*") if is_file_name(each.name)]
+            nearest = get_close_matches(path.name, beside, 1, 0.8)
+            near = f"the nearest is {nearest[0]}; " if nearest else ""
+            refuse(f"there is no file {name}; {near}give a Python file, or a lesson of cbtui list")
         if not S_ISREG(mode):
             refuse(f"{name} is a pipe or a device; give a file, which can be read more than once")
     except OSError as error:
