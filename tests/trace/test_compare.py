@@ -237,7 +237,7 @@ def test_a_run_without_a_robot_has_no_figures_of_one() -> None:
 def test_a_run_that_goes_on_past_the_window_is_told_of() -> None:
     longer = run([ODOM], called(1, 19.0, 20.0))
     assert extent(Window(0, ns(3.1)), starved().end, longer.end) == "0 to 3.1 s; run B is 20 s long"
-    assert extent(Window(ns(0.0005), ns(3.1)), ns(3.1), ns(3.1)) == "0.001 to 3.1 s"
+    assert extent(Window(ns(0.0005), ns(3.1)), ns(3.1), ns(3.1001)) == "0.001 to 3.1 s"
 
 
 def test_a_robot_that_stands_still_in_both_runs_has_no_figures() -> None:
@@ -461,9 +461,12 @@ def test_a_run_that_an_exception_ended_while_the_other_goes_on_is_told_instead_o
 
 
 def test_a_run_that_goes_on_to_an_exception_of_its_own_is_not_said_to_go_on() -> None:
-    first, second = (run([ODOM], [RunEnded(ns(at), "the program raised", failed=True)]) for at in (3.0, 3.5))
+    first, second, alike = (
+        run([ODOM], [RunEnded(ns(at), "the program raised", failed=True)]) for at in (3.0, 3.5, 3.0001)
+    )
     compared = compare(first, second, Window(0, ns(3.0)))
     assert ended_early(compared) == "Run A ended at 3 s with an exception, and run B at 3.5 s with one"
+    assert ended_early(compare(first, alike, Window(0, ns(3.0)))) == ""
 
 
 def test_runs_first_differ_where_a_call_does_otherwise() -> None:

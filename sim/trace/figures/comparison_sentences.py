@@ -49,7 +49,8 @@ def ended_early(comparison: Comparison, *ends: Nanoseconds) -> str:
     ends = ends or (runs[0].end, runs[1].end)
     for place, run in enumerate(runs):
         other = runs[1 - place]
-        if run.crashes and not other.crashes and run.end <= comparison.window.end < ends[1 - place]:
+        is_shorter = run.end <= comparison.window.end and _seconds(run.end) != _seconds(ends[1 - place])
+        if run.crashes and not other.crashes and is_shorter:
             told = f"{RUNS[place]} ended at {_seconds(run.end)} s with an exception"
             beside = f"; {RUNS[1 - place]} has none up to {_seconds(ends[1 - place])} s"
             if other.fails:
@@ -250,7 +251,7 @@ def extent(window: Window, *ends: Nanoseconds, is_real: bool = False) -> str:
     if is_real and not window.start:
         parts.append("each from its first call on")
     for name, end in zip(RUNS, ends, strict=True):
-        if end > window.end:
+        if end > window.end and _seconds(end) != _seconds(window.end):
             parts.append(f"{name} is {_seconds(end)} s long")
     return "; ".join(parts)
 
