@@ -25,7 +25,7 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from cbtui.screens.menu import MenuScreen
 from cbtui.terminal.ending import EndingApp
-from cbtui.terminal.textual_internals import clear_hints, unsay
+from cbtui.terminal.textual_internals import clear_hints, make_room_for
 from cbtui.text.ascii_filter import AsciiFilter
 from cbtui.text.harmless_filter import HarmlessFilter
 from cbtui.widgets.key_bar import say_at_once
@@ -155,8 +155,8 @@ class CbtuiApp(EndingApp):
             self.push_screen(SafeCommandPalette(id="--command-palette"))
 
     def on_notify(self, event: Notify) -> None:
-        """Show a repeated sentence once, from now on for its whole time."""
-        unsay(self, event.notification.message)
+        """Show a repeated sentence once, from now on for its whole time, and at most one before it."""
+        make_room_for(self, event.notification.message)
 
     def tell_saved(self, sentence: str) -> None:
         """Report what was saved as a screen closed: in a notification, and on the terminal at exit."""

@@ -55,10 +55,12 @@ def clear_hints(app: App[Any]) -> None:
         app.clear_notifications()
 
 
-def unsay(app: App[Any], sentence: str) -> None:
-    """Clear the notification of a sentence; a later one of the same identity would end when it does."""
+def make_room_for(app: App[Any], sentence: str) -> None:
+    """Clear a sentence's own notification, which would end its repetition, and all but one that informs."""
+    others = [each for each in app._notifications if each.message != sentence]
+    informing = [each for each in others if each.severity == "information"]
     for each in list(app._notifications):
-        if each.message == sentence:
+        if each not in others or each in informing[:-1]:
             app._unnotify(each)
 
 

@@ -401,6 +401,15 @@ async def test_what_is_said_again_is_shown_once_and_begins_its_time_anew() -> No
         assert len(app.screen.query("Toast")) == len(app._notifications) == 1
 
 
+async def test_what_keys_say_covers_no_more_than_two_sentences_and_takes_no_warning_away() -> None:
+    async with console() as (app, pilot):
+        app.notify("the disk is full", severity="warning")
+        await press(pilot, *"eCuiw")
+        told = [note.message for note in app._notifications]
+        assert told[0] == "the disk is full"
+        assert told[1:] == ["No program reads from the keyboard now.", "Only an exercise is watched again."]
+
+
 @pytest.mark.parametrize("moment", [0.0, 13.15])
 async def test_each_sign_of_the_help_does_something_at_any_moment_or_says_why_not(moment: float) -> None:
     app = RecordedConsole("shared-group", EVENTS, moment)
