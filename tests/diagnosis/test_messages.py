@@ -6,12 +6,15 @@ from pathlib import Path
 
 import pytest
 
+from sim.diagnosis import diagnose
 from sim.ros.node.node import Node
 from sim.ros.qos.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sim.ros.rclpy._entities.wait_for_message import wait_for_message
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.trace.events import Reason
+from sim.trace.timeline import Timeline
 from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, once, spin
-from tests.support.builder import ns
+from tests.support.builder import Run, ns
 from tests.support.simulation import Simulation
 
 BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
@@ -74,6 +77,25 @@ def test_messages_lost_during_several_calls_are_not_said_to_be_lost_in_one() -> 
 
     told = diagnosed(program).explained("dropped-messages").what
     assert "lost 73 messages while its calls ran, 600 ms each: its queue holds 10" in told
+
+
+def test_a_loss_between_two_calls_does_not_hide_that_the_callback_is_too_slow() -> None:
+    run = Run(clock="real")
+    thread = run.thread("MainThread")
+    run.executor("SingleThreadedExecutor", 1)
+    hear = run.subscription(run.exclusive(run.node("n")), "t", "hear", depth=2)
+    for place in range(8):
+        at = 0.15 + place * 0.2
+        run.callback(hear, thread, at + 0.001, 0.198)
+        run.wait(hear, at + 0.01, at + 0.199, Reason.GROUP_HELD, hear)
+        for after in (0.0, 0.05, 0.1, 0.15):
+            run.message(hear, at + after)
+    run.stop(1.75)
+    timeline = Timeline()
+    timeline.extend(run.events)
+    (told,) = (each.explained(timeline) for each in diagnose(timeline) if each.rule.id == "dropped-messages")
+    assert "while its calls ran" in told.what
+    assert "so many at once" not in told.cure
 
 
 def test_what_is_lost_while_nobody_spins_is_not_laid_to_the_callback() -> None:

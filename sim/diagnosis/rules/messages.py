@@ -76,7 +76,7 @@ class DroppedMessages(Rule):
         entity = entity_of(found, timeline)
         subject = who(found.subject, timeline)
         taken = any(each.node == entity.node for each in timeline.spin_clashes)
-        at = timeline.end if taken else found.until  # a node is lost when the spin that took it has returned
+        at = timeline.end if taken else _waited(found, timeline)  # a node is lost when its spin has returned
         waits = timeline.waits_of(entity.id, Window(at, at + 1))
         because, place = "", place_of(found.subject, timeline)
         own = _waits_for_itself(entity, at, timeline)
@@ -126,6 +126,13 @@ class DroppedMessages(Rule):
         entity = entity_of(found, timeline)
         is_minor = found.due_to or (entity.depth <= 1 and not _keeps_little(entity, found.until, timeline))
         return Weight.REMARK if is_minor else Weight.PROBLEM
+
+
+def _waited(found: Finding, timeline: Timeline) -> Nanoseconds:
+    """Return the latest loss during a wait if that is usual among the latest ones, else the latest loss."""
+    losses = timeline.losses_of(found.subject, Window(found.at, found.until + 1))[-_MANY:]
+    waited = [each for each in losses if timeline.waits_of(found.subject, Window(each, each + 1))]
+    return waited[-1] if 2 * len(waited) > len(losses) else found.until
 
 
 def _waits_for_itself(entity: EntityInfo, at: Nanoseconds, timeline: Timeline) -> bool:
