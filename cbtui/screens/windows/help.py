@@ -114,6 +114,16 @@ class HelpScreen(WindowScreen[None]):
         search.display = True
         search.focus()
 
+    def action_close(self) -> None:
+        """End the search; without one close the window."""
+        search = self.query_one(Input)
+        if not search.display:
+            super().action_close()
+            return
+        search.value = ""
+        search.display = False
+        self.query_one(VerticalScroll).focus()
+
     def action_line_up(self) -> None:
         """Scroll up by a line."""
         self.query_one(VerticalScroll).scroll_up(animate=False)

@@ -336,6 +336,8 @@ async def test_the_help_begins_with_the_signs_and_finds_words() -> None:
         await press(pilot, *["backspace"] * 6, *"zoom")
         assert "Show a longer stretch of time" in text_of(app), "by the word that the footer has for it"
         await press(pilot, "escape")
+        assert "another one holds its group" in text_of(app), "the search is over, not the help"
+        await press(pilot, "escape")
         assert isinstance(app.screen, LessonScreen)
 
 
