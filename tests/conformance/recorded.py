@@ -16,6 +16,8 @@ class Recorded(NamedTuple):
     """A system, and what its runs on the wheels of a distribution said.
 
     ``runs`` is how many runs of the model come to that, of many orders; 0: its usual order is the same.
+    ``moves``: at which of its choices a run that follows the lines takes which option, and the first one at
+    all others, to come to it at once; ``races``: whether the threads of pools race in that.
     """
 
     distro: str
@@ -24,6 +26,8 @@ class Recorded(NamedTuple):
     system: System
     real: tuple[Said, ...]
     runs: int = 0
+    moves: tuple[tuple[int, int], ...] = ()
+    races: bool = True
 
 
 def record(distro: str, results: list[Result], runs: int = 0) -> None:

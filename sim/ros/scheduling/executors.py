@@ -101,8 +101,6 @@ class MultiThreadedExecutor(Executor):
         super().__init__(context=chosen)
         self._pool = RacingPool(self) if races else WorkerPool(self)
         self._cycle.pool = self._pool
-        if isinstance(self._cycle, RacingCycle):
-            self._cycle.go_on = self._signal.set
         self._spinning_on = False
 
     @property

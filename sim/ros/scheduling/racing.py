@@ -10,14 +10,17 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Collection
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sim.ros.scheduling.cycle import TASKS, WAITING, Cycle, Work
+from sim.ros.scheduling.cycle import GATHERING, TASKS, WAITING, Cycle, Work
 from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.running import AdmittedWork, StartedWork
 from sim.ros.scheduling.task import Task
 from sim.ros.scheduling.wait_set import in_order_of_readiness
 from sim.ros.scheduling.workers import Worker, WorkerPool
+
+if TYPE_CHECKING:
+    from sim.ros.scheduling.executors import MultiThreadedExecutor
 
 
 class RacingCycle(Cycle):
@@ -25,6 +28,8 @@ class RacingCycle(Cycle):
 
     go_on: Callable[[], None]
     """Ends the wait of the spinning thread, which then takes its next step."""
+    looks: Callable[[], bool]
+    """Looks for errors of workers behind what was handed over, and tells whether one comes out."""
     _there = 0
     """How much of what is waited for was ready as the wait began."""
     _is_woken = False
@@ -37,13 +42,21 @@ class RacingCycle(Cycle):
 
     def next(self, now: int) -> Work | None:
         """Take the next step; return the work that it hands over, if it does."""
+        if self.looks():
+            self.go_on()
+            return None
         work = self._serve(now)
         if work is None:
             if self._find(now):
                 work = self._serve(now)
-            if work is None and not self.waits:
+            if work is None and (not self.waits or self._goes_round()):
                 self.go_on()
         return work
+
+    def _goes_round(self) -> bool:
+        """Whether a message that waits for a worker ends the wait, which finds nothing."""
+        self._is_woken = self.pool is not None and self.pool.kept_busy() and self._clock.choose(2) > 0
+        return self._is_woken
 
     def _find(self, now: int) -> bool:
         if self._following is WAITING:
@@ -51,8 +64,8 @@ class RacingCycle(Cycle):
         if self._following is TASKS:
             self._ask_again()
             self._starts_worker()
-            if self._take_tasks():
-                return True
+            self._following = GATHERING
+            return self._take_tasks()
         self._gather(deque())
         self._there = len(self._awaited(self._ready(now)))
         return False
@@ -95,6 +108,32 @@ class RacingCycle(Cycle):
 class RacingPool(WorkerPool):
     """Workers that take what the spinning thread has handed over, and look for nothing."""
 
+    _handed_over = False
+    """Whether work was handed over since errors were looked for."""
+
+    def __init__(self, executor: MultiThreadedExecutor) -> None:
+        super().__init__(executor)
+        cycle = executor._cycle
+        assert isinstance(cycle, RacingCycle)
+        cycle.go_on, cycle.looks = executor._signal.set, self._looks
+
+    def submit(self, work: Work, now: int) -> None:
+        """Queue work; behind it errors are looked for, also those that come meanwhile."""
+        super().submit(work, now)
+        self._handed_over = True
+
+    def _looks(self) -> bool:
+        if self._handed_over:
+            self._surface_errors()
+        self._handed_over = False
+        return self.error_surfaces
+
+    def raise_surfacing(self) -> None:
+        """Raise the oldest exception of a callback, if work was handed over."""
+        with self._lock:
+            self._looks()
+        super().raise_surfacing()
+
     def worker_looks(self) -> bool:
         """No worker does."""
         return False
@@ -112,6 +151,7 @@ class RacingPool(WorkerPool):
         if waiting:
             self._handed_over_again += waiting
             self._surface_errors()
+            self._handed_over = True
             if self._may_start() and self._none_is_idle():
                 self._start_worker()
         return False
@@ -123,16 +163,28 @@ class RacingPool(WorkerPool):
     def _next(self, worker: Worker) -> StartedWork | None:
         while True:
             with self._lock:
+                waits = not self._queue
                 begun = self._begin_queued(worker, self._clock.now())
                 if begun is not None:
                     return self._runner.start(begun)
-                if self._dismissed:
-                    return None
-                self._idle.append(worker)
-            worker.signal.wait(None)
+                if waits:
+                    if self._dismissed:
+                        return None
+                    self._idle.append(worker)
+            if waits:
+                worker.signal.wait(None)
 
     def _begin_queued(self, worker: Worker, now: int) -> AdmittedWork | None:
-        begun = super()._begin_queued(worker, now)
+        """Start the next work of the queue, unless it is done or refused."""
+        if worker.called:
+            worker.called = False
+            self._called_workers -= 1
+        work = self._queue.popleft() if self._queue else None
+        if not self._queue:
+            self._handed_over_again = 0
+        if work is None or (isinstance(work, Task) and (work._settled() or work.executing())):
+            return None
+        begun = self._runner.begin(work, now)
         if isinstance(begun, Task):
             begun._executing = True
         return begun

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import pytest
 
+from sim.clock.strategies import PctSchedule
 from sim.interfaces import message
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
@@ -135,6 +136,26 @@ def test_an_exception_of_a_worker_that_has_just_been_started_comes_out_at_once()
             assert simulation.now == at
 
     simulate(program)
+
+
+def test_where_threads_race_an_exception_comes_out_as_its_callback_is_handed_over_or_with_a_later_one() -> (
+    None
+):
+    moments = set()
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_guard_condition(fail).trigger()
+        node.create_timer(1.0, lambda: None)
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        with pytest.raises(ValueError, match="no scan"):
+            executor.spin()
+        moments.add(simulation.now)
+
+    for seed in range(2, 42, 2):
+        simulate(program, schedule=PctSchedule(seed))
+    assert moments == {0.0, 1.0}
 
 
 def test_until_a_later_callback_comes_a_multi_threaded_spin_goes_on_after_an_exception() -> None:
