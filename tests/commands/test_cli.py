@@ -80,7 +80,7 @@ def test_list_tells_how_far_one_is(capsys: pytest.CaptureFixture[str]) -> None:
         (["run", __file__.replace("cli.py", "cly.py")], "; the nearest is test_cli.py; give a Python file"),
         (["run", __file__, "mine"], "there is no file mine; for an argument of the program, put -- before"),
         (["run", "my_package", "talker"], "no lesson is called 'my_package'; cbtui list shows all"),
-        (["rnu"], "invalid choice: 'rnu'; did you mean run? (see cbtui --help)"),
+        (["rnu"], "cbtui: there is no command 'rnu'; did you mean run? (see cbtui --help)"),
         (["run", "./"], "is a folder; name the file in it to run"),
         (["run", "single-thread", "--", "-x"], "a lesson has its own arguments"),
         (["run"], "LESSON"),
