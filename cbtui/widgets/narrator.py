@@ -282,9 +282,13 @@ def _lost(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:
     losses = []
     for entity in timeline.entities.values():
         lost = timeline.losses_of(entity.id, Window(since, at + 1))
-        many = f"{len(lost)} messages since {timestamp(lost[0])}" if len(lost) > 1 else "its oldest message"
-        if lost:
-            losses.append(f"the full queue of {entity.spoken_name} loses {many}")
+        if len(lost) == 1:
+            losses.append(f"the full queue of {entity.spoken_name} loses its oldest message")
+        elif lost:
+            many, in_all = len(lost), timeline.drops_of(entity.id, Window(0, at + 1))
+            more = f", {in_all} in all" if in_all > many else ""
+            begun = timestamp(lost[0])
+            losses.append(f"the full queue of {entity.spoken_name} has lost {many} since {begun}{more}")
     return ["; ".join(losses)] if losses else []
 
 

@@ -194,6 +194,6 @@ def test_of_programs_that_share_little_neither_is_better_and_each_has_its_own_pr
     compared = compare(starved, stuck, Window(0, starved.end))
     told = headline(compared, ComparedProblems(starved, stuck).compared(compared))
     found = "Found in run A: group starvation. Found in run B: deadlock. "
-    shared = "Of 5 callbacks both runs have none: too little in common for one to be better."
+    shared = "The runs share none of 5 callbacks: too little in common for one to be better."
     assert told == found + shared
     assert not is_tie(compared)

@@ -322,7 +322,7 @@ async def test_of_runs_in_which_the_service_was_not_called_alike_none_is_called_
 async def test_of_runs_that_share_no_callback_none_is_called_better_nor_a_first_difference_named() -> None:
     other = ComparedSide("other", timeline_of(dummy_server_run().events, 9.4))
     async with compared(sides()[0], other) as (app, _):
-        told = "Of 4 callbacks both runs have only timer_callback: too little in common for one to be better"
+        told = "The runs share only timer_callback of 4 callbacks: too little in common for one to be better"
         assert verdict_of(app) == f"Found in run A: group starvation. {told}"
 
 

@@ -407,7 +407,7 @@ def test_what_waits_for_ever_in_both_runs_speaks_for_none_however_long_it_has_wa
     compared = compare(early, late, window)
     assert verdict(compared) == f"Neither run is better: in both {ODOM} still waits"
     (waits,) = (row for row in sections(compared)[0].rows if row.label == "wait med/max")
-    assert (waits.figures, waits.difference) == (("- / 5.0 s", "- / 3.0 s"), "still waits in both")
+    assert (waits.figures, waits.difference) == (("- / 5.0 s", "- / 3.0 s"), "goes on in both")
     other = compare(early, run(cast, [*hanging(2, 1.0), moved(6.0, 0)]), window)
     assert "longest wait" in verdict(other)
     assert verdict(other, Problems(stuck=True)) == "Neither run is better: both are stuck"

@@ -9,6 +9,7 @@ from sim.quantities.durations import duration, timestamp
     ("length", "words"),
     [
         (0, "0 s"),
+        (300, "0 s"),
         (12_400, "12 µs"),
         (70_000, "70 µs"),
         (99_600, "0.1 ms"),

@@ -263,9 +263,9 @@ def test_losses_in_a_row_are_told_together_and_passed_over_in_one_step() -> None
     run.log("later", 3.4)
     timeline = told(run, until=3.5)
     assert narration(timeline, ns(1.5))[0] == "1.500 s: the full queue of heard loses its oldest message"
-    assert (
-        narration(timeline, ns(1.7))[0] == "1.700 s: the full queue of heard loses 3 messages since 1.500 s"
-    )
+    assert narration(timeline, ns(1.7))[0] == "1.700 s: the full queue of heard has lost 3 since 1.500 s"
+    run.callback(run.timer(run.exclusive(run.node("/m")), "tock", 1.0), run.thread("Thread-1"), 1.55, 0.01)
+    assert narration(told(run, until=3.5), ns(1.7))[0].endswith("has lost 2 since 1.600 s, 3 in all")
     steps = [Playhead(at=ns(1.1))]
     for step in (1, 1, -1, -1):
         steps.append(steps[-1].beside([timeline], timeline.end, step))

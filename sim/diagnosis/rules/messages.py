@@ -88,9 +88,10 @@ class DroppedMessages(Rule):
                 if own
                 else f" while it waited ({why_waiting(waits[-1], timeline)})"
             )
-            if own and (calls := timeline.spans_of(entity.id, Window(found.at, found.until + 1))):
-                length = sum(each.end_at(timeline.end) - each.start for each in calls) // len(calls)
-                because += f", {duration(length)} each" if len(calls) > 1 else ""
+            calls = timeline.spans_of(entity.id, Window(found.at, found.until + 1))
+            lengths = [each.end - each.start for each in calls if each.end is not None]
+            if own and len(lengths) > 1:
+                because += f", {duration(sum(lengths) // len(lengths))} each"
         room = remedy_for_waits([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
         faster = f"let {subject} return sooner, or publish less often"
         cure = f"{room.words(timeline) or faster}; a longer queue only delays it"

@@ -228,7 +228,7 @@ def _spread_row(label: str, first: _Spread | None, second: _Spread | None, wordi
     if first is None or second is None:
         return ComparisonRow(label, figures)
     if first.lasts and second.lasts:
-        return ComparisonRow(label, figures, "still waits in both", Assessment.SAME)
+        return ComparisonRow(label, figures, "goes on in both", Assessment.SAME)
     which = "max "
     text, assessment = _difference(first.most, second.most, wording)
     if assessment is Assessment.SAME and first.median is not None and second.median is not None:

@@ -80,7 +80,7 @@ def verdict(comparison: Comparison, problems: Problems = NO_PROBLEMS) -> str:
     """
     if comparison.shares_little:
         shared = f"only {' and '.join(comparison.shared)}" if comparison.shared else "none"
-        of = f"of {len(comparison.callbacks)} callbacks both runs have {shared}"
+        of = f"the runs share {shared} of {len(comparison.callbacks)} callbacks"
         return f"{of}: too little in common for one to be better"
     if comparison.unlike_commands:
         text, one, other = comparison.unlike_commands[0]
