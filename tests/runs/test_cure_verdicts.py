@@ -65,7 +65,9 @@ def test_a_cure_after_which_a_callback_does_its_work_no_more_does_not_help(
 
 
 def test_what_was_an_effect_of_the_problem_is_no_worse_one_in_its_place() -> None:
-    starved, lost = ("group-starvation", "", ""), ("dropped-messages", "", "")
-    before = TriedRun({starved: False}, effects=frozenset({"dropped-messages"}))
+    starved, lost = ("group-starvation", "", ""), ("dropped-messages", "decide", "hear")
+    before = TriedRun({starved: False}, effects=frozenset({("dropped-messages", "hear")}))
     assert judged(starved, before, TriedRun({lost: False})).helps
-    assert not judged(starved, replace(before, effects=frozenset()), TriedRun({lost: False})).helps
+    for effects in ((), {("dropped-messages", "listen")}):
+        others = replace(before, effects=frozenset(effects))
+        assert not judged(starved, others, TriedRun({lost: False})).helps, "another callback loses now"

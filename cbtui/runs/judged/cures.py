@@ -22,7 +22,7 @@ from sim.engine.setup import RunSetup, TimedInput
 from sim.files.untrusted import MAX_PROGRAM_BYTES, read_text
 from sim.quantities.nanoseconds import SECOND
 from sim.quantities.plural import counted
-from sim.trace.events import Doing
+from sim.trace.events import Doing, EntityId
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -78,14 +78,14 @@ _NAMES = {
 class TriedRun:
     """The problems of a run, each with whether it lasts for ever; ``is_whole`` if the run reached its end.
 
-    ``effects`` are the ids of the rules that found only effects of a problem; ``names`` are the problems'
+    ``effects`` are rules and subjects of what was only an effect of a problem; ``names`` are the problems'
     names in sentences, and ``since`` when each was there. ``end`` is its length; ``is_cut``: it was given up
     there because it took long, and would have gone on.
     """
 
     problems: Mapping[Problem, bool]
     is_whole: bool = True
-    effects: frozenset[str] = frozenset()
+    effects: frozenset[tuple[str, str]] = frozenset()
     names: Mapping[Problem, str] = field(default_factory=dict)
     end: Nanoseconds = 0
     is_cut: bool = False
@@ -145,14 +145,17 @@ def problem_of(found: Finding, timeline: Timeline) -> Problem:
 
     Which rule finds a call that stays in its loop depends on the clock, and on how long it has been there.
     """
-    one, other = sorted(
-        known.spoken_name if (known := timeline.entities.get(each)) is not None else ""
-        for each in (found.subject, found.culprit or found.subject)
-    )
+    sides = found.subject, found.culprit or found.subject
+    one, other = sorted(_name_of_callback(each, timeline) for each in sides)
     if found.rule.id != _LOOPS:
         return found.rule.id, one, other
     at = timeline.positions_of(found.subject, Window(found.until, found.until + 1))
     return _WAITS if any(each.doing is Doing.WAITS for each in at) else _COMPUTES, one, other
+
+
+def _name_of_callback(entity: EntityId, timeline: Timeline) -> str:
+    known = timeline.entities.get(entity)
+    return "" if known is None else known.spoken_name
 
 
 def name_of(found: Finding, explained: Explanation) -> str:
@@ -219,7 +222,11 @@ def judged(problem: Problem, before: TriedRun, after: TriedRun, *, again: bool =
         return Verdict(False)
     if after.is_cut and after.end < before.since.get(problem, 0) + NOTICED:
         return Verdict(None, reason=_TOO_SLOW)
-    left = {each: lasts for each, lasts in after.problems.items() if each[0] not in before.effects}
+    left = {
+        each: lasts
+        for each, lasts in after.problems.items()
+        if before.effects.isdisjoint((each[0], name) for name in each[1:])
+    }
     new = sorted((each for each in left if each not in before.problems), key=lambda each: not left[each])
     instead = after.names.get(new[0], "") if new else ""
     if problem[0] == _CRASH and not before.is_whole and (after.is_whole or after.end > before.end):
@@ -289,7 +296,8 @@ def try_run(
     told = {problem_of(each, timeline): (each, each.explained(timeline)) for each in wrong}
     lasts = {problem: explained.for_ever for problem, (_, explained) in told.items()}
     names = {problem: name_of(*each) for problem, each in told.items()}
-    effects = {each.rule.id for each in found if each.due_to} - {each.rule.id for each in wrong}
+    effects = {(each.rule.id, _name_of_callback(each.subject, timeline)) for each in found if each.due_to}
+    effects -= {(each.rule.id, _name_of_callback(each.subject, timeline)) for each in wrong}
     is_whole = timeline.ended is not None and timeline.ended.time_was_up
     since = {problem: each.at for problem, (each, _) in told.items()}
     calls: Counter[str] = Counter()
