@@ -55,6 +55,13 @@ def remedy_for_waits(
     )
 
 
+def who_moves(waited: Sequence[EntityId], culprit: EntityId, timeline: Timeline) -> EntityId:
+    """Return who is to leave a group that ``culprit`` held: it, unless nobody would be left to wait for it."""
+    run, group = Window(0, timeline.end + 1), timeline.entities[waited[0]].group
+    others = {each.id for each in timeline.group_members(group)} - {waited[0], culprit}
+    return culprit if waited[1:] or any(timeline.calls_of(each, run) for each in others) else waited[0]
+
+
 def _waits(entity: EntityId, window: Window, timeline: Timeline) -> Iterator[Wait]:
     """Yield the waits of an entity that another entity caused."""
     for wait in timeline.waits_of(entity, window):

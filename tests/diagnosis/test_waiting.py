@@ -72,6 +72,29 @@ def test_with_one_thread_the_cure_of_a_held_group_names_a_thread_too() -> None:
     assert "MultiThreadedExecutor(num_threads=2)" in told.cure
 
 
+def test_who_holds_a_group_leaves_it_if_others_would_be_left_behind() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def early() -> None: ...
+
+        def slow() -> None:
+            simulation.sleep(3.0)
+
+        def quick() -> None: ...
+
+        once(node, 0.5, early)
+        once(node, 1.0, slow)
+        once(node, 1.1, quick)
+        spin(node, 2)
+
+    told = diagnosed(program).explained("group-starvation")
+    assert told.what == "quick waited 2.9 s: group A was held by slow"
+    assert told.cure.startswith("give slow a callback group of its own")
+    alone = slow_and_quick(same_group=True, threads=2).explained("group-starvation")
+    assert alone.cure.startswith("give quick a callback group of its own")
+
+
 def test_a_callback_whose_group_is_free_waits_long_for_a_thread() -> None:
     run = slow_and_quick(same_group=False, threads=None)
     assert run.problems() == {("no-free-worker", "quick")}

@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import ClassVar
 
-from sim.diagnosis.cures import Remedy, remedy_for_waits
+from sim.diagnosis.cures import Remedy, remedy_for_waits, who_moves
 from sim.diagnosis.edits.flags import awaited_at, event_setters
 from sim.diagnosis.edits.spins import spin_beside, spins_in_turn, started_late, taken_away
 from sim.diagnosis.rule import (
@@ -125,7 +125,7 @@ class GroupStarvation(_KeptWaiting):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         culprit = who(found.culprit, timeline)
         waited = self._waiting(found, timeline)
-        mover = found.subject if len(waited) == 1 else found.culprit
+        mover = who_moves(waited, found.culprit, timeline)
         room = remedy_for_waits(waited, mover, Window(found.at, found.until), timeline)
         place = line_of(found.culprit, Window(found.at, found.until), timeline)
         setters = event_setters(place.file, place.first_line) if place else ()
