@@ -5,8 +5,9 @@ from typing import NamedTuple
 
 import msgspec
 
-from tests.conformance.comparing import Case, Result, on_model, outcome
+from tests.conformance.comparing import Case, Result, on_model, outcome, words_of
 from tests.conformance.running import Said
+from tests.conformance.steered import Steering
 from tests.conformance.systems import System
 
 FILE = Path(__file__).with_name("recorded.jsonl")
@@ -29,6 +30,15 @@ class Recorded(NamedTuple):
     moves: tuple[tuple[int, int], ...] = ()
     races: bool = True
 
+    def steering(self) -> Steering | None:
+        """What a run of the model that follows the lines chooses; None: its usual order."""
+        if not self.moves:
+            return None
+        others = dict(self.moves)
+        (real,) = self.real
+        lines = [*words_of(self.system, real).values()]
+        return Steering([others.get(place, 0) for place in range(max(others) + 1)], None, lines, self.races)
+
 
 def record(distro: str, results: list[Result], runs: int = 0) -> None:
     """Keep what real runs said, beside what is kept already."""
@@ -39,13 +49,17 @@ def record(distro: str, results: list[Result], runs: int = 0) -> None:
 
 
 def against_recorded(searched: bool) -> list[tuple[Recorded, Result]]:
-    """How the model compares with what is kept; ``searched``: with what it comes to in one of many runs."""
+    """How one run of the model compares with each that is kept: with its choices, or in the usual order.
+
+    ``searched``: those that the model comes to in another order than its usual one.
+    """
     kept = [msgspec.json.decode(line, type=Recorded) for line in FILE.read_bytes().splitlines()]
     kept = [each for each in kept if (each.runs > 0) == searched]
     results = []
     for distro in sorted({each.distro for each in kept}):
         of_distro = [each for each in kept if each.distro == distro]
-        for each, said in zip(of_distro, on_model([each.system for each in of_distro], distro), strict=True):
+        runs = on_model([each.system for each in of_distro], distro, [each.steering() for each in of_distro])
+        for each, said in zip(of_distro, runs, strict=True):
             assert said is not None
             case = Case(each.seed, each.system, said, each.pace)
             results.append((each, Result(case, outcome(case, list(each.real)), each.real)))

@@ -21,16 +21,6 @@ def searched(results: Iterable[Result], distro: str, runs: int) -> list[Result]:
     ]
 
 
-def replays(result: Result, distro: str, moves: Iterable[tuple[int, int]], races: bool) -> bool:
-    """Whether the model goes as the real run if it takes these options, and the first one otherwise."""
-    others = dict(moves)
-    chosen = [others.get(place, 0) for place in range(max(others) + 1)]
-    (real,) = result.real
-    lines = [*words_of(result.case.system, real).values()]
-    (model,) = on_model([result.case.system], distro, [Steering(chosen, None, lines, races)], at_once=1)
-    return model is not None and outcome(result.case._replace(model=model), [real]) is Outcome.SAME
-
-
 class _Way(NamedTuple):
     """What a try follows, and whether the threads of pools race in it."""
 
