@@ -17,6 +17,7 @@ from sim.ros.entities.event_handler import SubscriptionEventCallbacks
 from sim.ros.entities.service import Service
 from sim.ros.entities.subscription import Subscription
 from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.agenda import numbers
 from sim.ros.scheduling.entity import Entity, never_called
 from sim.ros.scheduling.task import Future
 
@@ -66,10 +67,14 @@ class Part(Entity):
     traced = served = False
     _owner: ActionWaitable
     _queue: deque[Any]
+    number = 0
+    """With which it became ready, among all entities."""
 
     def become_ready(self, since: int) -> None:
         """Make the waitable ready. Called with the host's lock held."""
-        self.pending = True
+        if not self.pending:
+            self.pending = True
+            self.number = next(numbers)
         self._owner.arrived_at = self
         self._owner.become_ready(since)
 

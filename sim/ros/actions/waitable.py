@@ -6,7 +6,7 @@ which the parts were added: rclpy's ``is_ready`` remembers these parts for ``tak
 EventsExecutor, each arrival takes from one part only (``HandleWaitableReady``).
 """
 
-from collections.abc import Callable, Container
+from collections.abc import Callable, Container, Sequence
 from typing import Any, ClassVar, NamedTuple
 
 from sim.interfaces import ActionType
@@ -116,6 +116,14 @@ class ActionWaitable(Entity):
     def on_snapshot(self) -> None:
         """A snapshot contains the waitable: items that other parts get later wait for the next snapshot."""
         self._to_take = {part for part, _ in self._parts if part.pending}
+
+    def readiness(self) -> Sequence[int]:
+        """The numbers with which its parts became ready; its own if none is: a result has expired."""
+        return sorted(part.number for part, _ in self._parts if part.pending) or super().readiness()
+
+    def leave_out(self, later: int) -> None:
+        """Take from no part that became ready with a later number."""
+        self._to_take = {part for part, _ in self._parts if part.pending and part.number <= later}
 
     def arrivals(self) -> list[Part | None]:
         """The part of each queued item, part by part."""

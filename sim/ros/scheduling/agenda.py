@@ -19,7 +19,7 @@ from sim.trace.events import Reason
 
 EntityT = TypeVar("EntityT", bound="Entity")
 
-_numbers = count()
+numbers = count()
 """The order in which entities of all nodes become ready."""
 
 MANY = 1_000
@@ -124,7 +124,7 @@ class Agenda:
         elif not (entity.pending or entity.destroyed):
             entity.pending = True
             entity.ready_since = now
-            self.ready[entity] = next(_numbers)
+            self.ready[entity] = next(numbers)
 
     def of(self, kind: type[EntityT]) -> tuple[EntityT, ...]:
         """The entities of a class, oldest first."""
@@ -132,7 +132,7 @@ class Agenda:
 
     def entity_ready(self, entity: Entity) -> None:
         """An entity became ready."""
-        self.ready[entity] = next(_numbers)
+        self.ready[entity] = next(numbers)
         executor = self.executor
         if executor is not None:
             executor._entity_ready(entity)
@@ -176,7 +176,7 @@ class Agenda:
             timer = heappop(self._timer_queue)[2]
             timer.pending = True
             timer.ready_since = due
-            self.ready[timer] = next(_numbers)
+            self.ready[timer] = next(numbers)
         return self.ready
 
     def next_due(self) -> int | None:

@@ -182,6 +182,13 @@ class Entity:
         """How many items there are to take."""
         return int(self.pending)
 
+    def readiness(self) -> Sequence[int]:
+        """The numbers, among all entities, with which it and each more of its parts became ready."""
+        return [self.node._agenda.ready[self]]
+
+    def leave_out(self, later: int) -> None:
+        """Have the next take leave out parts that became ready with a later number."""
+
     def arrivals(self) -> Sequence[Entity | None]:
         """For all that there is to take, what it arrived at."""
         return [None] * self.queued

@@ -152,7 +152,8 @@ class MultiThreadedExecutor(Executor):
         with self._lock:
             self._spinning_on = spinning_on
             self._pool.should_stop = enough
-            self._waitables_changed()
+            if not isinstance(self._pool, RacingPool):  # rclpy's spin() wakes nobody
+                self._waitables_changed()
 
     def _waitables_changed(self) -> None:
         """Let workers find callbacks unless waitables must be polled, which only the spinning thread does."""

@@ -9,14 +9,13 @@ orders come that the usual pool cannot take.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterable
 from typing import TYPE_CHECKING, Any
 
 from sim.ros.scheduling.cycle import GATHERING, TASKS, WAITING, Cycle, Work
 from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.running import AdmittedWork, StartedWork
 from sim.ros.scheduling.task import Task
-from sim.ros.scheduling.wait_set import in_order_of_readiness
 from sim.ros.scheduling.workers import Worker, WorkerPool
 
 if TYPE_CHECKING:
@@ -30,8 +29,8 @@ class RacingCycle(Cycle):
     """Ends the wait of the spinning thread, which then takes its next step."""
     looks: Callable[[], bool]
     """Looks for errors of workers behind what was handed over, and tells whether one comes out."""
-    _there = 0
-    """How much of what is waited for was ready as the wait began."""
+    _there = -1
+    """With which number the last of what is waited for became ready before the wait began."""
     _is_woken = False
     """Whether the guard condition was triggered since a wait ended."""
 
@@ -67,7 +66,7 @@ class RacingCycle(Cycle):
             self._following = GATHERING
             return self._take_tasks()
         self._gather(deque())
-        self._there = len(self._awaited(self._ready(now)))
+        self._there = max(_arrived(self._awaited(self._ready(now))), default=-1)
         return False
 
     def _wait_is_over(self, now: int) -> bool:
@@ -78,11 +77,14 @@ class RacingCycle(Cycle):
 
         The end of rclpy's wait needs no interpreter, which its thread may get much later.
         """
-        awaited = in_order_of_readiness(self._awaited(self._ready(now)))
-        fewest = min(self._there or (not self._is_woken), len(awaited))
-        number = fewest + self._clock.choose(len(awaited) - fewest + 1)
-        first = set(awaited[:number])
-        self._name(deque(each for each in self._ready(now) if each in first))
+        awaited = self._awaited(self._ready(now))
+        arrived = _arrived(awaited)
+        fewest = sum(number <= self._there for number in arrived) or (not self._is_woken)
+        number = fewest + self._clock.choose(len(arrived) - fewest + 1)
+        first = deque(each for each in awaited if each.readiness()[0] in arrived[:number])
+        self._name(first)
+        for each in first:
+            each.leave_out(later=arrived[number - 1])
         self._is_woken = self._yielded = False
         self._following = TASKS
         return bool(first)
@@ -103,6 +105,11 @@ class RacingCycle(Cycle):
         """The guard condition is triggered."""
         self._is_woken = True
         self.go_on()
+
+
+def _arrived(ready: Iterable[Entity]) -> list[int]:
+    """The numbers with which entities, and the parts of actions, became ready."""
+    return sorted(number for each in ready for number in each.readiness())
 
 
 class RacingPool(WorkerPool):
