@@ -214,3 +214,70 @@ def test_of_several_clients_the_one_is_told_that_the_program_waits_for(tmp_path:
         f"for /late, which nobody has offered so far; the program would create it at line {line}" in told.what
     )
     assert told.cure == "create /late before the wait"
+
+
+LAMP = """
+import rclpy
+from rclpy.node import Node
+from std_srvs.srv import SetBool, Trigger
+
+
+class Lamp(Node):
+    def __init__(self):
+        super().__init__("lamp")
+        self.client = self.create_client(SetBool, "lamp_on")
+        self.create_timer(1.0, self.press)
+        self.offer()
+
+    def offer(self):
+        self.create_service(SetBool, "lamp/on", lambda request, response: response)
+
+    def press(self):
+        self.client.wait_for_service(timeout_sec=0.5)
+
+
+rclpy.init()
+rclpy.spin(Lamp())
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "seconds", "told"),
+    [
+        ("", "", 6.0, ("problem", "nobody has offered it so far", "call /lamp/on, which is offered")),
+        ("", "", 3.0, None),
+        ("lamp_on", "window", 6.0, ("remark", "nobody has offered it so far", "start the node that offers")),
+        (
+            'SetBool, "lamp_on',
+            'Trigger, "lamp/on',
+            6.0,
+            ("problem", "it is offered as std_srvs", "same type"),
+        ),
+        ("lamp_on", "lamp/on", 6.0, None),
+    ],
+)
+def test_waits_for_a_service_that_end_in_vain_again_and_again_are_told_at_the_client(
+    tmp_path: Path, old: str, new: str, seconds: float, told: tuple[str, str, str] | None
+) -> None:
+    path = tmp_path / "lamp.py"
+    path.write_text(LAMP.replace(old, new) if old else LAMP)
+    timeline = run_to_end(program_setup(path, seconds)).timeline
+    found = [(each, each.explained(timeline)) for each in diagnose(timeline)]
+    if told is None:
+        assert not found
+        return
+    [(each, words)] = found
+    assert each.weight_in(timeline).value == told[0]
+    assert told[1] in words.what
+    assert told[2] in words.cure
+    assert str(words.place) == "lamp.py:10"
+
+
+def test_waits_for_a_service_that_came_later_are_well(tmp_path: Path) -> None:
+    path = tmp_path / "lamp.py"
+    path.write_text(
+        LAMP.replace("lamp_on", "lamp/on").replace("self.offer()", "self.create_timer(4.8, self.offer)")
+    )
+    waiting = run_to_end(program_setup(path, 4.6)).timeline
+    assert [each.weight_in(waiting).value for each in diagnose(waiting)] == ["remark"]
+    assert not diagnose(run_to_end(program_setup(path, 6.0)).timeline)

@@ -56,6 +56,7 @@ _NAMES = {
     "stays-in-loop": "long loop",
     "nobody-offers": "service that nobody offers",
     "service-never-comes": "wait for a service",
+    "waited-in-vain": "wait for a service in vain",
     "node-never-spins": "node that nobody spins",
     "spin-raised": "exception that ends spin()",
     "overrun-timer": "callback longer than its timer's period",

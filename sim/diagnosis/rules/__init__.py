@@ -23,6 +23,7 @@ from sim.diagnosis.rules.services import (
     ServiceFallsBehind,
     ServiceNeverComes,
     UnreturnedResponse,
+    WaitedInVain,
 )
 from sim.diagnosis.rules.spinning import (
     AsyncioStarved,
@@ -58,6 +59,7 @@ RULES: tuple[Rule, ...] = (
     ThreadRaised(),
     NodeNeverSpins(),
     NobodyOffers(),
+    WaitedInVain(),
     QosMismatch(),
     MisspeltTopic(),
     SentTooEarly(),

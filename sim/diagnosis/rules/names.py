@@ -104,7 +104,12 @@ def nearest(name: str, known: Iterable[str]) -> str:
 
 
 def _likeness(name: str, other: str) -> float:
-    """Return the likeness of two names, 0 to 1: of their last parts, whatever their case."""
+    """Return the likeness of two names, 0 to 1: of their last parts, whatever their case.
+
+    That ``_`` stands for ``/`` in one makes no difference.
+    """
+    if name.lower().replace("/", "_") == other.lower().replace("/", "_"):
+        return 1.0
     one, two = (each.rpartition("/")[2].lower() for each in (name, other))
     short, long = sorted((one, two), key=len)
     if len(short) >= _SHORTEST and (long.startswith(short) or long.endswith(short)):

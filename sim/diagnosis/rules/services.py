@@ -32,7 +32,7 @@ from sim.trace.model import EntityInfo, Span, Window
 from sim.trace.timeline import Timeline
 
 _CALLS_IN_TURN = 3
-"""The number of calls, one right after the other, that tell a habit."""
+"""The number of calls, or of waits in vain, one right after the other, that tell a habit."""
 
 _RETURNED = re.compile(r"got <class '(?:[\w<>]+\.)*(\w+)'>$")
 """The class of what a service's callback returned, in the error that comes of it; real rclpy names none."""
@@ -219,6 +219,7 @@ class ServiceNeverComes(Rule):
     id = "service-never-comes"
     summary = "a callback waits for a service that nobody offers"
     hangs_from = 0
+    hides = frozenset(["waited-in-vain"])
     threshold = SECOND
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
@@ -294,3 +295,46 @@ class ServiceNeverComes(Rule):
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Irrelevant if the wait ended."""
         return self.weight if found.until >= timeline.end else None
+
+
+class WaitedInVain(Rule):
+    """A callback waits for a service that no node offers again and again, each time until its timeout.
+
+    That the service is still to come is likely, unless one of nearly the same name is offered.
+    """
+
+    id = "waited-in-vain"
+    summary = "a callback waits again and again, in vain, for a service that nobody offers"
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each wait that its timeout ended, if it is known for which service; not those of a loop."""
+        for thread in view.timeline.threads:
+            for at in view.timeline.positions_on(thread, view.window):
+                if at.call != "Client.wait_for_service" or at.loop[0] or not at.end or not at.until:
+                    continue
+                clients = _of_callback(at.entity, (at.file, at.line), view.timeline)
+                lasted = at.end - at.start
+                if 2 * lasted > at.until - at.start and len(clients) == 1:  # seen late on the real clock
+                    about = clients[0].name
+                    yield Finding(self, at.start, at.end, at.entity, at.entity, about, size=lasted)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        subject, client = who(found.subject, timeline), _client_of(found, timeline)
+        differs, meant, remedies = ("", "", ()) if client is None else offer(client, timeline)
+        return Explanation(
+            f"{subject} waited for {found.about} in vain{often(found.count)}, up to {duration(found.lasted)} "
+            f"each: {differs and 'it is asked for '}{differs or 'nobody has offered it so far'}",
+            "a client and a service meet only if they have the same name and the same type",
+            meant or f"check the service's name, and start the node that offers {found.about}",
+            (client and made_at(client)) or place_of(found.subject, timeline),
+            remedies=remedies,
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant if it happened seldom, or if the service came; a remark if it may come."""
+        client = _client_of(found, timeline)
+        if found.count < _CALLS_IN_TURN or client is None or client not in _unserved(timeline):
+            return None
+        differs, meant, _ = offer(client, timeline)
+        is_made = client.made_at[0] and _created_later(found, client.made_at[0])[1]
+        return self.weight if differs or (meant and not is_made) else Weight.REMARK
