@@ -56,7 +56,7 @@ def remedy_for_waits(
 
 
 def who_moves(waited: Sequence[EntityId], culprit: EntityId, timeline: Timeline) -> EntityId:
-    """Return who is to leave a group that ``culprit`` held: it, unless nobody would be left to wait for it."""
+    """Return who is to leave a group that ``culprit`` held: it, unless nobody else would wait for it then."""
     run, group = Window(0, timeline.end + 1), timeline.entities[waited[0]].group
     others = {each.id for each in timeline.group_members(group)} - {waited[0], culprit}
     return culprit if waited[1:] or any(timeline.calls_of(each, run) for each in others) else waited[0]
