@@ -195,7 +195,7 @@ def diagnosis_at(
     if not timeline.entities:
         return Diagnosis("no callback yet: the node is starting", DiagnosisLevel.FINE)
     moment = timeline.moment(at)
-    for_others = waits_for_others(moment)
+    for_others = waits_for_others(moment, timeline)
     if for_others:
         return _of_waits(for_others, moment, timeline)
     if asked is not None:

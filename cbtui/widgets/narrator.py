@@ -14,7 +14,13 @@ from sim.diagnosis.words import group_of, late_reply, thread_count
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import Doing, EntityId, EntityKind, Reason
-from sim.trace.figures.waiting import WORTH_TELLING, admits_others, is_held_by_own_call, next_in_turn
+from sim.trace.figures.waiting import (
+    WORTH_TELLING,
+    admits_others,
+    is_held_by_own_call,
+    next_in_turn,
+    waits_at,
+)
 from sim.trace.model import Blocked, Deed, EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -123,7 +129,7 @@ def _decided(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:
     """What was decided at a moment; who has become ready, if that is all, as it is told with the waits."""
     ready = [
         f"{name_of(wait.entity, timeline)} {_readied(wait, timeline)}"
-        for wait in timeline.moment(at).waiting.values()
+        for wait in waits_at(timeline.moment(at), timeline)
         if wait.since == at
     ]
     return tuple(_deeds(timeline, at)) or tuple(filter(None, ("; ".join(ready),)))
@@ -189,7 +195,7 @@ def _waits(timeline: Timeline, at: Nanoseconds, since: Nanoseconds) -> Sequence[
 
 def _left(timeline: Timeline, at: Nanoseconds) -> list[Wait]:
     """The waits of a moment that others cause, in the order in which an executor examines who waits."""
-    waits = (wait for wait in timeline.moment(at).waiting.values() if not wait.is_for_own_call)
+    waits = (wait for wait in waits_at(timeline.moment(at), timeline) if not wait.is_for_own_call)
     return sorted(waits, key=lambda wait: _place(timeline.entities[wait.entity]))
 
 
@@ -377,18 +383,16 @@ def _why(wait: Wait, timeline: Timeline) -> str:
 
 
 def _readied(wait: Wait, timeline: Timeline) -> str:
-    return _again(wait.entity, timeline) if wait.is_for_own_call else "is ready"
-
-
-def _again(entity: EntityId, timeline: Timeline) -> str:
-    return "is due again" if timeline.entities[entity].kind is EntityKind.TIMER else "is ready again"
+    if not wait.is_for_own_call:
+        return "is ready"
+    return "is due again" if timeline.entities[wait.entity].kind is EntityKind.TIMER else "is ready again"
 
 
 def _turn(each: EntityId, since: Nanoseconds, timeline: Timeline, at: Nanoseconds) -> str:
     """Say what a callback that waits for no other one is to take, and when."""
     entity, moment = timeline.entities[each], timeline.moment(at)
     queued, waited = moment.queues[entity.id].depth, moment.at - since
-    is_ready = f"has {queued} queued" if queued else _again(each, timeline)
+    is_ready = f"has {queued} queued" if queued else _readied(moment.waiting[each], timeline)
     lasted = f"{', the next' if queued else ''} for {duration(waited)}" if waited else ""
     when = "its last call still runs" if is_held_by_own_call(each, moment, timeline) else "it is free to run"
     return f"{entity.spoken_name} {is_ready}{lasted}: {when}"

@@ -27,7 +27,15 @@ from lessons.description import Actor
 from lessons.lesson import Lesson
 from sim.quantities.durations import duration
 from sim.trace.descriptions import name_of
-from sim.trace.events import GroupId, Reason
+from sim.trace.events import (
+    CallbackEnded,
+    CallbackStarted,
+    EntityReady,
+    GroupId,
+    Reason,
+    WaitEnded,
+    WaitStarted,
+)
 from sim.trace.figures.comparison import compare
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.figures.summary import summarise
@@ -40,6 +48,7 @@ from tests.support.runs import Run, dummy_server_run, shared_group_run, split_gr
 from tests.widgets.pictures import plain, told
 
 FILES = SourceFiles(Path("node.py"), "", {})
+_STEPS = (CallbackStarted, CallbackEnded, EntityReady, WaitStarted, WaitEnded)
 _RUNS = (shared_group_run, split_groups_run, dummy_server_run)
 
 
@@ -87,6 +96,20 @@ def test_all_panes_say_the_same_of_any_moment_of_a_lesson(lesson: Lesson) -> Non
     moments = Random(lesson.id)
     for _ in range(40):
         assert_panes_agree(timeline, moments.randrange(timeline.end), files)
+
+
+@pytest.mark.parametrize("is_live", [True, False], ids=["live", "looking back"])
+def test_all_panes_say_the_same_of_each_step_of_a_queue_that_is_always_full(is_live: bool) -> None:
+    lesson = next(each for each in lessons() if each.id == "stale-data")
+    files = SourceFiles(lesson.node_path, lesson.node_path.read_text(), {})
+    timeline, events = Timeline(), run_to_end(setup_to_judge(lesson)).events
+    if not is_live:
+        timeline.extend(events)
+    for event in events:
+        if is_live:
+            timeline.extend([event])
+        if ns(4.0) <= event.t <= ns(5.7) and isinstance(event, _STEPS):
+            assert_panes_agree(timeline, event.t, files)
 
 
 def test_a_subscription_slower_than_its_messages_tells_everywhere_how_long_the_next_one_has_waited() -> None:
@@ -139,13 +162,14 @@ def test_between_two_calls_a_queue_is_not_told_as_nothing_that_waits() -> None:
 def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
     """Compare what lanes, factory, scene, code and diagnosis line say of a moment."""
     moment, scene = timeline.moment(at), scene_of(timeline, at, ns(0.1))
-    waits = waits_for_others(moment)
+    waits = waits_for_others(moment, timeline)
     assert {wait.entity for wait in scene.waits()} == {wait.entity for wait in waits}
     by_lanes = waiting_by_lanes(timeline, at)
     in_factory = {area.group.id: area.waiting for area in scene.areas}
     assert by_lanes == {group: in_factory[group] for group in by_lanes}
     assert_headline_agrees(scene)
     assert_short_waits_count_nowhere(timeline, at, files)
+    assert_turns_agree(scene, files)
     told = diagnosis_at(timeline, at, Concurrency(timeline))
     in_code = {
         mark.entity: mark.texts[0] for marks in marks_at(timeline, at, files).values() for mark in marks
@@ -179,6 +203,26 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
         more = re.search(r"; (\d+) more", told.at_length)
         assert 1 + (int(more[1]) if more else 0) == len(waits)
     assert len(scene.workers) <= max(1, sum(executor.threads for executor in timeline.executors.values()))
+
+
+def assert_turns_agree(scene: FactoryScene, files: SourceFiles) -> None:
+    """Compare what the narrator says of those that wait for no other one with belts, code and scene."""
+    timeline, at = scene.timeline, scene.now
+    belts = [belt for area in scene.areas for belt in area.belts]
+    for narrated in "; ".join(narration(timeline, at, stepped=True)).split("; "):
+        of_it = [belt for belt in belts if narrated.startswith(f"{belt.entity.spoken_name} ")]
+        texts = [wait_texts(belt, timeline, at)[:1] for belt in of_it]
+        if narrated.endswith(": it is free to run"):
+            assert () in texts
+            ids = {belt.entity.id for belt in of_it}
+            marks = (mark for line in marks_at(timeline, at, files).values() for mark in line)
+            assert len(of_it) > 1 or not any("waits" in mark.texts[0] for mark in marks if mark.entity in ids)
+            actors = [Actor(figure="hand", follows=belt.entity.callback) for belt in of_it[:1]]
+            assert " waits " not in plain(paint_scene(actors, timeline, at, 120, 2, Charset.BRAILLE))
+        elif waited := re.search(r"the next for ([\d.]+) (m?s): its last call still runs$", narrated):
+            is_long = waited[2] == "s" or float(waited[1]) >= 10
+            assert not is_long or any("its last call still runs" in text for (text,) in filter(None, texts))
+            assert "no callback waits for another" not in headlines(scene)[0].text or not is_long
 
 
 def assert_short_waits_count_nowhere(timeline: Timeline, at: int, files: SourceFiles) -> None:

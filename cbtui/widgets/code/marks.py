@@ -203,7 +203,7 @@ def _doing(
         several = [f"▶ {len(calls)} calls, longest {times[0]}"] if calls[1:] else []
         texts = (*_blocked_text(calls, moment), f"▶ {each}", *several, f"▶ {times[0]}")
         return CallbackActivity.RUNS, texts, calls[0].start
-    wait = wait_told(entity.id, moment)
+    wait = wait_told(entity.id, moment, timeline)
     if wait is not None:
         since = waits_since(wait, moment.queues[entity.id])
         hatch, lasted = GLYPHS[Charset.BRAILLE].hatch[wait.reason], duration(moment.at - since)

@@ -284,7 +284,7 @@ class _SceneBuilder:
         return Area(group, self._numbers[group.id], belts, visitors, kept, more, crew)
 
     def _belt(self, entity: EntityInfo) -> Belt:
-        wait = wait_told(entity.id, self._moment)
+        wait = wait_told(entity.id, self._moment, self._timeline)
         tick = self._tick(entity) if entity.kind is EntityKind.TIMER else None
         queue = self._moment.queues.get(entity.id, _NO_QUEUE)
         return Belt(entity, queue, wait, tick)

@@ -80,7 +80,7 @@ class LaneStatus:
 
     def _group(self, group: GroupInfo) -> TextRun:
         entities = self.timeline.entities
-        waits = waits_for_others(self.moment)
+        waits = waits_for_others(self.moment, self.timeline)
         waiting = sum([entities[wait.entity].group == group.id for wait in waits])
         holders = len(self.moment.holders.get(group.id, ()))
         if group.kind is GroupKind.REENTRANT:
@@ -114,7 +114,7 @@ class LaneStatus:
                 return TextRun("", PLAIN)
 
     def _timer(self, timer: EntityInfo, latest: Span | None) -> TextRun:
-        wait = wait_told(timer.id, self.moment)
+        wait = wait_told(timer.id, self.moment, self.timeline)
         if wait is not None:
             return TextRun(f"late {duration(self.moment.at - wait.since)}", WARN)
         if latest is None:

@@ -126,7 +126,7 @@ def _state(entity: EntityInfo, timeline: Timeline, moment: Moment) -> _State:
         else:
             doing = "" if position is None or position.entity != entity.id else doing_of(position)
         return _State(elapsed / (elapsed + _HALF_WAY), f"runs {duration(elapsed)}", doing, bool(blocked))
-    wait = wait_told(entity.id, moment)
+    wait = wait_told(entity.id, moment, timeline)
     if wait is not None:
         reasons = filter(None, (why_waiting(wait, timeline), losses))
         waited = duration(at - waits_since(wait, moment.queues[entity.id]))

@@ -1,6 +1,9 @@
 """The callbacks that wait for others: one answer for every pane and sentence."""
 
-from sim.trace.events import EntityId, EntityKind, GroupKind
+from collections.abc import Iterator
+from dataclasses import replace
+
+from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import Moment, Nanoseconds, Queue, Wait
 from sim.trace.timeline import Timeline
 
@@ -25,19 +28,53 @@ def waited_by(end: Nanoseconds, wait: Wait, timeline: Timeline) -> Nanoseconds:
     return end - waits_since(wait, timeline.queue(wait.entity, max(wait.start, end - 1)))
 
 
-def waits_for_others(moment: Moment) -> list[Wait]:
+def waits_at(moment: Moment, timeline: Timeline) -> Iterator[Wait]:
+    """Yield the waits of a moment, for what runs then."""
+    calls = (span.entity for span in moment.running.values())
+    found = (_wait_at(entity, moment, timeline) for entity in dict.fromkeys((*moment.waiting, *calls)))
+    return (wait for wait in found if wait is not None)
+
+
+def _wait_at(entity: EntityId, moment: Moment, timeline: Timeline) -> Wait | None:
+    """Return the wait of a callback for what runs at a moment.
+
+    The executor tells of a wait when it looks again: a run that is paused before that knows the calls better.
+    """
+    wait, known = moment.waiting.get(entity), timeline.entities.get(entity)
+    holders = () if known is None else moment.holders.get(known.group, ())
+    if wait is None:
+        return _beginning(entity, moment, timeline) if entity in holders else None
+    is_held = wait.reason is Reason.GROUP_HELD or wait.is_for_own_call
+    if known is None or not is_held or wait.holder in (0, *holders):
+        return wait
+    return replace(wait, holder=holders[0]) if holders and wait.reason is Reason.GROUP_HELD else None
+
+
+def _beginning(entity: EntityId, moment: Moment, timeline: Timeline) -> Wait | None:
+    """Return the wait for its own call of a callback whose queue still has messages."""
+    arrived, kinds = moment.queues[entity].next_arrived, {each.kind for each in timeline.executors.values()}
+    is_queue = timeline.entities[entity].kind in _QUEUES
+    if arrived is None or not is_queue or not is_held_by_own_call(entity, moment, timeline):
+        return None
+    begun = max((span.start for span in moment.running.values() if span.entity == entity), default=arrived)
+    reason = Reason.EVENT_QUEUE if kinds == {"EventsExecutor"} else Reason.GROUP_HELD
+    since = max(arrived, begun)
+    return Wait(since, None, since, entity, reason, entity, workers_busy=False)
+
+
+def waits_for_others(moment: Moment, timeline: Timeline) -> list[Wait]:
     """Return the waits of a moment that are worth telling and not for a callback's own last call.
 
     The longest is first.
     """
-    waits = (wait for wait in moment.waiting.values() if not wait.is_for_own_call)
+    waits = (wait for wait in waits_at(moment, timeline) if not wait.is_for_own_call)
     ordered = sorted((waits_since(wait, moment.queues[wait.entity]), wait.entity) for wait in waits)
-    return [wait for _, entity in ordered if (wait := wait_told(entity, moment)) is not None]
+    return [wait for _, entity in ordered if (wait := wait_told(entity, moment, timeline)) is not None]
 
 
-def wait_told(entity: EntityId, moment: Moment) -> Wait | None:
+def wait_told(entity: EntityId, moment: Moment, timeline: Timeline) -> Wait | None:
     """Return the wait of a callback at a moment, its own last call's included, if it is worth telling."""
-    wait = moment.waiting.get(entity)
+    wait = _wait_at(entity, moment, timeline)
     if wait is None or moment.at - waits_since(wait, moment.queues[entity]) < WORTH_TELLING:
         return None
     return wait
@@ -46,23 +83,27 @@ def wait_told(entity: EntityId, moment: Moment) -> Wait | None:
 def next_in_turn(moment: Moment, timeline: Timeline) -> dict[EntityId, Nanoseconds]:
     """Return the callbacks that wait for no other one, and since when they or their next messages wait.
 
-    Their own last calls keep them from running, or are just over, and the executor is about to look again.
+    Their own last calls keep them from running, or what did is just over, and the executor is about to look.
     """
-    kinds = (EntityKind.SUBSCRIPTION, EntityKind.SERVICE)
     found = {
         entity: arrived
         for entity in sorted(timeline.active_since(moment.at))
-        if entity not in moment.waiting and timeline.entities[entity].kind in kinds
+        if entity not in moment.waiting and timeline.entities[entity].kind in _QUEUES
         if (arrived := moment.queues[entity].next_arrived) is not None
     }
-    own = (wait for wait in moment.waiting.values() if wait.is_for_own_call)
-    return found | {wait.entity: waits_since(wait, moment.queues[wait.entity]) for wait in own}
+    held = {wait.entity for wait in waits_at(moment, timeline) if not wait.is_for_own_call}
+    turns = (wait for wait in moment.waiting.values() if wait.entity not in held)
+    return found | {wait.entity: waits_since(wait, moment.queues[wait.entity]) for wait in turns}
+
+
+_QUEUES = (EntityKind.SUBSCRIPTION, EntityKind.SERVICE)
 
 
 def is_held_by_own_call(entity: EntityId, moment: Moment, timeline: Timeline) -> bool:
-    """Return whether a call of a callback runs and lets no second one begin; one that is over does not."""
-    is_running = any(span.entity == entity for span in moment.running.values())
-    return is_running and not admits_others(entity, timeline)
+    """Return whether a call of a callback runs or awaits, and lets no second one begin."""
+    known = timeline.entities.get(entity)
+    has_begun = known is not None and entity in moment.holders.get(known.group, ())
+    return has_begun and not admits_others(entity, timeline)
 
 
 def admits_others(entity: EntityId, timeline: Timeline) -> bool:
