@@ -10,7 +10,7 @@ from textual.widgets import Static
 
 from cbtui.app import CbtuiApp
 from cbtui.keys.action import Scope
-from cbtui.keys.actions import ACTIONS
+from cbtui.keys.actions import ACTIONS, TASKS
 from cbtui.keys.keymap import keys_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.compared_runs import ComparedSide
@@ -526,10 +526,13 @@ async def test_help_begins_with_the_comparisons_keys_and_q_is_the_way_back() -> 
     async with compared(*sides(), size=NARROW) as (app, pilot):
         await pilot.press("question_mark")
         assert isinstance(app.screen, HelpScreen)
+        rows = str(app.screen.query_one("#found", Static).render()).splitlines()
+        assert {"Comparison", *(f"In a run: {task}" for task in TASKS)} <= set(rows)
+        assert not set(TASKS) & set(rows)
         await pilot.press("slash", *"table cover")
         await pilot.pause()
         assert "Let the table cover whole runs, or only what is on screen" in text_of(app)
-        await pilot.press("escape", "q")
+        await pilot.press("escape", "escape", "q")
         assert isinstance(app.screen, MenuScreen)
 
 

@@ -38,6 +38,8 @@ _SHOWN = (
 """The scopes that follow the lesson's tasks."""
 _WIDEST = 160
 """The most columns of the window."""
+_IN_A_RUN = "In a run: "
+"""Comes before the names of a run's tasks where the help is over another screen."""
 
 _AbsenceOf: TypeAlias = Callable[[Sequence[KeyAction]], str | None]
 
@@ -184,7 +186,7 @@ def _with(wanted: Sequence[str], sections: Iterable[_Section]) -> list[_Section]
 
 
 def _has(row: _HelpRow, heading: str, words: Sequence[str]) -> bool:
-    text = f"{row.sign} {row.meaning} {row.labels} {heading}".casefold()
+    text = f"{row.sign} {row.meaning} {row.labels} {heading.removeprefix(_IN_A_RUN)}".casefold()
     return all(word in text for word in words)
 
 
@@ -202,7 +204,8 @@ def _shown(section: _Section, width: int, charset: Charset) -> list[Content]:
 
 def _page(scope: Scope | None, keymap: Keymap, charset: Charset, absence: _AbsenceOf) -> _HelpPage:
     """Return the help over a screen of ``scope``, whose own keys come before those of others."""
-    tasks = [_of_task(task, ids, keymap, charset, absence) for task, ids in TASKS.items()]
+    place = "" if scope is Scope.LESSON else _IN_A_RUN
+    tasks = [_of_task(f"{place}{task}", ids, keymap, charset, absence) for task, ids in TASKS.items()]
     others = {each: _of_scope(each, keymap, charset, absence) for each in _SHOWN}
     if scope in (Scope.MENU, Scope.SEARCH):
         first = [_stages(), others.pop(scope), _lane_signs(charset)]
