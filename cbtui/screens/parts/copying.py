@@ -35,11 +35,12 @@ class DetailsCopy(ScreenPart):
         """Copy to the terminal's clipboard (OSC 52, which works over ssh)."""
         timeline, now = self.runs.timeline, self.navigation.now
         lanes = self.screen.query_one(Lanes)
-        if lanes.selection is None:
+        selection = lanes.selection_now
+        if selection is None:
             lines = list(summary(self.subject, timeline, now, self.runs.concurrency))
             what = f"the moment {timestamp(now)}"
         else:
-            details = details_of_selection(timeline, lanes.selection.renewed(timeline), now, lanes.keys)
+            details = details_of_selection(timeline, selection, now, lanes.keys)
             lines = [details.title, *(f"  {fact}" for fact in details.facts)]
             what = details.title
         self.screen.app.copy_to_clipboard("\n".join(lines))

@@ -117,6 +117,16 @@ class Lanes(PaintedWidget, can_focus=True):
         found += [self._last_on(lane) for lane in lanes]
         return next((each for each in found if each.bar is not None), found[0] if found else None)
 
+    @property
+    def selection_now(self) -> Selection | None:
+        """The selection as it has become; of a lane alone, its last bar on screen up to the cursor."""
+        selection = None if self.selection is None else self.selection.renewed(self.timeline)
+        if selection is None or selection.bar is not None:
+            return selection
+        bar = neighbouring_bar(self.timeline, selection.lane, min(self.now + 1, self.timeline.end), -1)
+        is_shown = bar is not None and (end_of(bar) or self.timeline.end) >= self.window.start
+        return Selection(selection.lane, bar if is_shown else None)
+
     def lane_beside(self, step: int) -> Selection | None:
         """Return the lane above (``step`` < 0) or below the selected one, and its last bar."""
         lanes = all_lanes(self.timeline, self.service)
@@ -205,7 +215,7 @@ class Lanes(PaintedWidget, can_focus=True):
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the lanes, and the details of the selected bar."""
-        selection = None if self.selection is None else self.selection.renewed(self.timeline)
+        selection = self.selection_now
         described = self._rows_told(size) if selection is not None else 0
         height = size.height - described
         picture = self._painter.paint(

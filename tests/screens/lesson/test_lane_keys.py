@@ -11,7 +11,7 @@ from cbtui.widgets.code import CodeView
 from cbtui.widgets.guide import Guide
 from cbtui.widgets.lanes import Lanes, start_of
 from cbtui.widgets.lanes.details import details_of_selection
-from cbtui.widgets.lanes.rows import MemberLane, ThreadLane
+from cbtui.widgets.lanes.rows import MemberLane, ThreadLane, all_lanes
 from cbtui.widgets.lanes.selection import Selection
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
@@ -162,6 +162,23 @@ async def test_enter_before_the_first_callback_says_that_there_is_nothing_to_sel
         await press(pilot, "enter")
         told = [each.message for each in app._notifications]
         assert told == ["There is no bar to select yet: the lanes come with the first callbacks."]
+
+
+async def test_what_is_told_of_a_lane_that_was_selected_empty_follows_its_bars() -> None:
+    app = RecordedConsole("shared-group", EVENTS, 0.3)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        lanes = lanes_of(app)
+        *_, lane = (each for each in all_lanes(lanes.timeline, "") if isinstance(each, MemberLane))
+        app.lesson_screen.bars.select(Selection(lane))
+        await settle(pilot)
+        for now in (0.3, 4.5):
+            app.engines.latest.play(ns(now))
+            await settle(pilot)
+            assert ("nothing up to here on screen" in text_of(app)) is (now == 0.3)
+        assert lanes.selection_now is not None
+        await press(pilot, "y")
+        assert "nothing up to here" not in app.clipboard
 
 
 @pytest.mark.slow
