@@ -74,7 +74,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("line_below", "down", "line", "Show the line below whole", "Show the line above or below whole"),
         ("pick_line", "enter", "go there", "Move the cursor of every pane to the line's time"),
         ("copy", "y", "copy", "Copy the picked line, or those in view"),
-        ("let_go", "escape", "clear", "Clear the selection"),
+        ("let_go", "escape", "clear", "Clear the selection; without one, the filter"),
     ),
     Scope.CODE: (
         ("line_above", "up", "line", "Go to the line above", "Go to the line above or below"),

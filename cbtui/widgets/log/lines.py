@@ -9,6 +9,7 @@ from rich.style import Style
 from textual.binding import BindingType
 from textual.events import Click
 from textual.geometry import Offset
+from textual.message import Message
 from textual.reactive import var
 from textual.strip import Strip
 
@@ -57,6 +58,9 @@ class LogLines(FollowingView):
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {*_STYLES.values(), _CURSOR, _MOMENT}
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.LOG)]
+
+    class EveryLineWanted(Message):
+        """The user wants the filter to be cleared."""
 
     counts: var[tuple[int, int]] = var((0, 0))
     """The number of lines that pass the filter, and of all lines, up to the moment on screen."""
@@ -162,8 +166,10 @@ class LogLines(FollowingView):
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer the actions that have an effect on the shown lines."""
         match action:
-            case "pick_line" | "let_go":
+            case "pick_line":
                 return self.picked is not None
+            case "let_go":
+                return self.picked is not None or not self.wanted.passes_all
             case "line_above" | "line_below" | "copy":
                 return self._count > 0
             case "follow":
@@ -194,7 +200,7 @@ class LogLines(FollowingView):
 
     def action_follow(self) -> None:
         """Unpick the line, and follow the end."""
-        self.action_let_go()
+        self._unpick()
         self.follow()
 
     def action_stay(self) -> None:
@@ -202,7 +208,12 @@ class LogLines(FollowingView):
         self.stay()
 
     def action_let_go(self) -> None:
-        """Clear the selection."""
+        """Clear the selection; without one, ask for every line."""
+        if self.picked is None:
+            self.post_message(self.EveryLineWanted())
+        self._unpick()
+
+    def _unpick(self) -> None:
         self.picked = None
         self.refresh()
 

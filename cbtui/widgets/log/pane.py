@@ -87,6 +87,10 @@ class LogView(Vertical):
         self._complain(fault)
         self._show_filter()
 
+    @on(LogLines.EveryLineWanted)
+    def _clear_filter(self) -> None:
+        self.query_one(LogFilter).value = ""
+
     def on_descendant_focus(self) -> None:
         """Show the filter while it has the focus or is in use."""
         self._show_filter()

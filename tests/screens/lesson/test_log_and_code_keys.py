@@ -89,6 +89,15 @@ async def test_a_slash_filters_the_log_from_wherever_one_is() -> None:
         assert tabs(app).rstrip().endswith("186 lines · follows")
 
 
+async def test_escape_in_the_log_clears_the_picked_line_then_the_filter() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "slash", *"timer", "enter", "up", "escape")
+        assert " of 186 lines" in tabs(app)
+        await press(pilot, "escape")
+        assert " of 186 lines" not in tabs(app)
+        assert "186 lines" in tabs(app)
+
+
 @pytest.mark.slow
 async def test_keys_that_are_typed_into_a_filter_do_nothing_else() -> None:
     async with console() as (app, pilot):
