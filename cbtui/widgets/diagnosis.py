@@ -139,7 +139,8 @@ def with_worst_problem(
     what, level = explanation.what, DiagnosisLevel.WAITS if worst in in_vain else DiagnosisLevel.TROUBLE
     if worst.at is None:
         return Diagnosis(what, level, at_length=worst.headline, place=explanation.place)
-    time = f"at {worst.at / 1e9:.1f} s: "
+    counts_on = at is not None and worst.finding.count > 1
+    time = "in the whole run: " if counts_on else f"at {worst.at / 1e9:.1f} s: "
     text = f"{time}{what}"
     further = f"; {how_to_continue}" if how_to_continue and explanation.for_ever else ""
     at_length = f"{worst.name} {text}{further}".lstrip()

@@ -452,6 +452,10 @@ def test_of_a_past_moment_no_later_problem_is_told() -> None:
     moment, findings = said(shared_group_run(), 3.0), told_of(shared_group_run(), 15.0)
     assert with_worst_problem(moment, findings, at=ns(3.0)) == moment
     assert "waited up to" in with_worst_problem(moment, findings, at=ns(15.0)).text
+    many = [replace(each, finding=replace(each.finding, count=2)) for each in findings]
+    told = with_worst_problem(moment, many, at=ns(15.0)).text
+    assert told.startswith("in the whole run: "), "what is counted goes on after a past moment"
+    assert with_worst_problem(moment, many).text.startswith("at 4.0 s: ")
 
 
 def test_a_request_that_waits_for_the_call_before_it_is_told_as_that() -> None:
