@@ -231,12 +231,11 @@ class Engine:
             self._exit_process(outcome.status)  # a program forked, and this is the other one
         self._shutdown.finish(outcome)
 
-    def _tell_of_error(self, sentence: str, thread_died: str, place: SourcePlace) -> None:
+    def _tell_of_error(self, sentence: str, error: str, place: SourcePlace, kind: NoticeKind) -> None:
         # What a thread raises as the program ends took nothing away from the run.
-        died = thread_died and not self._shutdown.has_begun
-        kind = NoticeKind.THREAD_DIED if died else NoticeKind.OTHER
+        kind = NoticeKind.OTHER if self._shutdown.has_begun else kind
         self._outbox.record(
-            Notice(self._clock.now(), Severity.ERROR, sentence, kind=kind, place=place, error=thread_died)
+            Notice(self._clock.now(), Severity.ERROR, sentence, kind=kind, place=place, error=error)
         )
 
     def _look_at_waits(self) -> int | None:

@@ -189,6 +189,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("lock_not_released", "self-made-deadlock", "self.lock.acquire()", "take the lock by with"),
         ("lock_left_by_another", "self-made-deadlock", "self.lock.acquire()", "take the lock by with"),
         ("thread_raises", "thread-raised", "10.0 / (3 - self.n)", "catch the exception in the thread"),
+        ("job_raises", "thread-raised", "10.0 / (2 - self.n)", "ask the future that submit() returns for"),
         ("sensor_misspelt", "misspelt-topic", "self.create_subscription", "subscribe to /scan"),
         ("messages_in_bursts", "dropped-messages", "self.create_subscription", "a queue of 5"),
         ("lock_across_await", "self-made-deadlock", "with self.lock", "let go of the lock before the call"),

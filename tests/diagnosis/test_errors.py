@@ -436,3 +436,40 @@ def test_what_a_thread_raises_as_the_program_ends_took_nothing_from_the_run(
 ) -> None:
     run = run_program(tmp_path, RAISES_IN_A_THREAD.format(condition=condition), 2.0)
     assert [each.rule.id for each in diagnose(run.timeline)] == told
+
+
+@pytest.mark.parametrize(
+    ("asks", "told"),
+    [
+        ("work()", ["thread-raised"]),
+        ("wait([work()])", ["thread-raised"]),
+        ("work().exception()", []),
+        ("work().add_done_callback(lambda future: future.exception())", []),
+        ("kept.append(work())", []),
+    ],
+)
+def test_what_a_job_of_a_pool_raises_is_told_if_nobody_can_ask_for_it_any_more(
+    asks: str, told: list[str], tmp_path: Path
+) -> None:
+    program = f"""
+import rclpy
+from concurrent.futures import ThreadPoolExecutor, wait
+from rclpy.node import Node
+
+rclpy.init()
+node, pool, kept = Node("n"), ThreadPoolExecutor(1), []
+
+def fail():
+    raise RuntimeError("late")
+
+def work():
+    return pool.submit(fail)
+
+def tick():
+    {asks}
+
+node.create_timer(0.5, tick)
+rclpy.spin(node)
+"""
+    run = run_program(tmp_path, program, 2.0)
+    assert [each.rule.id for each in diagnose(run.timeline)] == told

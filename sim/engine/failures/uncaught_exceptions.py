@@ -1,32 +1,41 @@
-"""Reports exceptions that Python itself only prints: those of threads, destructors and exit handlers."""
+"""Reports exceptions that Python only prints, as those of threads and destructors, or keeps in a future."""
 
 import sys
 import threading
 import traceback
 from collections.abc import Callable
+from concurrent.futures import Future
 from typing import Any
 
 from sim.engine.failures.failure import place_of
 from sim.interpreter.exception_text import error_line
 from sim.probes.own_code import raised_at
+from sim.trace.events import NoticeKind
 from sim.trace.events.fields import SourcePlace
 
-Tell = Callable[[str, str, SourcePlace], None]
+Tell = Callable[[str, str, SourcePlace, NoticeKind], None]
 
 
 def report_uncaught(tell: Tell, path: str, folder: str) -> None:
     """Print the tracebacks of such exceptions, and pass one sentence for each source line to ``tell``.
 
-    It also gets the exception if that ended a thread, else "", and its line. ``path`` is the program's file;
-    files in ``folder`` also count as the learner's own. Exceptions from outside these files are only printed.
+    It also gets the exception if that ended a thread or a job of a pool, else "", its line, and which it was.
+    ``path`` is the program's file; files in ``folder`` also count as the learner's own. Exceptions from
+    outside these files are only printed.
     """
     told: set[str] = set()
 
-    def say(error: BaseException, what_follows: str, thread_died: str = "") -> None:
+    def say(error: BaseException, what_follows: str, kind: NoticeKind = NoticeKind.OTHER) -> None:
         place = place_of(error, path, folder)
         if place and place not in told:
             told.add(place)
-            tell(f"{place}: {error_line(error)}; {what_follows}", thread_died, raised_at(error))
+            line = error_line(error)
+            tell(
+                f"{place}: {line}; {what_follows}",
+                line * (kind is not NoticeKind.OTHER),
+                raised_at(error),
+                kind,
+            )
 
     def of_thread(failed: threading.ExceptHookArgs) -> None:
         error = failed.exc_value
@@ -34,7 +43,7 @@ def report_uncaught(tell: Tell, path: str, folder: str) -> None:
             return
         name = "a thread" if failed.thread is None else failed.thread.name
         if not isinstance(error, KeyboardInterrupt):
-            say(error, f"{name} ended by it, and the rest goes on", error_line(error))
+            say(error, f"{name} ended by it, and the rest goes on", NoticeKind.THREAD_DIED)
         sys.stderr.write(f"Exception in thread {name}:\n")
         traceback.print_exception(error)
 
@@ -47,8 +56,30 @@ def report_uncaught(tell: Tell, path: str, folder: str) -> None:
         sys.stderr.write(f"{heading or 'Exception ignored in'}: {where}\n")
         traceback.print_exception(error)
 
+    def of_job(future: Any) -> None:
+        error = vars(future).get("_unheard")
+        if isinstance(error, Exception):
+            say(
+                error,
+                "nobody asks the pool's future for its result, so Python says nothing",
+                NoticeKind.JOB_DIED,
+            )
+
+    kind: Any = Future
+    kind._exception, kind.__del__ = _KeptException(), of_job
     threading.excepthook = of_thread
     sys.unraisablehook = of_other
+
+
+class _KeptException:
+    """The exception in a future of a pool, which is unheard until somebody asks for it."""
+
+    def __get__(self, future: object, _owner: type) -> BaseException | None:
+        vars(future).pop("_unheard", None)
+        return vars(future)["_exception"]  # type: ignore[no-any-return]
+
+    def __set__(self, future: object, error: BaseException | None) -> None:
+        vars(future).update(_exception=error, _unheard=error)
 
 
 def _source(failed: Any) -> tuple[str, str | None]:

@@ -108,6 +108,8 @@ class NoticeKind(StrEnum):
     """A callback is a generator function, so that nothing of it runs."""
     UNMATCHED = "unmatched"
     """The run was asked to change a callback that the program does not have."""
+    JOB_DIED = "job died"
+    """An exception ended a job that the program gave to a pool of threads, and nobody asks for its result."""
     FORGED = "forged"
     """A program records events that only the run may record."""
 
