@@ -80,6 +80,19 @@ def test_a_run_without_robot_and_calls_does_not_speak_of_them() -> None:
     assert "calls  " not in text.split("longest waits")[1]
 
 
+@pytest.mark.parametrize(("count", "rows"), [(4, ["halt (/node)"] * 4), (5, ["halt (/node) × 5"])])
+def test_many_timers_of_one_function_and_period_have_one_row(count: int, rows: list[str]) -> None:
+    run = Run("small")
+    thread = run.thread("MainThread")
+    group = run.exclusive(run.node("/node"))
+    for number in range(count):
+        run.callback(run.timer(group, "halt", 1.0), thread, 1.0 + number, 0.5)
+    run.timer(group, "halt", 2.0)
+    table = plain_text(summary_of(run)).split("\n\n")[1].splitlines()[1:-1]
+    assert [each.split("  ")[0] for each in table] == [*rows, "halt (/node)"]
+    assert sum(int(each.split(" A ")[1].split()[0]) for each in table) == count
+
+
 def test_an_empty_timeline_has_a_summary() -> None:
     assert plain_text(summarise(Timeline())) == "run, 0 s\n\nthreads  0 ran callbacks, at most 0 at once\n"
 

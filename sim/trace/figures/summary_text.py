@@ -1,22 +1,27 @@
 """A summary as plain text for a terminal: aligned columns, 79 characters wide where names allow."""
 
 import math
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.figures.summary import CallbackFigures, RobotFigures, ServiceFigures, Summary
 
 HEADS = ("callback", "group", "calls", "running", "late by", "lost", "errors")
+_MANY = 5
+"""From so many callbacks on that are alike but for their figures, they have one row."""
 LATE_BY = "late by: its oldest message, taken or waiting, or how late its timer was"
 
 
 def plain_text(summary: Summary) -> str:
     """The whole summary, ending in a newline, without empty parts."""
+    callbacks = list(_together(summary.callbacks))
     parts = [
         list(_heading(summary)),
-        list(_callback_table(summary.callbacks)),
-        list(_waits(summary.callbacks)),
+        list(_callback_table(callbacks)),
+        list(_waits(callbacks)),
         list(_rest(summary)),
     ]
     return "\n".join("\n".join([*part, ""]) for part in parts if part)
@@ -28,6 +33,28 @@ def _heading(summary: Summary) -> Iterator[str]:
     yield f"{summary.target or 'run'}, {duration(summary.length)}{clock}{ending}"
     if summary.lost:
         yield f"The trace lost {summary.lost} events, so some figures below are too small."
+
+
+def _together(callbacks: Sequence[CallbackFigures]) -> Iterator[CallbackFigures]:
+    """Yield the figures of each callback, and those of many that are alike as one's."""
+    alike = defaultdict[object, list[CallbackFigures]](list)
+    for each in callbacks:
+        alike[each.name, each.group, each.entity.kind, each.entity.period].append(each)
+    for same in alike.values():
+        if len(same) < _MANY:
+            yield from same
+            continue
+        waits = (each.longest_wait for each in same if each.longest_wait is not None)
+        yield replace(
+            same[0],
+            name=f"{same[0].name} × {len(same)}",
+            calls=sum(each.calls for each in same),
+            running=sum(each.running for each in same),
+            longest_wait=max(waits, key=lambda wait: wait.length, default=None),
+            late=max(each.late for each in same),
+            drops=sum(each.drops for each in same),
+            errors=sum(each.errors for each in same),
+        )
 
 
 def _callback_table(callbacks: Sequence[CallbackFigures]) -> Iterator[str]:
