@@ -46,9 +46,12 @@ _SET_BOOL = 'node.create_service(SetBool, "switch", lambda request, response: re
 )
 def test_a_service_is_called_as_its_type_allows(services: list[str], said: str, tmp_path: Path) -> None:
     run = run_program(tmp_path, _NODE.format("\n".join(services)))
+    over = page_of_program("node.py", "virtual", run.timeline)
+    run.events.pop()
     page = page_of_program("node.py", "virtual", run.timeline)
     assert said in page["tries"].splitlines()
     assert "SetBool" not in page["tries"]
+    assert said not in over["tries"].splitlines()
 
 
 @pytest.mark.parametrize(

@@ -92,7 +92,8 @@ def _tries(timeline: Timeline, problems: Sequence[Explanation], *, has_cures: bo
         line = "" if problems[0].place is None else "its line and "
         what = "tries a cure" if has_cures else "says what to do"
         yield f"{with_stop(as_it_is(problems[0].what))} `d` {line and 'shows '}{line}{what}{more}."
-    services = [each for each in own if each.kind is EntityKind.SERVICE]
+    met = own if timeline.ended is None else []  # nothing answers or hears once the run is over
+    services = [each for each in met if each.kind is EntityKind.SERVICE]
     calls = next((each.name for each in services if is_set_bool(each)), None)
     if calls is not None:
         yield f"`s` calls ``{calls}`` with true, `S` with false."
@@ -104,7 +105,7 @@ def _tries(timeline: Timeline, problems: Sequence[Explanation], *, has_cures: bo
         )
     silent = [
         each.name
-        for each in own
+        for each in met
         if each.kind is EntityKind.SUBSCRIPTION and each.name not in timeline.names_sent
     ]
     if silent:
