@@ -122,3 +122,11 @@ def test_a_change_is_wrong_if_no_file_mentions_its_node_or_callback(
     assert [(each.sentence(), each.is_wrong) for each in unmet] == [
         (f"{sentence} so far", is_wrong) for sentence, is_wrong in said
     ]
+
+
+@pytest.mark.parametrize(("count", "said"), [(1, "s"), (9, "s × 9"), (30, "s × 20, …")])
+def test_timers_of_one_function_and_period_are_listed_once(count: int, said: str, tmp_path: Path) -> None:
+    made = f"for _ in range({count}): node.create_timer(1.0, node.get_name)"
+    run = run_program(tmp_path, _NODE.format(made))
+    found = page_of_program("node.py", "virtual", run.timeline)["found"]
+    assert found.splitlines()[-1].endswith(f": ``get_name`` every 1.0 {said}")

@@ -1,5 +1,6 @@
 """The guide to a learner's own file as Markdown: what was found in its run, and what to try."""
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
 
@@ -70,7 +71,9 @@ def _found(timeline: Timeline, unmet: Sequence[UnmetChange]) -> str:
 
 def _listed(names: Iterator[str]) -> str:
     listed = list(islice(names, MOST + 1))
-    return ", ".join(listed if len(listed) <= MOST else [*listed[:MOST], "…"])
+    counts = Counter(listed[:MOST])
+    each = (f"{name} × {count}" if count > 1 else name for name, count in counts.items())
+    return ", ".join([*each, *(["…"] if len(listed) > MOST else [])])
 
 
 def _callback(entity: EntityInfo) -> str:
