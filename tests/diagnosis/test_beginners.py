@@ -210,6 +210,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ),
         ("goal_in_timer", "self-made-deadlock", "self.client.send_goal(", "add_done_callback"),
         ("call_in_parameter_callback", "self-made-deadlock", "self.client.call(", "use call_async()"),
+        ("lock_held_long", "lock-held-long", "time.sleep(1.2)", "sleep, wait and compute outside"),
         ("held_group", "group-starvation", "time.sleep(0.8)", "a callback group of its own"),
         ("sleep_in_service", "group-starvation", "time.sleep(1.5)", "num_threads=2"),
     ],
@@ -285,6 +286,33 @@ def test_the_services_of_the_robot_are_known_without_the_robot(tmp_path: Path) -
     timeline = run_to_end(program_setup(path, 2.0)).timeline
     told = diagnose(timeline)[0].rule.explain(diagnose(timeline)[0], timeline)
     assert told.cure.startswith("call /motor_power, which the robot offers; ")
+
+
+def test_who_holds_a_lock_long_is_told_with_all_who_wait_for_it_and_what_they_lose() -> None:
+    timeline = run_to_end(program_setup(PROGRAMS / "lock_held_long.py", 4.0)).timeline
+    first, *others = (each.explained(timeline) for each in diagnose(timeline))
+    assert first.what.endswith("for self.lock, which optimise held: it sleeps at line 37 (2 times in all)")
+    assert first.what.startswith(
+        ("on_pose and check waited up to 1.2 s", "check and on_pose waited up to 1.2 s")
+    )
+    assert "on_pose lost" in "".join(each.what for each in others)
+    assert "let on_pose return sooner" not in "".join(each.cure for each in (first, *others))
+
+
+@pytest.mark.parametrize("clock", ["virtual", "real"])
+def test_a_thread_that_holds_a_lock_while_it_sleeps_is_told(tmp_path: Path, clock: str) -> None:
+    start = "threading.Thread(target=self.optimise, daemon=True).start()"
+    text = (PROGRAMS / "lock_held_long.py").read_text()
+    text = text.replace("self.create_timer(1.5, self.optimise, callback_group=Exclusive())", start)
+    timeline = run_program(tmp_path, text, 4.0, clock).timeline
+    told = diagnose(timeline)[0].explained(timeline)
+    assert "for self.lock, which Thread-1 (optimise) held: it sleeps at line 37" in told.what
+
+
+def test_a_lock_that_is_held_shortly_is_nothing(tmp_path: Path) -> None:
+    text = (PROGRAMS / "lock_held_long.py").read_text().replace("time.sleep(1.2)", "time.sleep(0.01)")
+    timeline = run_program(tmp_path, text, 4.0).timeline
+    assert [each.rule.id for each in diagnose(timeline) if each.weight_in(timeline) is Weight.PROBLEM] == []
 
 
 @pytest.mark.parametrize(

@@ -29,14 +29,15 @@ from sim.diagnosis.rule import (
     made_at,
     place_of,
 )
+from sim.diagnosis.rules.locks import LET_GO, let_return, lock_that_kept
 from sim.diagnosis.rules.transforms import LISTENER
 from sim.diagnosis.timeline_view import LongWait, TimelineView, raised_last
-from sim.diagnosis.words import listed, often, who
+from sim.diagnosis.words import awaited_lock, listed, lock_taker, often, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind, QosMismatched, Reason
-from sim.trace.model import EntityInfo, Nanoseconds, Span, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Position, Span, Window
 from sim.trace.timeline import Timeline
 
 
@@ -95,6 +96,9 @@ class DroppedMessages(Rule):
         room = remedy_for_waits([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
         faster = f"let {subject} return sooner, or publish less often"
         cure = f"{room.words(timeline) or faster}; a longer queue only delays it"
+        if lock := _lock_before(found, timeline):
+            because, room = f" while it waited for {awaited_lock(lock, timeline)}", Remedy()
+            cure = f"in {lock_taker(lock, timeline)}, {LET_GO}"
         if not waits and (made := made_at(entity)):
             losses = Counter(timeline.losses_of(entity.id, Window(found.at, found.until + 1)))
             at_once = entity.depth + max(losses.values())
@@ -125,8 +129,14 @@ class DroppedMessages(Rule):
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
         """A remark for most queues of one, and where what keeps the callback waiting is the problem."""
         entity = entity_of(found, timeline)
-        is_minor = found.due_to or (entity.depth <= 1 and not _keeps_little(entity, found.until, timeline))
+        is_late = found.due_to or _lock_before(found, timeline)
+        is_minor = is_late or (entity.depth <= 1 and not _keeps_little(entity, found.until, timeline))
         return Weight.REMARK if is_minor else Weight.PROBLEM
+
+
+def _lock_before(found: Finding, timeline: Timeline) -> Position | None:
+    """Return the wait for a lock of others in which a callback was most of the second before a loss."""
+    return lock_that_kept(found.subject, Window(max(0, found.until - SECOND), found.until), timeline)
 
 
 def _waited(found: Finding, timeline: Timeline) -> Nanoseconds:
@@ -205,7 +215,7 @@ class StaleData(Rule):
             f"{subject} ran while newer messages had waited {duration(found.size)} for {sensor}"
             f"{often(found.count)}",
             f"if {subject} uses them, it decides on old data: it knows only what {sensor} has taken",
-            room.words(timeline) or f"let {sensor} return sooner",
+            room.words(timeline) or let_return(found.culprit, window, timeline),
             place_of(found.subject, timeline),
             remedies=(room,),
         )

@@ -20,6 +20,7 @@ from sim.diagnosis.rule import (
     place_of,
 )
 from sim.diagnosis.rules.edits import edits_for_rounds
+from sim.diagnosis.rules.locks import weight_beside_lock
 from sim.diagnosis.rules.waiting import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import awaited_lock, lock_keeper, lock_taker, often, threads_for, who, with_threads
@@ -172,7 +173,7 @@ class OverrunTimer(Rule):
         return "overrun-by-a-reply" if _waits_for_reply(found, timeline) else self.id
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """A problem if most calls overrun, else a remark.
+        """A problem if most calls overrun by what they do, not for a lock that others hold; else a remark.
 
         A timer that was called once has missed nothing: its callback may cancel it. What it awaits in vain is
         told where others wait for it.
@@ -184,7 +185,9 @@ class OverrunTimer(Rule):
         calls = timeline.calls_of(found.subject, Window(0, timeline.end + 1))
         if calls < 2:
             return None
-        return Weight.PROBLEM if found.count >= _HABIT and 2 * found.count >= calls else Weight.REMARK
+        if found.count < _HABIT or 2 * found.count < calls:
+            return Weight.REMARK
+        return weight_beside_lock(found.subject, Window(found.at, found.until), timeline)
 
 
 def _waits_for_reply(found: Finding, timeline: Timeline) -> set[str]:
@@ -277,7 +280,9 @@ class FallsBehind(Rule):
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Irrelevant once its queue has lost messages."""
-        return None if timeline.losses_of(found.subject, Window(0, timeline.end + 1)) else Weight.PROBLEM
+        if timeline.losses_of(found.subject, Window(0, timeline.end + 1)):
+            return None
+        return weight_beside_lock(found.subject, Window(found.at, found.until), timeline)
 
 
 def calls_outrun(entity: EntityInfo, last: Span, number: int, timeline: Timeline) -> Sequence[Span]:

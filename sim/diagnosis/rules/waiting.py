@@ -20,6 +20,7 @@ from sim.diagnosis.rule import (
     place_of,
 )
 from sim.diagnosis.rules.edits import not_reached
+from sim.diagnosis.rules.locks import let_return, weight_beside_lock
 from sim.diagnosis.time_limits import ends_by_itself
 from sim.diagnosis.timeline_view import LongWait, TimelineView, raised_last
 from sim.diagnosis.words import (
@@ -72,10 +73,11 @@ class _KeptWaiting(Rule):
                     yield Finding(self, wait.since, wait.until, entity.id, culprit, size=waited)
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Irrelevant if it is a timer that seldom waits, and never for long."""
+        """Irrelevant if it is a timer that seldom waits, not for long; a remark if its culprit waits too."""
         calls = timeline.calls_of(found.subject, Window(0, timeline.end + 1))
-        is_long = found.size >= HALF_A_SECOND
-        return self.weight if is_long or found.count >= max(_HABIT, calls / 3) else None
+        if found.size < HALF_A_SECOND and found.count < max(_HABIT, calls / 3):
+            return None
+        return weight_beside_lock(found.culprit, Window(found.at, found.until), timeline)
 
     def _waiting(self, found: Finding, timeline: Timeline) -> list[EntityId]:
         """Return the callbacks that waited for the culprit at the worst time, the longest wait first."""
@@ -131,7 +133,8 @@ class GroupStarvation(_KeptWaiting):
         setters = event_setters(place.file, place.first_line) if place else ()
         awaited = [each for each in (who(each, timeline) for each in waited) if each in setters]
         why = f"{_admission(found.subject, timeline)}, however many threads are free"
-        cure = f"{room.words(timeline)}; or let {culprit} return sooner"
+        sooner = let_return(found.culprit, Window(found.at, found.until), timeline)
+        cure = f"{room.words(timeline)}; or {sooner}"
         if awaited:
             why, cure = f"{why}, and {culprit} waits for what {listed(awaited)} sets", room.words(timeline)
         group, busy = group_of(found.subject, timeline), ""
@@ -333,13 +336,7 @@ class NodeNeverSpins(Rule):
         ready = f"has been ready for {duration(found.size)} and does not run" if found.size else "cannot run"
         if found.about not in subject:
             subject = f"{subject} of {found.about}"
-        return Explanation(
-            f"{subject} {ready}: {what}",
-            why,
-            cure,
-            place,
-            remedies=remedies,
-        )
+        return Explanation(f"{subject} {ready}: {what}", why, cure, place, remedies=remedies)
 
 
 def _taken_or_late(what: str, cure: str, place: CodeLocation) -> tuple[str, str, CodeLocation]:
