@@ -11,7 +11,8 @@ from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import visible
 from cbtui.widgets.diagnosis import diagnosis_at
-from cbtui.widgets.narrator import ROWS, Narrator, decisions_at, narration
+from cbtui.widgets.narration import decisions_at, narration
+from cbtui.widgets.narrator import ROWS, Narrator
 from sim.trace.events import (
     AnyEvent,
     CallbackAt,

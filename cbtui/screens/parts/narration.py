@@ -7,7 +7,8 @@ from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
-from cbtui.widgets.narrator import Narrator, decisions_at
+from cbtui.widgets.narration import decisions_at
+from cbtui.widgets.narrator import Narrator
 
 
 def was_stepped(run: ShownRun, navigation: TimeNavigation) -> bool:
