@@ -171,8 +171,8 @@ FIT = "define it with the parameters it is called with (diff)"
         ("messages_in_bursts", ["give count a queue of 5 (diff)"]),
         ("call_in_parameter_callback", [APART.replace("tick", "tune")]),
         ("no_response", ["end answer with: return response (diff)"]),
-        ("held_group", ["give steer a callback group of its own"]),
-        ("sleep_in_service", [APART.replace("tick", "heartbeat")]),
+        ("held_group", ["give on_chatter a callback group of its own"]),
+        ("sleep_in_service", [APART.replace("tick", "gripper")]),
     ],
 )
 def test_the_cures_that_are_offered_end_the_problem(program: str, cures: list[str]) -> None:
