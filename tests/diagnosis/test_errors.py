@@ -446,14 +446,16 @@ def test_what_a_thread_raises_as_the_program_ends_took_nothing_from_the_run(
         ("work().exception()", []),
         ("work().add_done_callback(lambda future: future.exception())", []),
         ("kept.append(work())", []),
+        ("kept.append(inspect.getmembers(Future))", []),
     ],
 )
 def test_what_a_job_of_a_pool_raises_is_told_if_nobody_can_ask_for_it_any_more(
     asks: str, told: list[str], tmp_path: Path
 ) -> None:
     program = f"""
+import inspect
 import rclpy
-from concurrent.futures import ThreadPoolExecutor, wait
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from rclpy.node import Node
 
 rclpy.init()

@@ -75,6 +75,8 @@ class _KeptException:
     """The exception in a future of a pool, which is unheard until somebody asks for it."""
 
     def __get__(self, future: object, _owner: type) -> BaseException | None:
+        if future is None:  # asked of the class, as inspect.getmembers() does
+            return None
         vars(future).pop("_unheard", None)
         return vars(future)["_exception"]  # type: ignore[no-any-return]
 
