@@ -11,12 +11,14 @@ from hypothesis import strategies as st
 
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.lesson_setup import setup_to_judge
+from cbtui.widgets.choice import kept_of
 from cbtui.widgets.code.marks import marks_at
 from cbtui.widgets.code.source_files import SourceFiles
 from cbtui.widgets.diagnosis import DiagnosisLevel, diagnosis_at
 from cbtui.widgets.factory.scene import FactoryScene, scene_of
 from cbtui.widgets.factory.texts import headlines, wait_texts
 from cbtui.widgets.lanes.details import details_of
+from cbtui.widgets.lanes.painter import LanePainter
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, all_lanes
 from cbtui.widgets.lanes.service_calls import LatestCalls
 from cbtui.widgets.lanes.status import LaneStatus
@@ -26,10 +28,11 @@ from lessons.catalogue import lessons
 from lessons.description import Actor
 from lessons.lesson import Lesson
 from sim.quantities.durations import duration
-from sim.trace.descriptions import name_of
+from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import (
     CallbackEnded,
     CallbackStarted,
+    ChoiceAsked,
     EntityReady,
     GroupId,
     Reason,
@@ -39,7 +42,7 @@ from sim.trace.events import (
 from sim.trace.figures.comparison import compare
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.figures.summary import summarise
-from sim.trace.figures.waiting import WORTH_TELLING, waits_for_others, waits_since
+from sim.trace.figures.waiting import WORTH_TELLING, waits_at, waits_for_others, waits_since
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
@@ -110,6 +113,8 @@ def test_all_panes_say_the_same_of_each_step_of_a_queue_that_is_always_full(is_l
             timeline.extend([event])
         if ns(4.0) <= event.t <= ns(5.7) and isinstance(event, _STEPS):
             assert_panes_agree(timeline, event.t, files)
+            if is_live:
+                assert_choice_agrees(timeline)
 
 
 def test_a_subscription_slower_than_its_messages_tells_everywhere_how_long_the_next_one_has_waited() -> None:
@@ -170,6 +175,7 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
     assert_headline_agrees(scene)
     assert_short_waits_count_nowhere(timeline, at, files)
     assert_turns_agree(scene, files)
+    assert_lanes_agree(timeline, at)
     told = diagnosis_at(timeline, at, Concurrency(timeline))
     in_code = {
         mark.entity: mark.texts[0] for marks in marks_at(timeline, at, files).values() for mark in marks
@@ -203,6 +209,36 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
         more = re.search(r"; (\d+) more", told.at_length)
         assert 1 + (int(more[1]) if more else 0) == len(waits)
     assert len(scene.workers) <= max(1, sum(executor.threads for executor in timeline.executors.values()))
+
+
+def assert_lanes_agree(timeline: Timeline, at: int) -> None:
+    """Compare the hatching and the details of waits with what runs."""
+    moment, span = timeline.moment(at), Window(max(0, at - ns(2.0)), at)
+    judged = {wait.entity: wait for wait in waits_at(moment, timeline)}
+    picture = LanePainter().paint(timeline, span, at, 200, 40)
+    hatched = {
+        lane.entity.id: plain([row])
+        for lane, row in zip(picture.lanes, picture.rows, strict=False)
+        if isinstance(lane, MemberLane | SoleLane)
+    }
+    for entity, wait in moment.waiting.items():
+        told, details = hatched.get(entity, ""), details_of(timeline, wait, at)
+        now = judged.get(entity)
+        assert (" waited" in details.title) == (now is None)
+        assert now or not re.search(r"\bwaits ", told)
+        if now and now.reason is Reason.GROUP_HELD and not now.is_for_own_call:
+            assert details.facts[1].endswith(f"held by {name_of(now.holder, timeline)}")
+            held = re.search(r"waits .* held by (\w+)", told)
+            assert held is None or name_of(now.holder, timeline).startswith(held[1])
+
+
+def assert_choice_agrees(timeline: Timeline) -> None:
+    """Compare why a choice's other callbacks may not go on with what runs."""
+    moment = timeline.moment(timeline.end)
+    kept = "; ".join(kept_of(ChoiceAsked(timeline.end, 0, (), (), (), False, ()), timeline))
+    judged = {wait.entity: why_waiting(wait, timeline) for wait in waits_at(moment, timeline)}
+    for entity in {*moment.waiting, *judged}:
+        assert f"{name_of(entity, timeline)} is ready: {judged.get(entity, 'it is free to run')}" in kept
 
 
 def assert_turns_agree(scene: FactoryScene, files: SourceFiles) -> None:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 from cbtui.widgets.lanes.names import short_thread
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import ROBOT_THREAD, ChoiceAsked, Reason
+from sim.trace.figures.waiting import waits_at
 from sim.trace.timeline import Timeline
 
 
@@ -56,10 +57,13 @@ def kept_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[str]:
     callbacks = _callbacks(timeline)
     options = zip(question.threads, question.functions, strict=True)
     takes_work = any(not function and thread not in callbacks for thread, function in options)
-    for wait in moment.waiting.values():
-        free = wait.reason is Reason.NO_FREE_WORKER and takes_work
-        why = "for a thread that looks for work" if free else why_waiting(wait, timeline)
-        yield f"{name_of(wait.entity, timeline)} is ready{' ' if free else ': '}{why}"
+    waits = {wait.entity: wait for wait in waits_at(moment, timeline)}
+    for entity in dict.fromkeys((*moment.waiting, *waits)):
+        wait = waits.get(entity)
+        free = takes_work and (wait is None or wait.reason is Reason.NO_FREE_WORKER)
+        why = ": it is free to run" if wait is None else f": {why_waiting(wait, timeline)}"
+        ready = " for a thread that looks for work" if free else why
+        yield f"{name_of(entity, timeline)} is ready{ready}"
     yield from (short_thread(each) for each in question.others)
     busy = {*moment.waiting, *(span.entity for span in moment.running.values())}
     idle = [each for each in timeline.entities.values() if each.callback and each.id not in busy]

@@ -16,6 +16,7 @@ from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.events import Doing, EntityId, EntityKind, GroupKind, Reason
 from sim.trace.figures.chains import ChainStep
+from sim.trace.figures.waiting import wait_judged
 from sim.trace.model import Blocked, EntityInfo, GroupInfo, Nanoseconds, Position, Span, Wait
 from sim.trace.timeline import Timeline
 
@@ -232,6 +233,11 @@ class BarPainter:
         for stretch in stretches(columns) if entity.kind is EntityKind.TIMER else ():
             if is_late(stretch.top, entity):
                 self._late(row, stretch)
+
+    def judged(self, columns: Sequence[LaneColumn[Wait] | None]) -> list[LaneColumn[Wait] | None]:
+        """Return the columns of a callback's waits, with the one that lasts as it is told at ``told``."""
+        moment = self.timeline.moment(self.told)
+        return [each and each._replace(top=wait_judged(each.top, moment, self.timeline)) for each in columns]
 
     def waits(
         self,

@@ -12,7 +12,7 @@ from sim.diagnosis.words import awaited_lock
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import doing_of, name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind, Reason
-from sim.trace.figures.waiting import WORTH_TELLING, waits_since
+from sim.trace.figures.waiting import WORTH_TELLING, wait_judged, waits_since
 from sim.trace.model import Call, EntityInfo, Nanoseconds, Position, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -34,6 +34,7 @@ def details_of(timeline: Timeline, bar: Bar, now: Nanoseconds) -> BarDetails:
         case Span():
             return BarDetails(_who_runs(timeline, bar), tuple(_of_span(timeline, bar, now)))
         case Wait():
+            bar = wait_judged(bar, timeline.moment(now), timeline)
             return BarDetails(_who_waits(timeline, bar, now), tuple(_of_wait(timeline, bar, now)))
         case Call():
             return BarDetails(f"call of {bar.service}", tuple(_of_call(timeline, bar, now)))

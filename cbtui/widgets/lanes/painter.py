@@ -324,7 +324,7 @@ class _LaneFrame:
                     for at, program, block in zip(lines, own, blocks, strict=True)
                 ]
             case MemberLane(entity) | SoleLane(entity):
-                waits = self._summed(cache.columns(timeline.waits_of, entity.id), unseen)
+                waits = self._bars.judged(self._summed(cache.columns(timeline.waits_of, entity.id), unseen))
                 losses = cache.losses(entity).over(self._scale, self._edge)
         lasting = dict.fromkeys(
             column.top.start

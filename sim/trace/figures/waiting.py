@@ -50,6 +50,13 @@ def _wait_at(entity: EntityId, moment: Moment, timeline: Timeline) -> Wait | Non
     return replace(wait, holder=holders[0]) if holders and wait.reason is Reason.GROUP_HELD else None
 
 
+def wait_judged(wait: Wait, moment: Moment, timeline: Timeline) -> Wait:
+    """Return a wait as it is told at a moment: it is over once nothing that runs then causes it."""
+    if moment.waiting.get(wait.entity) != wait:
+        return wait
+    return _wait_at(wait.entity, moment, timeline) or replace(wait, end=moment.at)
+
+
 def _beginning(entity: EntityId, moment: Moment, timeline: Timeline) -> Wait | None:
     """Return the wait for its own call of a callback whose queue still has messages."""
     arrived, kinds = moment.queues[entity].next_arrived, {each.kind for each in timeline.executors.values()}

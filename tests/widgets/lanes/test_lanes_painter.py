@@ -295,7 +295,8 @@ def test_a_failed_call_is_crossed() -> None:
     ],
 )
 def test_each_reason_has_its_texture_and_its_words(reason: Reason, words: str) -> None:
-    run, _, a, tick = small_run()
+    run, thread, a, tick = small_run()
+    run.callback(tick, thread, 1.0, 19.0)
     run.wait(a, 1.0, 20.0, reason, tick if reason is Reason.GROUP_HELD else 0)
     run.stop(20.0)
     assert words in plain(LanePainter().paint(told(run), Window(0, ns(6)), ns(6), 140, 6).rows)
