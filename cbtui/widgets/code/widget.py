@@ -163,6 +163,7 @@ class CodeView(InkedView):
         """Read the files again, as the next run uses those on disk; ``texts`` in place of some, by path."""
         self._files.read_anew(texts)
         self._marks, self._lines, self._long = {}, {}, set()
+        self._placed = self._placed and not self._told_fault
         self._open(self._files.of(str(self._file.path.absolute())) or self._files.main)
 
     def check_disk(self, entities: Iterable[EntityInfo] = ()) -> None:

@@ -237,6 +237,20 @@ async def test_what_ended_a_program_is_told_at_its_line(talker: Path) -> None:
         assert app.view.picked is None
 
 
+async def test_after_a_fault_is_corrected_the_view_goes_to_a_callback_as_at_first(talker: Path) -> None:
+    place = (str(talker), 2)
+    ended = Timeline()
+    ended.extend([RunEnded(ns(0.1), "syntax", True, place=place, problem="'(' was never closed")])
+    app = CodeOnly(talker)
+    async with app.run_test(size=(70, 12)) as pilot:
+        await show(pilot, ended, 1.0)
+        talker.write_text(numbered("corrected"))
+        app.view.read_anew({})
+        shown = await show(pilot, two_programs(talker, talker), 0.5)
+        assert app.view.picked is None
+        assert any(line.startswith("  20 B") for line in shown)
+
+
 async def test_code_that_is_too_wide_is_scrolled_sideways(tmp_path: Path) -> None:
     path = tmp_path / "wide.py"
     path.write_text("# " + "".join(f"{number:>5}" for number in range(30)) + "\n")
