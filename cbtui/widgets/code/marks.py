@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 from cbtui.looks.theme import GLYPHS, Charset
+from cbtui.text.cells import fit
 from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.lanes.names import short_thread
 from sim.quantities.durations import duration
@@ -25,6 +26,8 @@ JUST_NOW: Nanoseconds = 250_000_000
 _SAMPLED: Nanoseconds = 250_000_000
 """On the real clock lines are sampled, so a callback may have come to its line by so much earlier."""
 
+_LEAST_CUT = 14  # columns below which a text that does not fit is left out
+_SIGN = 3  # columns of a sign alone
 _LONG: Nanoseconds = 300_000_000
 
 
@@ -240,3 +243,15 @@ def changed_lines(before: Sequence[CallbackMark], after: Sequence[CallbackMark])
         yield marked.first_line, 1 if alike else marked.last_line - marked.first_line + 1
     for gone in known.values():
         yield gone.first_line, gone.last_line - gone.first_line + 1
+def text_beside(texts: Sequence[str], room: int) -> str:
+    """Return the longest text that fits beside code, or a part of the last; a short one in place of a sign.
+
+    Code gives way to that: it may be longer than the room.
+    """
+    padded = [f" {text} " if text else "" for text in texts]
+    cut = fit(padded[-1], room, Charset.BRAILLE) if room >= _LEAST_CUT else ""
+    text = next((text for text in padded if len(text) <= room), cut)
+    short = (each for each in reversed(padded) if _SIGN < len(each) < _LEAST_CUT)
+    return text if len(text) > _SIGN else next(short, text)
+
+

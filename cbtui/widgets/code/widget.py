@@ -29,6 +29,7 @@ from cbtui.widgets.code.marks import (
     fault_at,
     lines_at,
     marks_at,
+    text_beside,
 )
 from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.inked_view import InkedView
@@ -38,7 +39,6 @@ from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
 _GUTTER = 7
-_LEAST_CUT = 14  # columns below which a text that does not fit is left out
 _SIDEWAYS = 8
 """Columns of a step sideways."""
 
@@ -311,7 +311,8 @@ class CodeView(InkedView):
         if marked is None or marked.first_line != number + 1 or marked.doing is CallbackActivity.IDLE:
             line = code_line.adjust_cell_length(width, self.in_class(""))
         else:
-            line = self._with_mark(code_line, marked, width)
+            ink = Ink(_INKS[marked.doing], marked.number)
+            line = self._with_text(code_line, marked.texts, ink, width)
         here = self._here.get(number + 1)
         if here is not None and here.texts:
             line = self._with_text(code_line, here.texts, _ink_of(here), width)
@@ -372,16 +373,12 @@ class CodeView(InkedView):
         glyph, role = _EDGES.get(marked.doing, (" ", Role.FAINT))
         return [number, Segment(f"{glyph} ", self.in_ink(Ink(role, marked.number)))]
 
-    def _with_mark(self, line: Strip, marked: CallbackMark, width: int) -> Strip:
-        """Add the text on a callback's activity at the right, as long as it fits beside the code."""
-        return self._with_text(line, marked.texts, Ink(_INKS[marked.doing], marked.number), width)
-
     def _with_text(self, line: Strip, texts: Sequence[str], ink: Ink, width: int) -> Strip:
-        """Put the longest text that fits beside the code at the right of a line, or a part of the last."""
-        room = width - line.cell_length - 1
-        padded = [f" {text} " if text else "" for text in texts]
-        cut = fit(padded[-1], room, Charset.BRAILLE) if room >= _LEAST_CUT else ""
-        text = next((text for text in padded if len(text) <= room), cut)
+        """Put the text that fits beside the code at the right of a line; code may give way to a short one."""
+        text = text_beside(texts, width - line.cell_length - 1)
+        if text and len(text) >= width - line.cell_length:
+            more = Segment("…", self.in_ink(Ink(Role.FAINT)))
+            line = Strip([*line.crop(0, width - len(text) - 1), more])
         mark = Segment(text, self.in_ink(ink))
         return Strip([*line.adjust_cell_length(width - len(text), self.in_class("")), mark], width)
 

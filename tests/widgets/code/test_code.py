@@ -280,8 +280,8 @@ async def test_a_narrow_view_says_it_in_fewer_words(path: Path) -> None:
         assert lines_of(app)[1].rstrip().endswith("waits 400 ms")
 
 
-@pytest.mark.parametrize(("columns", "beside"), [(30, " ▶ 1.5 s "), (39, " ▶ "), (53, "…")])
-async def test_beside_long_code_the_mark_of_where_a_thread_is_shrinks_and_its_sign_in_front_stays(
+@pytest.mark.parametrize(("columns", "beside"), [(30, " ▶ 1.5 s "), (39, "… ▶ 1.5 s "), (53, "… ▶ 1.5 s ")])
+async def test_long_code_gives_way_to_how_long_a_thread_has_been_at_its_line(
     path: Path, columns: int, beside: str
 ) -> None:
     path.write_text("\n".join("x" * columns if line == 36 else "" for line in range(40)))
