@@ -29,6 +29,7 @@ from sim.trace.events import (
     EventsLost,
     ExecutorAppeared,
     ExecutorId,
+    Frames,
     GroupAppeared,
     GroupId,
     GroupKind,
@@ -235,9 +236,9 @@ class Run:
         """End a callback."""
         self.add(CallbackEnded(ns(at), entity, thread))
 
-    def suspend(self, entity: EntityId, thread: ThreadId, at: float) -> None:
-        """Let a coroutine callback await something."""
-        self.add(CallbackSuspended(ns(at), entity, thread))
+    def suspend(self, entity: EntityId, thread: ThreadId, at: float, frames: Frames = ()) -> None:
+        """Let a coroutine callback await something, at these lines."""
+        self.add(CallbackSuspended(ns(at), entity, thread, frames))
 
     def resume(self, entity: EntityId, thread: ThreadId, at: float) -> None:
         """Let a suspended callback run on."""

@@ -16,7 +16,7 @@ from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.events import Doing, EntityId
 from sim.trace.figures.waiting import wait_told, waits_since
-from sim.trace.model import EntityInfo, Frame, Moment, Nanoseconds, Position, Span, Window
+from sim.trace.model import AWAIT, EntityInfo, Frame, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import NOBODY, Timeline
 
@@ -37,6 +37,7 @@ class CallbackActivity(Enum):
     IDLE = auto()
     RAN = auto()
     WAITS = auto()
+    AWAITS = auto()
     RUNS = auto()
 
 
@@ -75,7 +76,7 @@ LineMarks: TypeAlias = dict[int, LineMark]
 
 
 def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, LineMarks]:
-    """Return the lines at which callbacks are at a moment, or the program or a thread of it waits.
+    """Return the lines at which callbacks are or await at a moment, or the program or a thread of it waits.
 
     Also returned are the calls to there.
 
@@ -88,6 +89,9 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
     positions = [each for thread in running if (each := timeline.position_on(thread, at)) is not None]
     for thread in timeline.threads:
         positions += timeline.program_waits_on(thread, Window(at, at + 1))
+    for entity in timeline.entities.keys() & timeline.ever_suspended:
+        here = timeline.positions_of(entity, Window(at, at + 1))
+        positions += (each for each in here if each.call == AWAIT)
     together = Counter((position.file, position.line) for position in positions)
     since = [(_there_since(position, timeline), position) for position in positions]
     for start, position in sorted(since, key=itemgetter(0)):
@@ -95,7 +99,8 @@ def lines_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
         file = files.of(position.file)
         texts = () if file is None else tuple(_at_line(position, at, start, timeline, file))
         if texts and (many := together[position.file, position.line]) > 1:
-            texts = (f"▶ {many} threads, the first{texts[0].removeprefix('▶')}", *texts)
+            which = "calls" if position.call == AWAIT else "threads"
+            texts = (f"▶ {many} {which}, the first{texts[0].removeprefix('▶')}", *texts)
         _mark(found, files, position.frames, number, texts)
     for own in timeline.own_threads_at(at):
         frames, name = tuple(Frame(*frame) for frame in own.frames), short_thread(own.name)
@@ -206,7 +211,10 @@ def _doing(
         several = [f"▶ {len(calls)} calls, longest {times[0]}"] if calls[1:] else []
         texts = (*_blocked_text(calls, moment), f"▶ {each}", *several, f"▶ {times[0]}")
         return CallbackActivity.RUNS, texts, calls[0].start
-    wait = wait_told(entity.id, moment, timeline)
+    wait, awaits = wait_told(entity.id, moment, timeline), _awaits_since(entity, moment, timeline)
+    if awaits is not None and (wait is None or wait.is_for_own_call):
+        lasted = duration(moment.at - awaits)
+        return CallbackActivity.AWAITS, (f"▶ awaits {lasted}", f"▶ {lasted}"), awaits
     if wait is not None:
         since = waits_since(wait, moment.queues[entity.id])
         hatch, lasted = GLYPHS[Charset.BRAILLE].hatch[wait.reason], duration(moment.at - since)
@@ -217,6 +225,14 @@ def _doing(
     if recent:
         return CallbackActivity.RAN, (f"· {_thread(recent[-1], timeline)}",), recent[-1].start
     return CallbackActivity.IDLE, ("",), 0
+
+
+def _awaits_since(entity: EntityInfo, moment: Moment, timeline: Timeline) -> Nanoseconds | None:
+    """Return since when the longest of a callback's suspended calls awaits; None if none does."""
+    if entity.id not in timeline.ever_suspended:
+        return None
+    suspended = timeline.suspensions_in(entity.group, Window(moment.at, moment.at + 1))
+    return min((each.start for which, each in suspended if which == entity.id), default=None)
 
 
 def _blocked_text(calls: Sequence[Span], moment: Moment) -> Iterator[str]:
@@ -232,17 +248,6 @@ def _thread(span: Span, timeline: Timeline) -> str:
     return short_thread(timeline.threads[span.thread].name)
 
 
-def changed_lines(before: Sequence[CallbackMark], after: Sequence[CallbackMark]) -> Iterator[tuple[int, int]]:
-    """Yield the first line and the length of each range of lines that must be redrawn."""
-    known = {marked.first_line: marked for marked in before}
-    for marked in after:
-        old = known.pop(marked.first_line, None)
-        if old == marked:
-            continue
-        alike = old is not None and old.doing is marked.doing and old.number == marked.number
-        yield marked.first_line, 1 if alike else marked.last_line - marked.first_line + 1
-    for gone in known.values():
-        yield gone.first_line, gone.last_line - gone.first_line + 1
 def text_beside(texts: Sequence[str], room: int) -> str:
     """Return the longest text that fits beside code, or a part of the last; a short one in place of a sign.
 
@@ -255,3 +260,14 @@ def text_beside(texts: Sequence[str], room: int) -> str:
     return text if len(text) > _SIGN else next(short, text)
 
 
+def changed_lines(before: Sequence[CallbackMark], after: Sequence[CallbackMark]) -> Iterator[tuple[int, int]]:
+    """Yield the first line and the length of each range of lines that must be redrawn."""
+    known = {marked.first_line: marked for marked in before}
+    for marked in after:
+        old = known.pop(marked.first_line, None)
+        if old == marked:
+            continue
+        alike = old is not None and old.doing is marked.doing and old.number == marked.number
+        yield marked.first_line, 1 if alike else marked.last_line - marked.first_line + 1
+    for gone in known.values():
+        yield gone.first_line, gone.last_line - gone.first_line + 1

@@ -48,6 +48,7 @@ _INKS = {
     CallbackActivity.IDLE: Role.FAINT,
     CallbackActivity.RAN: Role.FAINT,
     CallbackActivity.WAITS: Role.WARN,
+    CallbackActivity.AWAITS: Role.LABEL,
     CallbackActivity.RUNS: Role.LABEL,
 }
 _EDGES = {
@@ -162,8 +163,8 @@ class CodeView(InkedView):
     def read_anew(self, texts: Mapping[str, str]) -> None:
         """Read the files again, as the next run uses those on disk; ``texts`` in place of some, by path."""
         self._files.read_anew(texts)
-        self._marks, self._lines, self._long = {}, {}, set()
         self._placed = self._placed and not self._told_fault
+        self._marks, self._lines, self._long = {}, {}, set()
         self._open(self._files.of(str(self._file.path.absolute())) or self._files.main)
 
     def check_disk(self, entities: Iterable[EntityInfo] = ()) -> None:

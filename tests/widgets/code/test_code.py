@@ -10,7 +10,7 @@ from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, lines_at, m
 from cbtui.widgets.code.source_files import SourceFiles
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
-from sim.trace.events import CallbackAt, Doing, OwnThreadAt, ProgramAt, RunStarted
+from sim.trace.events import CallbackAt, Doing, OwnThreadAt, ProgramAt, Reason, RunStarted
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.pictures import lines_of
@@ -160,6 +160,26 @@ def test_the_line_at_which_a_thread_of_the_program_s_own_waits_is_marked_until_i
     assert lines[38].texts == ("▶ worker waits in Event.wait()", "▶ worker", "▶")
     assert lines[37].texts == ()
     assert lines_at(timeline, ns(1.0), files) == lines_at(timeline, ns(4.0), files) == {}
+
+
+def test_a_callback_that_awaits_is_marked_with_its_line_until_it_goes_on(path: Path) -> None:
+    run = Run()
+    thread, group = run.thread("MainThread"), run.exclusive(run.node("/n"))
+    file = str(path)
+    ask = run.timer(group, "ask", 1.0, file=file, lines=(30, 33))
+    run.timer(group, "other", 1.0, file=file, lines=(20, 22))
+    run.start(ask, thread, 1.0)
+    run.suspend(ask, thread, 1.5, ((file, "ask", 31), (file, "inner", 38)))
+    run.wait(ask, 2.0, 4.0, Reason.GROUP_HELD, ask)
+    run.resume(ask, thread, 4.0)
+    run.end(ask, thread, 4.5)
+    timeline, files = told(run), SourceFiles(path)
+    (_, mark) = marked(path, timeline, 3.0)
+    assert (mark.doing, mark.texts[0]) == (CallbackActivity.AWAITS, "▶ awaits 1.5 s")
+    lines = lines_at(timeline, ns(3.0), files)[files.main]
+    assert (lines[38].texts[0], lines[31].texts) == ("▶ awaits, 1.5 s", ())
+    assert lines_at(timeline, ns(1.2), files) == lines_at(timeline, ns(4.2), files) == {}
+    assert marked(path, timeline, 4.2)[1].doing is CallbackActivity.RUNS
 
 
 def test_a_waiting_callback_is_marked_with_the_reason(path: Path) -> None:
