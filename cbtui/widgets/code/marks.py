@@ -249,14 +249,14 @@ def _thread(span: Span, timeline: Timeline) -> str:
 
 
 def text_beside(texts: Sequence[str], room: int) -> str:
-    """Return the longest text that fits beside code, or a part of the last; a short one in place of a sign.
+    """Return the longest text that fits beside code, or a part of the last; a shorter one in place of a sign.
 
     Code gives way to that: it may be longer than the room.
     """
     padded = [f" {text} " if text else "" for text in texts]
     cut = fit(padded[-1], room, Charset.BRAILLE) if room >= _LEAST_CUT else ""
     text = next((text for text in padded if len(text) <= room), cut)
-    short = (each for each in reversed(padded) if _SIGN < len(each) < _LEAST_CUT)
+    short = (each for each in reversed(padded[1:]) if _SIGN < len(each) < _LEAST_CUT)
     return text if len(text) > _SIGN else next(short, text)
 
 

@@ -6,7 +6,7 @@ from textual.app import App, ComposeResult
 
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.code.highlight import TokenKind, highlight
-from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, lines_at, marks_at
+from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, lines_at, marks_at, text_beside
 from cbtui.widgets.code.source_files import SourceFiles
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
@@ -298,6 +298,11 @@ async def test_a_narrow_view_says_it_in_fewer_words(path: Path) -> None:
         app.view.scroll_to(y=18, animate=False, immediate=True)
         await pilot.pause()
         assert lines_of(app)[1].rstrip().endswith("waits 400 ms")
+
+
+def test_code_gives_way_to_no_mark_that_goes_at_once() -> None:
+    assert text_beside(("· Pool-0_0",), 5) == ""
+    assert text_beside(("▶ computes", "▶"), 5) == " ▶ "
 
 
 @pytest.mark.parametrize(("columns", "beside"), [(30, " ▶ 1.5 s "), (39, "… ▶ 1.5 s "), (53, "… ▶ 1.5 s ")])
