@@ -214,14 +214,14 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
     turns = next_in_turn(moment, timeline)
     since, for_itself = min(((since, entity) for entity, since in turns.items()), default=(moment.at, 0))
     stuck = _stuck(moment, timeline)
-    threads, briefly = _threads_needed(timeline, peak)
+    own = timeline.own_threads_at(moment.at)
+    threads, briefly = _threads_needed(timeline, peak, has_own=bool(own))
     pending = unanswered(LatestCalls(timeline).latest, moment.at)
     if moment.at - since < WORTH_TELLING:
         ready = [f"{name_of(each, timeline)} is ready" for each in (*moment.waiting, *turns)]
         waits = stuck or _no_reply(pending, moment.at, timeline) or next(iter(ready), "")
         level = DiagnosisLevel.PENDING if waits else DiagnosisLevel.FINE
-        own = any(each.doing is Doing.WAITS for each in timeline.own_threads_at(moment.at))
-        none = "no callback waits" if own else "nothing waits"
+        none = "no callback waits" if any(each.doing is Doing.WAITS for each in own) else "nothing waits"
         return Diagnosis(stuck or f"{waits or none}; {threads}", level)
     nothing = "no other callback waits" if pending else "nothing else waits"
     overdue = _overdue(timeline.entities[for_itself], moment, timeline, since)
@@ -388,13 +388,13 @@ _POOL = "MultiThreadedExecutor"
 """The executor whose number of threads can be chosen."""
 
 
-def _threads_needed(timeline: Timeline, peak: int) -> tuple[str, str]:
-    """How many threads were needed, in full and in short."""
+def _threads_needed(timeline: Timeline, peak: int, *, has_own: bool) -> tuple[str, str]:
+    """How many threads were needed, in full and in short; ``has_own``: the program has threads of its own."""
     count = thread_count(timeline)
     if count == 1 and peak and any(each.kind == _POOL for each in timeline.executors.values()):
         return ("1 of 1 threads needed",) * 2
     if count <= 1:
-        return ("one thread does all the work",) * 2
+        return ("one thread runs all callbacks" if has_own else "one thread does all the work",) * 2
     if not peak:
         return ("no callback has run yet",) * 2
     return threads_needed(peak, count, timeline), f"{peak} of {count} threads needed"

@@ -181,7 +181,7 @@ def test_where_nothing_waits_the_threads_that_were_needed_are_told() -> None:
     run = shared_group_run()
     assert said(run, 3.0).text == "nothing waits; one thread does all the work"
     run.add(OwnThreadAt(ns(1.0), 0, "worker", Doing.WAITS, "Event.wait", (("node.py", "work", 9),)))
-    assert said(run, 3.0).text == "no callback waits; one thread does all the work"
+    assert said(run, 3.0).text == "no callback waits; one thread runs all callbacks"
 
 
 def test_executors_made_at_the_instant_of_the_first_callback_have_a_thread_each() -> None:

@@ -38,6 +38,8 @@ STEPS = 3
 """Steps of a worker's way between the yard and an area."""
 
 _LOOKS_BACK = (64, 8, 1)
+_SOON: Nanoseconds = 10_000_000_000
+"""How long after the last call of a thread that spins no more another thread is looked for in its place."""
 
 
 class WorkerState(Enum):
@@ -51,7 +53,7 @@ class WorkerState(Enum):
     WORKS = auto()
     LEAVES = auto()
     STOPPED = auto()
-    """The run is over, or what it ran last raised, and nobody spins the node of that."""
+    """The run is over, or another thread runs what it ran last, or that raised and nobody spins its node."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,8 +233,11 @@ class _SceneBuilder:
         return position if position is not None and position.waits else None
 
     def _has_stopped(self, thread: ThreadId) -> bool:
-        """Whether the run is over, or a thread, no worker, has raised and left a node that nobody spins."""
-        if self._is_over:
+        """Whether the run is over, or a thread, no worker, has raised and left a node that nobody spins.
+
+        Also whether another such thread has taken over what it ran last.
+        """
+        if self._is_over or self._is_relieved(thread):
             return True
         entities = self._timeline.entities
         waits = self._moment.waiting.values()
@@ -241,6 +246,18 @@ class _SceneBuilder:
             return False
         last = self._timeline.spans_on(thread, Window(0, self._now + 1))[-1:]
         return any(span.error and entities[span.entity].node in unspun for span in last)
+
+    def _is_relieved(self, thread: ThreadId) -> bool:
+        spinning = {each.id for each in self._timeline.threads.values() if not each.executor}
+        if thread not in spinning or len(spinning) == 1:
+            return False
+        last = self._timeline.spans_on(thread, Window(0, self._now + 1))[-1:]
+        others = (
+            self._timeline.spans_of(span.entity, Window(end, min(end + _SOON, self._now) + 1))
+            for span in last
+            if (end := span.end) is not None
+        )
+        return any(each.thread in spinning - {thread} for calls in others for each in calls)
 
     def _before_work(self, thread: ThreadId = 0) -> WorkerState:
         """The state of a thread that has run nothing yet; 0 for one that has not been started."""

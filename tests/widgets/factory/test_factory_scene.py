@@ -337,3 +337,16 @@ def test_a_thread_whose_callback_raised_and_whose_node_nobody_spins_waits_for_no
     run.wait(timer, 2.0, reason=Reason.NOBODY_SPINS)
     run.stop(9.0)
     assert [each.stay for each in scene_at(told(run), 3.0).workers] == [WorkerState.STOPPED]
+
+
+def test_a_thread_whose_callback_another_one_runs_now_waits_for_no_work() -> None:
+    run = Run()
+    main, worker = run.thread("MainThread"), run.thread("Thread-1 (spin)")
+    other = run.timer(run.exclusive(run.node("/n")), "other", 1.0)
+    timer = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.callback(timer, main, 1.0, 0.1)
+    run.callback(other, worker, 1.5, 0.1)
+    run.callback(timer, worker, 2.0, 0.1)
+    run.stop(9.0)
+    stays = [[each.stay for each in scene_at(told(run), at).workers] for at in (1.8, 3.0)]
+    assert stays == [[WorkerState.IDLE] * 2, [WorkerState.STOPPED, WorkerState.IDLE]]
