@@ -22,10 +22,10 @@ _TEXTS_AFTER = 0.005
 """Seconds after the other panes until the texts are drawn that a key changes: the picture goes out first."""
 
 _LANES_A_PANE = 3
-"""Lane frames per frame of the other panes: their words and figures are read slower than lanes move."""
+"""Lane frames per frame of all panes: their words and figures are read slower than lanes move."""
 
-_LANES_A_TEXT = 6
-"""Lane frames per frame of log and code, which are read slower still; a multiple of the number above."""
+_SMOOTH = 2.0
+"""The highest speed at which lanes move between frames of all panes: else they would be seconds ahead."""
 
 _PAUSE = 0.5
 """Seconds without growth after which a run begins to move."""
@@ -51,7 +51,7 @@ class FrameContent(Enum):
 
 
 class FrameSchedule:
-    """Draws moving parts often, text seldom, and the effects of keys at once.
+    """Draws lanes often, all panes together less often, and the effects of keys at once.
 
     ``clock`` tells real time in seconds.
     """
@@ -78,18 +78,15 @@ class FrameSchedule:
             self._began_at = now
         self._grown, self._grew_at = True, now
 
-    def next(self) -> FrameContent:
-        """Count a frame, and return what it draws."""
+    def next(self, *, is_smooth: bool = True) -> FrameContent:
+        """Count a frame, and return what it draws; ``is_smooth``: lanes may be ahead of the other panes."""
         if self._clock() < self._rests_until and not self._stale:
             return FrameContent.NOTHING
         self._frames += 1
-        if self._stale or ((self._grown or self._texts_behind) and self._frames % _LANES_A_TEXT == 0):
+        is_turn = self._frames % _LANES_A_PANE == 0 or self._clock() < self._began_at + _BEGINNING
+        if self._stale or ((self._grown or self._texts_behind) and is_turn):
             return FrameContent.ALL
-        if not self._grown:
-            return FrameContent.NOTHING
-        if self._frames % _LANES_A_PANE == 0 or self._clock() < self._began_at + _BEGINNING:
-            return FrameContent.ALL_BUT_TEXTS
-        return FrameContent.LANES
+        return FrameContent.LANES if self._grown and is_smooth else FrameContent.NOTHING
 
     def due_in(self) -> float | None:
         """Return the seconds until everything is to be drawn, frame or no frame; None if that need not be."""
@@ -165,7 +162,8 @@ class FrameLoop:
             return
         if self._runs.findings.update_when_due():
             self.redraw()
-        content = self._schedule.next()
+        speed = self._runs.run.speed
+        content = self._schedule.next(is_smooth=speed is not None and speed <= _SMOOTH)
         if content is not FrameContent.NOTHING:
             before = time_off_cpu()
             self.draw(content)

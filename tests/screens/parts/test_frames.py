@@ -1,5 +1,7 @@
 """How often what is drawn, by counted frames and a clock that stands until it is moved."""
 
+import pytest
+
 from cbtui.screens.parts.frames import FRAMES_A_SECOND, FrameContent, FrameSchedule
 
 
@@ -11,7 +13,12 @@ class Clock:
 
 
 def drawing(
-    schedule: FrameSchedule, frames: int, *, grows: bool, clock: Clock | None = None
+    schedule: FrameSchedule,
+    frames: int,
+    *,
+    grows: bool,
+    clock: Clock | None = None,
+    is_smooth: bool = True,
 ) -> list[FrameContent]:
     """What so many frames draw, of a run that has grown before each; a clock goes on by a frame before."""
     extents = []
@@ -20,7 +27,7 @@ def drawing(
             clock.now += 1 / FRAMES_A_SECOND
         if grows:
             schedule.grow()
-        extents.append(schedule.next())
+        extents.append(schedule.next(is_smooth=is_smooth))
         if extents[-1] in (FrameContent.ALL, FrameContent.ALL_BUT_TEXTS):
             schedule.drawn(extents[-1])
     return extents
@@ -30,14 +37,17 @@ def test_the_first_frame_draws_everything_and_then_nothing_is_drawn_while_nothin
     assert drawing(FrameSchedule(), 30, grows=False) == [FrameContent.ALL, *[FrameContent.NOTHING] * 29]
 
 
-def test_a_run_that_grows_is_drawn_on_the_lanes_in_each_frame_and_elsewhere_less_often() -> None:
+@pytest.mark.parametrize(
+    ("is_smooth", "between"), [(True, FrameContent.LANES), (False, FrameContent.NOTHING)]
+)
+def test_a_run_that_grows_is_drawn_in_all_panes_together_and_between_on_the_lanes_unless_it_is_fast(
+    is_smooth: bool, between: FrameContent
+) -> None:
     clock = Clock()
     schedule = FrameSchedule(clock)
     drawing(schedule, 18, grows=True, clock=clock)
-    extents = drawing(schedule, 18, grows=True, clock=clock)
-    assert FrameContent.NOTHING not in extents
-    kinds = (FrameContent.LANES, FrameContent.ALL_BUT_TEXTS, FrameContent.ALL)
-    assert [extents.count(kind) for kind in kinds] == [12, 3, 3]
+    extents = drawing(schedule, 18, grows=True, clock=clock, is_smooth=is_smooth)
+    assert [extents.count(kind) for kind in (between, FrameContent.ALL)] == [12, 6]
 
 
 def test_what_comes_first_or_after_a_pause_is_drawn_in_all_panes_for_a_second() -> None:
