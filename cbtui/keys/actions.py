@@ -5,7 +5,7 @@ action is available now.
 """
 
 from cbtui.keys.action import CHECKS, CHOICE, PANES, KeyAction, Scope
-from cbtui.keys.refused import NOT_ALWAYS, NOT_IN_COMPARISON, OWN_TIME
+from cbtui.keys.refused import NOT_ALWAYS, OWN_TIME
 
 _ON_A_SCREEN = (Scope.MENU, Scope.LESSON, Scope.COMPARE)
 _ON_A_PANE = (Scope.LOG, Scope.CODE, Scope.CHECKS, Scope.CHOICE)
@@ -210,10 +210,6 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("step", "full_stop", "event", "Go to the next event, of either run"),
         ("jump", "j", "", _JUMP),
         ("leave", "q", "back", "Leave the comparison"),
-        *(
-            (f"no_use('{name}')", key, "", "Say why that key does nothing here")
-            for name, (key, _) in NOT_IN_COMPARISON.items()
-        ),
     ),
     Scope.FILTER: (
         ("submit", "enter", "keep", "Keep the filter, and go to its lines"),

@@ -31,6 +31,11 @@ class Keymap:
             self.of(action for action in ACTIONS if (action.scope, action.id) == (scope, action_id)), charset
         )
 
+    def on(self, key: str, *scopes: Scope) -> list[KeyAction]:
+        """Return the actions of some scopes that have a key in force, in the order of the scopes."""
+        actions = self.of(action for scope in scopes for action in ACTIONS if action.scope is scope)
+        return [action for action in actions if not action.refused and canonical(key) in keys_of(action)]
+
     def for_textual(self) -> dict[str, str]:
         """Return the argument for ``App.set_keymap``.
 

@@ -43,17 +43,17 @@ NOT_ALWAYS = {
 """Actions that make no sense for some of what a run's screen shows, such as a recording."""
 _BEGINNING, _END = "This is the beginning of the runs.", "This is the end of the runs."
 NOT_IN_COMPARISON = {
-    "select": ("enter", "Code is shown beside a run: a comparison has only lanes and figures."),
-    "diagnoses": ("d", "Diagnoses are listed in a run; what is gone or new is told at the top."),
-    "previous_event": ("left_curly_bracket", "No bar is earlier on this lane."),
-    "next_event": ("right_curly_bracket", "No bar is later on this lane."),
-    "earlier": ("left_square_bracket", _BEGINNING),
-    "later": ("right_square_bracket", _END),
-    "pan_earlier": ("left", _BEGINNING),
-    "pan_later": ("right", _END),
-    "step_back": ("comma", _BEGINNING),
-    "step": ("full_stop", _END),
-    "zoom_in": ("greater_than_sign", "This is the shortest stretch."),
-    "zoom_out": ("less_than_sign", "This is the longest stretch."),
+    "select": "Code is shown beside a run: a comparison has only lanes and figures.",
+    "diagnoses": "Diagnoses are listed in a run; what is gone or new is told at the top.",
+    "previous_event": "No bar is earlier on this lane.",
+    "next_event": "No bar is later on this lane.",
+    "earlier": _BEGINNING,
+    "later": _END,
+    "pan_earlier": _BEGINNING,
+    "pan_later": _END,
+    "step_back": _BEGINNING,
+    "step": _END,
+    "zoom_in": "This is the shortest stretch.",
+    "zoom_out": "This is the longest stretch.",
 }
-"""Actions that a comparison has not, or that lead nowhere at an end of the runs; with keys and reasons."""
+"""Why an action leads nowhere in a comparison, which says of other actions that only a run has them."""

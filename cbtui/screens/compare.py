@@ -8,17 +8,17 @@ from typing import ClassVar
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.events import Key
 from textual.widgets import Static
 
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
-from cbtui.keys.refused import NOT_IN_COMPARISON
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.compared_runs import ComparedSide
 from cbtui.runs.judged.compared_problems import ComparedProblems
 from cbtui.runs.live.playhead import SPANS, Playhead
-from cbtui.screens.compare_words import about, shorter
+from cbtui.screens.compare_words import about, shorter, why_nothing
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.bars import BarSelection
 from cbtui.screens.parts.frames import FRAMES_A_SECOND
@@ -321,9 +321,6 @@ class CompareScreen(SizedScreen[None]):
                 return self.bars.selection is not None
             case "earlier":
                 return self.navigation.now > 0
-            case "no_use":
-                wanted = str(parameters[0])
-                return not (hasattr(self, f"action_{wanted}") and self.check_action(wanted, ()))
         return self._parts.offer(action, parameters)
 
     @on(Lanes.BarPicked)
@@ -334,9 +331,12 @@ class CompareScreen(SizedScreen[None]):
     def _turn(self, message: Lanes.WheelTurned) -> None:
         self.navigation.zoom(message.steps)
 
-    def action_no_use(self, wanted: str) -> None:
-        """Say why a key does nothing here."""
-        self.notify(NOT_IN_COMPARISON[wanted][1], markup=False)
+    def on_key(self, event: Key) -> None:
+        """Say why a key of a run does nothing here."""
+        meant = keymap_of(self.app).on(event.key, Scope.COMPARE, Scope.LESSON)
+        if meant and self.query_one(KeyBar).does(event.key) is None:
+            for reason in why_nothing(meant, self.charset):
+                self.notify(reason, markup=False)
 
     def action_deselect(self) -> None:
         """Select nothing."""

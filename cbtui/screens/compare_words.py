@@ -1,6 +1,11 @@
-"""What a comparison says about each of the runs on screen."""
+"""What a comparison says about each of the runs on screen, and about keys that do nothing there."""
 
-from cbtui.looks.theme import Ink, Role, TextRun
+from collections.abc import Sequence
+
+from cbtui.keys.action import KeyAction, Scope
+from cbtui.keys.refused import NOT_IN_COMPARISON
+from cbtui.keys.signs import signs_of
+from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.compared_runs import ComparedSide
 from sim.quantities.durations import timestamp
 from sim.trace.descriptions import executor_label
@@ -28,3 +33,12 @@ def shorter(first: ComparedSide, second: ComparedSide) -> str:
     side = second if shorter else first
     until = "has come to" if side.alive() else "ends at"
     return f"{RUNS[shorter]} {until} {timestamp(side.timeline.end)}"
+
+
+def why_nothing(meant: Sequence[KeyAction], charset: Charset) -> list[str]:
+    """Return the sentence on why a key with these actions does nothing; none where it only takes back."""
+    reasons = [NOT_IN_COMPARISON[each.name] for each in meant if each.name in NOT_IN_COMPARISON]
+    if not reasons and meant[0].scope is Scope.LESSON:
+        sign = signs_of(meant[:1], charset)
+        return [f"{sign}, {meant[0].label}, works in a run, not in a comparison."]
+    return reasons[:1]

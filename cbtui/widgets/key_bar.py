@@ -12,7 +12,7 @@ from textual.screen import Screen
 from cbtui.keys.action import KeyAction, Scope, group_by, method_of
 from cbtui.keys.actions import actions_of
 from cbtui.keys.bindings import perform
-from cbtui.keys.keymap import keymap_of
+from cbtui.keys.keymap import canonical, keymap_of, keys_of
 from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.terminal.textual_internals import paint_now
@@ -64,6 +64,11 @@ class KeyBar(PaintedWidget):
         places = {label: place for place, label in enumerate(self.first)}
         working.sort(key=lambda action: places.get(action.label, len(places)))
         return keymap_of(self.app).of(working)
+
+    def does(self, key: str) -> KeyAction | None:
+        """Return the action that a key performs now; a pane's comes before the screen's."""
+        here = keymap_of(self.app).of(filter(self._works, actions_of(self._scope)))
+        return next((action for action in here if canonical(key) in keys_of(action)), None)
 
     def say(self, words: str) -> None:
         """Show words instead of the keys, at once, until the current message has been handled."""

@@ -11,7 +11,8 @@ from textual.widgets import Static
 from cbtui.app import CbtuiApp
 from cbtui.keys.action import Scope
 from cbtui.keys.actions import ACTIONS, TASKS
-from cbtui.keys.keymap import keys_of
+from cbtui.keys.config import read_text
+from cbtui.keys.keymap import Keymap, keys_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.compared_runs import ComparedSide
 from cbtui.screens import compare
@@ -69,8 +70,9 @@ class ComparingConsole(CbtuiApp):
         second: ComparedSide,
         charset: Charset = Charset.BRAILLE,
         bounds: Window | None = None,
+        keys: Keymap | None = None,
     ) -> None:
-        super().__init__(charset=charset)
+        super().__init__(charset=charset, keys=keys)
         self.animation_level = "none"
         self.comparison = CompareScreen(first, second, charset, bounds)
 
@@ -205,6 +207,12 @@ async def test_the_cursor_goes_from_bar_to_bar_of_the_lane_that_was_clicked_on()
         ("right_curly_bracket", "No bar is later"),
         ("full_stop", "This is the end"),
         ("right", "This is the end"),
+        ("P", "P, predict, works in a run, not in a comparison."),
+        ("space", "␣, pause, works in a run"),
+        ("plus", "+, speed, works in a run"),
+        ("1", "1, pane, works in a run"),
+        ("tab", "tab, next pane, works in a run"),
+        ("ctrl+r", "^r, start over, works in a run"),
     ],
 )
 async def test_a_key_that_does_nothing_says_why_at_the_top_and_covers_no_figure(
@@ -214,6 +222,17 @@ async def test_a_key_that_does_nothing_says_why_at_the_top_and_covers_no_figure(
         await pilot.press(key)
         await until(pilot, lambda: sentence in lines_of(app)[0])
         assert "run A  shared-group" in text_of(app)
+
+
+async def test_a_key_that_was_moved_says_by_its_new_place_that_it_is_for_a_run() -> None:
+    config, _ = read_text('[keys]\nlesson.predict = "f9"\nlesson.faster = "w"', "config.toml")
+    app = ComparingConsole(*sides(), keys=config.keymap)
+    async with app.run_test(size=NARROW, notifications=True) as pilot:
+        await drawn(app, pilot)
+        await press(app, pilot, "w", "P")
+        assert "works in a run" not in text_of(app)
+        await pilot.press("f9")
+        await until(pilot, lambda: "f9, predict, works in a run" in text_of(app))
 
 
 async def test_a_sentence_about_the_screen_before_is_taken_away() -> None:
