@@ -13,7 +13,7 @@ from textual.widgets import Static
 
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
-from cbtui.keys.keymap import keymap_of
+from cbtui.keys.keymap import canonical, keymap_of
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.compared_runs import ComparedSide
 from cbtui.runs.judged.compared_problems import ComparedProblems
@@ -334,7 +334,7 @@ class CompareScreen(SizedScreen[None]):
     def on_key(self, event: Key) -> None:
         """Say why a key of a run does nothing here."""
         meant = keymap_of(self.app).on(event.key, Scope.COMPARE, Scope.LESSON)
-        if meant and self.query_one(KeyBar).does(event.key) is None:
+        if meant and canonical(event.key) not in self.query_one(KeyBar).in_force():
             for reason in why_nothing(meant, self.charset):
                 self.notify(reason, markup=False)
 

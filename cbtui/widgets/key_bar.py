@@ -12,7 +12,7 @@ from textual.screen import Screen
 from cbtui.keys.action import KeyAction, Scope, group_by, method_of
 from cbtui.keys.actions import actions_of
 from cbtui.keys.bindings import perform
-from cbtui.keys.keymap import canonical, keymap_of, keys_of
+from cbtui.keys.keymap import keymap_of, keys_of
 from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.terminal.textual_internals import paint_now
@@ -50,25 +50,26 @@ class KeyBar(PaintedWidget):
 
     def __init__(self, scope: Scope, charset: Charset) -> None:
         super().__init__()
-        self._scope = scope
+        self.scope = scope
+        """The place whose keys it shows."""
         self._charset = charset
 
     def show(self, scope: Scope) -> None:
         """Show the keys of another scope."""
-        self._scope, self.offered = scope, ()
+        self.scope, self.offered = scope, ()
         self.changed()
 
     def working(self) -> list[KeyAction]:
         """Return the available actions with the keys in force."""
-        working = [action for action in actions_of(self._scope) if action.label and self._works(action)]
+        working = [action for action in actions_of(self.scope) if action.label and self._works(action)]
         places = {label: place for place, label in enumerate(self.first)}
         working.sort(key=lambda action: places.get(action.label, len(places)))
         return keymap_of(self.app).of(working)
 
-    def does(self, key: str) -> KeyAction | None:
-        """Return the action that a key performs now; a pane's comes before the screen's."""
-        here = keymap_of(self.app).of(filter(self._works, actions_of(self._scope)))
-        return next((action for action in here if canonical(key) in keys_of(action)), None)
+    def in_force(self) -> dict[str, KeyAction]:
+        """Return the action that each key performs now; a pane's comes before the screen's."""
+        here = keymap_of(self.app).of(filter(self._works, actions_of(self.scope)))
+        return {key: action for action in reversed(here) for key in keys_of(action)}
 
     def say(self, words: str) -> None:
         """Show words instead of the keys, at once, until the current message has been handled."""

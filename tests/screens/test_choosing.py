@@ -1,10 +1,12 @@
 """The learner is the scheduler: in a puzzle, and from a moment of a paused run on."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from textual.pilot import Pilot
+from textual.widgets import Static
 
 from cbtui.app import CbtuiApp
 from cbtui.screens.choosing import ChoosingScreen
@@ -60,6 +62,19 @@ async def test_who_may_go_on_is_asked_and_shown_in_the_code() -> None:
         assert any("self.sent.publish" in line or "publish" in line for line in lines_of(app))
         assert {"take", "resume", "solution", "lesson", "run_again"} <= offered(app)
         assert not {"undo", "step", "pause"} & offered(app)
+
+
+async def test_the_help_has_in_brackets_what_the_pane_with_the_focus_uses_for_something_else() -> None:
+    app = console(Asking())
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        await pilot.press("question_mark")
+        await until(pilot, lambda: "Choice of who goes on" in text_of(app))
+        rows = "\n".join(
+            str(app.screen.query_one(f"#{each}", Static).render()) for each in ("found", "beside")
+        )
+        assert re.search(r" 1-9 +Let the thread with this number", rows)
+        assert re.search(r" \(1-6\) +Go to a pane", rows)
 
 
 @pytest.mark.parametrize("key", ["t", "s", "full_stop", "h"])

@@ -548,6 +548,9 @@ async def test_help_begins_with_the_comparisons_keys_and_q_is_the_way_back() -> 
         rows = str(app.screen.query_one("#found", Static).render()).splitlines()
         assert {"Comparison", *(f"In a run: {task}" for task in TASKS)} <= set(rows)
         assert not set(TASKS) & set(rows)
+        signs = {row.split()[0] for row in rows if row.split()}
+        assert {"(P)", "(s)", "(t)", "(N)", "(x)", "(C)"} <= signs, "nothing can be done with them here"
+        assert {"(G)", "(Z)", "(w)"} & signs == {"(w)"}, "which is one thing in a run and another here"
         await pilot.press("slash", *"table cover")
         await pilot.pause()
         assert "Let the table cover whole runs, or only what is on screen" in text_of(app)

@@ -9,9 +9,9 @@ from textual.containers import Horizontal, VerticalScroll
 from textual.content import Content
 from textual.widgets import Input, Static
 
-from cbtui.keys.action import KeyAction, Scope, group_by, method_of
-from cbtui.keys.actions import ACTIONS, TASKS
-from cbtui.keys.keymap import Keymap, keymap_of
+from cbtui.keys.action import KeyAction, Scope, group_by
+from cbtui.keys.actions import ACTIONS, TASKS, actions_of
+from cbtui.keys.keymap import Keymap, keymap_of, keys_of
 from cbtui.keys.refused import OWN_TIME
 from cbtui.keys.signs import signs_of
 from cbtui.learning.stage import Stage, meaning_of
@@ -19,6 +19,7 @@ from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.screens.layout import Layout
 from cbtui.screens.windows.window import WindowScreen
 from cbtui.text.cells import lines_of_text
+from cbtui.widgets.key_bar import KeyBar
 from sim.trace.events import Reason
 
 _SHOWN = (
@@ -92,8 +93,15 @@ class HelpScreen(WindowScreen[None]):
         below = self.app.screen_stack[-2]
         scope = getattr(below, "SCOPE", None)
 
+        bar = below.query_one(KeyBar)
+        does = {(key, action.name) for key, action in bar.in_force().items()}
+        here = {each.scope for each in actions_of(bar.scope)}
+        if scope is Scope.COMPARE:
+            here.add(Scope.LESSON)  # somebody who compares comes from a run, and tries its keys
+
         def absence(actions: Sequence[KeyAction]) -> str | None:
-            if actions[0].scope is not scope or any(below.check_action(*method_of(each)) for each in actions):
+            meant = {(key, action.name) for action in actions for key in keys_of(action)}
+            if actions[0].scope not in here or meant & does:
                 return None
             is_timed = scope is Scope.LESSON and actions[0].name in OWN_TIME
             is_real = is_timed and below.check_action("no_time", (actions[0].name,))
