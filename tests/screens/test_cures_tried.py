@@ -100,11 +100,14 @@ async def test_beside_a_cure_that_helps_another_one_is_being_tried() -> None:
 
     over = Event()
     async with console() as (app, pilot):
-        screen = DiagnosesScreen(told_of(shared_group_run().until(TURNED)), Charset.BRAILLE, EndlessSecond())
+        findings, lesson = told_of(shared_group_run().until(TURNED)), find("single-thread")
+        screen = DiagnosesScreen(findings, Charset.BRAILLE, EndlessSecond(), lambda _: lesson)
         await app.push_screen(screen)
         await until(pilot, lambda: "→ tried, it helps: spin with two" in text_of(app))
         await until(pilot, lambda: "· Another cure is being tried, for " in text_of(app))
+        assert "open lesson" not in text_of(app), "who waits for a cure does not leave for a lesson"
         over.set()
+        await until(pilot, lambda: "→ open lesson 1, which shows this" in text_of(app))
         await press(pilot, "escape")
 
 

@@ -357,7 +357,7 @@ async def test_enter_opens_the_lesson_that_shows_a_problem_and_q_comes_back(tmp_
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
         await press(pilot, "d")
-        assert "→ lesson 1 shows this" in text_of(app)
+        assert "→ open lesson 1, which shows this" in text_of(app)
         await press(pilot, "down", "enter")
         assert "Single thread" in text_of(app)
         assert engines.sessions[0].commands == [Pause()]

@@ -93,9 +93,10 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
     """Lists findings with their steps, problems first; the result is the chosen step, None to stay.
 
     A cure is offered once ``trial`` has found that it helps. ``lesson_on`` returns the lesson that shows a
-    problem. ``latest`` returns the current findings, or None once another run has begun: the list follows
-    them, begins again when there is a new problem, and closes with its run. ``as_of`` returns the time of the
-    run that they are about, which may have gone on since.
+    problem; it is offered after all trials, so that a key meant for a cure opens none. ``latest`` returns the
+    current findings, or None once another run has begun: the list follows them, begins again when there is a
+    new problem, and closes with its run. ``as_of`` returns the time of the run that they are about, which may
+    have gone on since.
     """
 
     SCOPE = Scope.DIAGNOSES
@@ -200,7 +201,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         for place, lesson in enumerate(self._lessons):
             yield _Row(place, NextStep.LOOK)
             yield from (_Row(place, NextStep.CURE, cure) for about, cure in self._helpful if about == place)
-            if lesson is not None and lesson not in self._lessons[:place]:
+            is_new = lesson is not None and lesson not in self._lessons[:place]
+            if is_new and not any(self._untried):
                 yield _Row(place, NextStep.LESSON)
 
     def _options(self) -> Iterator[Option]:
@@ -209,7 +211,9 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             if row.cure is not None:
                 yield Option(step_row(f"tried, it helps: {row.cure.words}", self._charset))
             elif row.step is NextStep.LESSON and lesson is not None:
-                yield Option(step_row(f"lesson {lesson.number} shows this: {lesson.title}", self._charset))
+                yield Option(
+                    step_row(f"open lesson {lesson.number}, which shows this: {lesson.title}", self._charset)
+                )
             else:
                 yield Option(row_of(self._findings[row.place], self._charset))
 
