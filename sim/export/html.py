@@ -37,9 +37,11 @@ def _run(timeline: Timeline) -> _Json:
     started, arena = timeline.started, timeline.arena
     clock = f" of {started.clock} time" if started else ""
     executors = executor_label(timeline)
+    lasts = duration(timeline.end - timeline.begun)
     return {
         "title": _title(timeline),
-        "subtitle": f"{duration(timeline.end)}{clock}{f', {executors}' if executors else ''}",
+        "subtitle": f"{lasts}{clock}{f', {executors}' if executors else ''}",
+        "begin": _micro(timeline.begun),
         "end": _micro(timeline.end),
         "callbacks": [
             {"name": each.spoken_name, "group": groups.get(each.group, 0)}

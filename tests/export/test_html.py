@@ -6,12 +6,22 @@ import subprocess
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from sim.export.html import page
-from sim.trace.events import Logged, Printed
+from sim.trace.events import Logged, Printed, RunEnded, RunStarted
+from sim.trace.timeline import Timeline
 from tests.export.examples import NASTY, small_run, timeline_of
+from tests.support.builder import ns
 from tests.support.lesson_runs import shared_group_run
 from tests.web.chromium import PROGRAM
+
+
+def begun_late() -> Timeline:
+    """The last ten seconds of a run, as a recording has them that was begun late."""
+    events = [each for each in shared_group_run().events if each.t <= ns(14.0)]
+    run = [replace(each, known_from=ns(4.0)) if isinstance(each, RunStarted) else each for each in events]
+    return timeline_of([*run, RunEnded(ns(14.0), "", failed=False)])
 
 
 def data(text: str) -> dict[str, object]:
@@ -54,6 +64,19 @@ def shown_by_browser(text: str, moment: str, folder: Path) -> str:
 def test_a_log_without_lines_says_so(tmp_path: Path) -> None:
     quiet = [event for event in small_run() if not isinstance(event, Logged | Printed)]
     assert "<span>nothing so far</span>" in shown_by_browser(page(timeline_of(quiet)), "0", tmp_path)
+
+
+def test_what_was_begun_during_a_run_is_no_longer_than_from_there_on() -> None:
+    shown = data(page(begun_late()))
+    assert (shown["begin"], shown["end"]) == (4e6, 14e6)
+    assert str(shown["subtitle"]).startswith("10.0 s of")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(PROGRAM is None, reason="there is no Chromium")
+def test_what_was_begun_during_a_run_plays_from_there(tmp_path: Path) -> None:
+    dom = shown_by_browser(page(begun_late()), "", tmp_path)
+    assert '<output id="now">4.000 s</output>' in dom
 
 
 @pytest.mark.slow
