@@ -127,15 +127,14 @@ class CompareScreen(SizedScreen[None]):
         yield KeyBar(Scope.COMPARE, self.charset)
 
     def on_mount(self) -> None:
-        """Start drawing, and warn of damaged or failed runs; what was said before is about another screen."""
+        """Start drawing, and warn of damaged runs; what was said before is about another screen."""
         clear_hints(self.app)
         for number, side in enumerate(self._sides):
             lanes = self._lanes(number)
             lanes.threads_last, lanes.can_focus = True, False
             lanes.charset, lanes.service = self.charset, side.service
-            for sentence in (side.damage, side.failure):
-                if sentence is not None:
-                    self.notify(sentence, severity="warning", markup=False)
+            if side.damage is not None:
+                self.notify(side.damage, severity="warning", markup=False)
         self._enlarge("")
         self.set_interval(1 / FRAMES_A_SECOND, self.draw)
 
