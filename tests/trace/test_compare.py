@@ -187,6 +187,12 @@ def test_a_difference_has_a_word_and_a_meaning() -> None:
     assert back["age med/max"].difference == "max 1.8 s older"
 
 
+def test_how_long_calls_take_is_told_where_it_differs_and_is_neither_better_nor_worse() -> None:
+    takes = rows_of(starved(), healthy(), TIMER)["takes med/max"]
+    assert (takes.difference, takes.assessment) == ("max 2.3 s shorter", Assessment.OTHER)
+    assert "takes med/max" not in rows_of(starved(), healthy(), ODOM)
+
+
 def test_the_callbacks_for_which_a_run_is_better_or_worse_are_listed_first() -> None:
     compared = compare(healthy(), starved(), Window(0, ns(4.0)))
     assert [pair.name for pair in compared.callbacks] == [TIMER, ODOM]
@@ -286,23 +292,24 @@ run B  healthy
 Run B is better: losses of odom_callback 0 instead of 2, also longest wait of
 odom_callback.
 
-                run A          run B            B against A
+                 run A          run B            B against A
 
 odom_callback
-  calls         1              2                1 more
-  lost          2              0                2 fewer
-  wait med/max  2.0 s / 2.0 s  0 s / 0 s        max 2.0 s shorter
-  age med/max   2.0 s / 2.0 s  100 ms / 200 ms  max 1.8 s fresher
+  calls          1              2                1 more
+  lost           2              0                2 fewer
+  wait med/max   2.0 s / 2.0 s  0 s / 0 s        max 2.0 s shorter
+  age med/max    2.0 s / 2.0 s  100 ms / 200 ms  max 1.8 s fresher
   run A waits: group A held by timer_callback
 
 timer_callback
-  calls         1              1                same
-  wait med/max  0 s / 0 s      0 s / 0 s        same
-  late med/max  0 s / 0 s      0 s / 0 s        same
+  calls          1              1                same
+  takes med/max  2.5 s / 2.5 s  200 ms / 200 ms  max 2.3 s shorter
+  wait med/max   0 s / 0 s      0 s / 0 s        same
+  late med/max   0 s / 0 s      0 s / 0 s        same
 
 whole program
-  threads used  1              1                same
-  at once       1              1                same
+  threads used   1              1                same
+  at once        1              1                same
 """
     )
     assert max(map(len, text.splitlines())) <= 80
@@ -580,6 +587,11 @@ def test_a_callback_that_hardly_runs_in_one_of_the_runs_is_unlike() -> None:
     assert not any(notable(compare(healthy(), healthy(), Window(0, ns(4.0)))))
     alone = compare(healthy(), run([TIMER], called(1, 1.0, 1.1)), Window(0, ns(4.0)))
     assert list(map(set, notable(alone))) == [{2}, set()]
+
+
+def test_a_callback_that_takes_longer_in_one_of_the_runs_is_notable() -> None:
+    one, other = (run([TIMER, ODOM], [*called(1, 0.0, end), *called(2, 2.0, 2.1)]) for end in (0.1, 1.0))
+    assert notable(compare(one, other, Window(0, ns(4.0)))) == ({1: 0}, {1: 0})
 
 
 def test_the_callback_that_decides_the_verdict_is_the_most_notable() -> None:

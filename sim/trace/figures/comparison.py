@@ -87,6 +87,13 @@ class CallbackPair:
         return all(side is not None and side.lasts for side in (self.first, self.second))
 
     @property
+    def takes_unlike(self) -> bool:
+        """Whether its longest call takes more than twice as long in one run."""
+        sides = (side and side.figures.duration for side in (self.first, self.second))
+        longest = [duration.most if duration else 0 for duration in sides]
+        return max(longest) > 2 * min(longest) + _LONG
+
+    @property
     def waits(self) -> bool:
         """Whether it waits long in a run."""
         return any(side is not None and side.longest_wait >= _LONG for side in (self.first, self.second))

@@ -17,6 +17,7 @@ from sim.trace.figures.comparison_wording import (
     FLAWS,
     LATENESS,
     LOSSES,
+    RUNNING,
     WAITS,
     Wording,
     metres,
@@ -182,7 +183,9 @@ def _rows(
     for label, spread, wording in _SPREADS:
         of_first, of_second = _apply(spread, first), _apply(spread, second)
         if of_first or of_second:
-            yield _spread_row(label, of_first, of_second, wording.on(is_real=is_real))
+            row = _spread_row(label, of_first, of_second, wording.on(is_real=is_real))
+            if wording is not RUNNING or (row.difference and row.assessment is not Assessment.SAME):
+                yield row
 
 
 ValueT = TypeVar("ValueT")
@@ -209,6 +212,7 @@ _FIGURES: tuple[tuple[str, Callable[[CallbackInRun], Figure], Wording], ...] = (
     ("lost", lambda side: side.figures.drops if side.figures.entity.depth else None, LOSSES),
 )
 _SPREADS: tuple[tuple[str, Callable[[CallbackInRun], _Spread | None], Wording], ...] = (
+    ("takes med/max", lambda side: _spread(side.figures.duration, lasts=False), RUNNING),
     ("wait med/max", _waited, WAITS),
     ("age med/max", lambda side: _spread(side.figures.age, lasts=side.lasts), AGES),
     ("late med/max", lambda side: _spread(side.figures.late, lasts=side.lasts), LATENESS),

@@ -131,12 +131,17 @@ def notable(
 ) -> tuple[dict[EntityId, int], dict[EntityId, int]]:
     """Return the callbacks of each run that differ notably, with their ranks: 0 decides the verdict.
 
-    Last are those that wait long in one of the runs, or run much less often, if at all.
+    Then come those whose calls take longer in one run, which may be why others wait. Last are those that wait
+    long in one of the runs, or run much less often, if at all.
     """
     deciding = dict.fromkeys(each.name for each in sorted(_differences(comparison, problems), key=_weight))
     ranks = {name: place for place, name in enumerate(deciding)}
-    pairs = [each for each in comparison.callbacks if each.name in ranks or each.is_unlike or each.waits]
-    pairs.sort(key=lambda pair: ranks.get(pair.name, len(ranks)))
+    pairs = [
+        each
+        for each in comparison.callbacks
+        if each.name in ranks or each.takes_unlike or each.is_unlike or each.waits
+    ]
+    pairs.sort(key=lambda pair: (ranks.get(pair.name, len(ranks)), not pair.takes_unlike))
     return (
         {pair.first.figures.entity.id: rank for rank, pair in enumerate(pairs) if pair.first},
         {pair.second.figures.entity.id: rank for rank, pair in enumerate(pairs) if pair.second},
