@@ -1,7 +1,10 @@
 """Entities and waits described in words."""
 
+from collections.abc import Sequence
+from itertools import islice
+
 from sim.quantities.durations import duration
-from sim.trace.events import Doing, EntityId, NodeId, Reason
+from sim.trace.events import Doing, EntityId, EntityKind, NodeId, Reason
 from sim.trace.model import AWAIT, Position, Wait, Window
 from sim.trace.participants import Participants
 from sim.trace.timeline import Timeline
@@ -77,6 +80,28 @@ _ASKED = {
     "get_result": "asked for the result",
 }
 """What an action's server is asked, by the last part of the service's name; what matters most first."""
+
+
+def silent_topics(timeline: Timeline) -> tuple[str, ...]:
+    """Return the topics of the program's subscriptions on which no message is known to have come."""
+    whole = Window(0, timeline.end + 1)
+    first = islice(timeline.entities.values(), _MOST_ENTITIES)
+    ends = [each for each in first if each.kind is EntityKind.SUBSCRIPTION]
+    heard = (each for each in ends if timeline.calls_of(each.id, whole) or timeline.waits_of(each.id, whole))
+    known = {*timeline.names_sent, *(each.name for each in heard)}
+    silent = (each.name for each in ends if each.made_at[0] and each.name not in known)
+    return tuple(dict.fromkeys(silent))
+
+
+def nothing_came(silent: Sequence[str]) -> str:
+    """Say that nothing came on topics, of which the first are named; empty for none."""
+    more = ", …" if len(silent) > _MOST_TOPICS else ""
+    return f"nothing has come on {', '.join(silent[:_MOST_TOPICS])}{more}" if silent else ""
+
+
+_MOST_TOPICS = 3
+_MOST_ENTITIES = 1000
+"""The most entities that are looked at: a window asks again and again."""
 
 
 def executor_label(timeline: Timeline) -> str:

@@ -8,7 +8,10 @@ import pytest
 from sim.diagnosis.rules.names import is_slip, nearest
 from sim.interfaces import message, service
 from sim.ros.node.node import Node
+from sim.trace.descriptions import silent_topics
 from sim.trace.events import ArenaShown
+from sim.trace.figures.summary import summarise
+from sim.trace.figures.summary_text import plain_text
 from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, spin
 from tests.support.simulation import Simulation, Trace
 
@@ -97,6 +100,14 @@ def test_it_is_told_within_half_a_second_of_the_first_message() -> None:
 def test_topics_of_different_names_and_one_that_is_heard_are_well() -> None:
     assert talk("speed", "scan").told() == set()
     assert talk("chatter", "chatter").told() == set()
+
+
+def test_topics_on_which_nothing_came_are_known_also_beside_a_finding() -> None:
+    assert silent_topics(talk("speed", "scan").timeline) == ("/scan",)
+    assert silent_topics(talk("chatter", "chattr").timeline) == ("/chattr",)
+    assert silent_topics(talk("chatter", "chatter").timeline) == ()
+    summary = plain_text(summarise(talk("speed", "scan").timeline))
+    assert "topics   nothing has come on /scan\n" in summary
 
 
 @pytest.mark.parametrize(

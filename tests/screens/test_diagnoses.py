@@ -306,15 +306,19 @@ async def test_a_problem_that_comes_while_the_window_is_open_is_listed() -> None
     async with console() as (app, pilot):
         found = told_of(shared_group_run().until(TURNED))
         latest: list[ExplainedFinding] = []
-        screen = DiagnosesScreen((), Charset.BRAILLE, latest=lambda: tuple(latest))
+        beside = "nothing has come on /odom"
+        screen = DiagnosesScreen((), Charset.BRAILLE, latest=lambda: tuple(latest), beside=lambda: beside)
         await app.push_screen(screen)
         await settle(pilot)
         assert "No rule has found a problem so far" in text_of(app)
+        assert "Nothing has come on /odom." in text_of(app)
         latest.extend(found)
         await until(pilot, lambda: title_of(found) in text_of(app))
         await until(
             pilot, lambda: "A mutually exclusive group lets one callback in at a time" in text_of(app)
         )
+        assert "No rule has found" not in text_of(app)
+        assert "Nothing has come on /odom." in text_of(app)
 
 
 async def test_what_the_window_tells_follows_the_run_and_nothing_moves() -> None:

@@ -10,7 +10,7 @@ from cbtui.text.markdown import as_it_is
 from sim.diagnosis import Explanation, with_stop
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted, plural
-from sim.trace.descriptions import executor_label
+from sim.trace.descriptions import executor_label, silent_topics
 from sim.trace.events import EntityKind
 from sim.trace.model import EntityInfo
 from sim.trace.timeline import Timeline
@@ -106,14 +106,9 @@ def _tries(timeline: Timeline, problems: Sequence[Explanation], *, has_cures: bo
             f"`:` and ``ros2 service call {service.name} {service.interface_type}`` call its service; "
             "`tab` completes the rest."
         )
-    silent = [
-        each.name
-        for each in met
-        if each.kind is EntityKind.SUBSCRIPTION and each.name not in timeline.names_sent
-    ]
-    if silent:
+    if met and (silent := silent_topics(timeline)):
         yield (
-            f"Nothing has been sent on ``{silent[0]}`` yet: `:` and ``ros2 topic pub {silent[0]}``; "
+            f"Nothing has come on ``{silent[0]}`` yet: `:` and ``ros2 topic pub {silent[0]}``; "
             "`tab` completes the rest."
         )
     if own:

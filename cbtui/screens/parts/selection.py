@@ -22,6 +22,7 @@ from cbtui.widgets.lanes.rows import all_lanes
 from cbtui.widgets.lanes.selection import neighbouring_bar
 from lessons.catalogue import lesson_on
 from lessons.lesson import Lesson
+from sim.trace.descriptions import nothing_came, silent_topics
 from sim.trace.events import EntityId
 from sim.trace.model import Nanoseconds, Span
 
@@ -115,8 +116,17 @@ class LaneSelection(ScreenPart):
         def latest() -> Sequence[ExplainedFinding] | None:
             return monitor.findings if self.runs.findings is monitor else None
 
+        def beside() -> str:
+            return nothing_came(silent_topics(self.runs.timeline))
+
         screen = DiagnosesScreen(
-            monitor.findings, self.host.charset, trial, self._lesson_on, latest, lambda: monitor.looked_to
+            monitor.findings,
+            self.host.charset,
+            trial,
+            self._lesson_on,
+            latest,
+            lambda: monitor.looked_to,
+            beside,
         )
         self.host.ask(screen, self._take)
 

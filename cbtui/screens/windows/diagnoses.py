@@ -31,6 +31,7 @@ from cbtui.screens.windows.finding_texts import (
 from cbtui.screens.windows.window import PlainOptionList, WindowScreen
 from cbtui.widgets.key_bar import KeyBar
 from lessons.lesson import Lesson
+from sim.diagnosis import sentence
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.model import Nanoseconds
 
@@ -96,7 +97,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
     problem; it is offered after all trials, so that a key meant for a cure opens none. ``latest`` returns the
     current findings, or None once another run has begun: the list follows them, begins again when there is a
     new problem, and closes with its run. ``as_of`` returns the time of the run that they are about, which may
-    have gone on since.
+    have gone on since; ``beside`` what else is known of it, as a clause.
     """
 
     SCOPE = Scope.DIAGNOSES
@@ -109,12 +110,14 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         lesson_on: Callable[[ExplainedFinding], Lesson | None] = lambda _: None,
         latest: Callable[[], Sequence[ExplainedFinding] | None] | None = None,
         as_of: Callable[[], Nanoseconds] | None = None,
+        beside: Callable[[], str] = lambda: "",
     ) -> None:
         super().__init__(charset)
         self._trial = trial
         self._lesson_on = lesson_on
         self._latest = latest
         self._as_of = as_of
+        self._beside = beside
         self._outdated = Event()
         self._list(findings)
 
@@ -150,7 +153,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         yield PlainOptionList(*self._options())
         with VerticalScroll(can_focus=False):
             yield Static(classes="told")
-        yield Static(_ALL_IS_WELL, classes="well", markup=False)
+        yield Static(classes="well", markup=False)
 
     def on_mount(self) -> None:
         """Highlight the worst finding, and check for new ones regularly."""
@@ -160,12 +163,18 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
     def _begin(self) -> None:
         some = bool(self._findings)
         listed, details = self.query_one(OptionList), self.query_one(VerticalScroll)
-        listed.display, details.display, self.query_one(".well").display = some, some, not some
+        listed.display = details.display = some
+        self._tell_beside()
         listed.highlighted = 0 if some else None
         self._tell_highlighted()
         self._widen()
         if self._trial is not None:
             self.run_worker(partial(self._try_all, self._trial, self._outdated), thread=True)
+
+    def _tell_beside(self) -> None:
+        beside, well = sentence(self._beside()), self.query_one(".well", Static)
+        well.update("\n".join(filter(None, (_ALL_IS_WELL * (not self._findings), beside))))
+        well.display = bool(beside or not self._findings)
 
     def _check_for_new(self) -> None:
         findings = self._findings if self._latest is None else self._latest()
@@ -186,6 +195,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             if listed.get_option_at_index(place).prompt != option.prompt:
                 listed.replace_option_prompt_at_index(place, option.prompt)
         self._entitle()
+        self._tell_beside()
         self._tell_highlighted()
 
     def dismiss(self, result: ChosenStep | None = None) -> AwaitComplete:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 
-from sim.trace.descriptions import node_name, why_waiting
+from sim.trace.descriptions import node_name, silent_topics, why_waiting
 from sim.trace.events import EntityId, RobotMoved, VelocityCommanded
 from sim.trace.figures.concurrency import threads_at_once
 from sim.trace.figures.waiting import waited_by
@@ -79,6 +79,8 @@ class Summary:
     threads_at_once: int
     services: tuple[ServiceFigures, ...]
     robot: RobotFigures | None
+    silent: tuple[str, ...]
+    """The topics of subscriptions on which nothing came."""
 
 
 def summarise(timeline: Timeline) -> Summary:
@@ -96,6 +98,7 @@ def summarise(timeline: Timeline) -> Summary:
         threads_at_once=threads_at_once(timeline, whole),
         services=tuple(_services(timeline.calls)),
         robot=run_to_end(robot_incrementally(timeline, whole)),
+        silent=silent_topics(timeline),
     )
 
 

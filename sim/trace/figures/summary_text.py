@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted
+from sim.trace.descriptions import nothing_came
 from sim.trace.figures.summary import CallbackFigures, RobotFigures, ServiceFigures, Summary
 
 HEADS = ("callback", "group", "calls", "running", "late by", "lost", "errors")
@@ -99,6 +100,8 @@ def _rest(summary: Summary) -> Iterator[str]:
     for service in summary.services:
         yield f"{label:<7}  {service_line(service)}"
         label = ""
+    if silent := nothing_came(summary.silent):
+        yield f"topics   {silent}"
     if summary.robot:
         yield f"robot    {robot_line(summary.robot)}"
 
