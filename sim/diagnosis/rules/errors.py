@@ -163,33 +163,39 @@ class SpinRaised(Rule):
         )
 
 
-_DIED = (NoticeKind.THREAD_DIED, NoticeKind.JOB_DIED)
+_KEPT = {
+    NoticeKind.JOB_DIED: ("a job that was given to a pool", "submit()"),
+    NoticeKind.COROUTINE_DIED: ("a coroutine that was given to a loop", "asyncio.run_coroutine_threadsafe()"),
+}
+"""What a future keeps the exception of, and the function that returns this future."""
 
 
 class ThreadRaised(Rule):
-    """An exception ended a thread of the program's own, or a job of a pool whose result nobody asks for.
+    """An exception ended a thread of the program's own, or a job or coroutine whose result nobody asks for.
 
     If it came out of a callback, that is told.
     """
 
     id = "thread-raised"
-    summary = "an exception ends a thread or a pool's job, and the program goes on without it"
+    summary = "an exception ends a thread, a pool's job or a coroutine, and the program goes on without it"
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each line once, as the engine reports it."""
         for notice in view.timeline.notices:
-            if notice.kind in _DIED and notice.t <= view.end:
+            if notice.kind in (NoticeKind.THREAD_DIED, *_KEPT) and notice.t <= view.end:
                 about = f"{notice.place[0]}:{notice.place[1]}"
                 yield Finding(self, notice.t, notice.t, about=about, event=notice, detail=notice.error)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         notice = found.event
         assert isinstance(notice, Notice)
-        if notice.kind is NoticeKind.JOB_DIED:
+        if notice.kind in _KEPT:
+            what, given_by = _KEPT[notice.kind]
             return Explanation(
-                f"a job that was given to a pool ended by {found.detail}, and nobody asked for its result",
-                "a pool keeps what a job raises in its future, and Python prints nothing of it",
-                "correct the line; ask the future that submit() returns for its result(), in a done-callback",
+                f"{what} ended by {found.detail}, and nobody asked for its result",
+                "what it raises is kept in its future, and Python prints nothing of it",
+                "correct the line; ask the future for its result(), in a done-callback: it is what "
+                f"{given_by} returns",
                 line_location(*notice.place),
             )
         return Explanation(
@@ -312,7 +318,7 @@ class ExceptionCaught(Rule):
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Irrelevant if it ended the program or a thread, which is told, though others went on since."""
         ended, told = timeline.ended, timeline.notices
-        if any(each.kind in _DIED and each.error == found.detail for each in told):
+        if any(each.kind in (NoticeKind.THREAD_DIED, *_KEPT) and each.error == found.detail for each in told):
             return None
         is_told = ended is not None and ended.failed and (ended.error, found.count) == (found.detail, 1)
         return None if is_told else super().weigh(found, timeline)

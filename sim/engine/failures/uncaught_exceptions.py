@@ -5,6 +5,7 @@ import threading
 import traceback
 from collections.abc import Callable
 from concurrent.futures import Future
+from inspect import CO_COROUTINE
 from typing import Any
 
 from sim.engine.failures.failure import place_of
@@ -19,9 +20,9 @@ Tell = Callable[[str, str, SourcePlace, NoticeKind], None]
 def report_uncaught(tell: Tell, path: str, folder: str) -> None:
     """Print the tracebacks of such exceptions, and pass one sentence for each source line to ``tell``.
 
-    It also gets the exception if that ended a thread or a job of a pool, else "", its line, and which it was.
-    ``path`` is the program's file; files in ``folder`` also count as the learner's own. Exceptions from
-    outside these files are only printed.
+    It also gets the exception if that ended a thread, a job of a pool or a coroutine of a loop, else "", its
+    line, and which it was. ``path`` is the program's file; files in ``folder`` also count as the learner's
+    own. Exceptions from outside these files are only printed.
     """
     told: set[str] = set()
 
@@ -59,11 +60,8 @@ def report_uncaught(tell: Tell, path: str, folder: str) -> None:
     def of_job(future: Any) -> None:
         error = vars(future).get("_unheard")
         if isinstance(error, Exception):
-            say(
-                error,
-                "nobody asks the pool's future for its result, so Python says nothing",
-                NoticeKind.JOB_DIED,
-            )
+            whose, kind = _origin(error)
+            say(error, f"nobody asks {whose} future for its result, so Python says nothing", kind)
 
     kind: Any = Future
     kind._exception, kind.__del__ = _KeptException(), of_job
@@ -71,8 +69,22 @@ def report_uncaught(tell: Tell, path: str, folder: str) -> None:
     sys.unraisablehook = of_other
 
 
+def _origin(error: BaseException) -> tuple[str, NoticeKind]:
+    """Return whose future keeps an exception, as a possessive, by the outermost frame that it left."""
+    trace = error.__traceback__
+    frame = None if trace is None else trace.tb_frame
+    if frame is not None and frame.f_code.co_flags & CO_COROUTINE:
+        return "the coroutine's", NoticeKind.COROUTINE_DIED
+    if frame is not None and frame.f_globals.get("__name__", "").startswith("concurrent."):
+        return "the pool's", NoticeKind.JOB_DIED
+    return "the", NoticeKind.OTHER
+
+
 class _KeptException:
-    """The exception in a future of a pool, which is unheard until somebody asks for it."""
+    """The exception in a future of another thread, which is unheard until somebody asks for it.
+
+    That is an attribute of Python's own; functions around ``result()`` would stand in every traceback.
+    """
 
     def __get__(self, future: object, _owner: type) -> BaseException | None:
         if future is None:  # asked of the class, as inspect.getmembers() does

@@ -112,6 +112,8 @@ class NoticeKind(StrEnum):
     """An exception ended a job that the program gave to a pool of threads, and nobody asks for its result."""
     FORGED = "forged"
     """A program records events that only the run may record."""
+    COROUTINE_DIED = "coroutine died"
+    """An exception ended a coroutine that was given to a thread's loop, and nobody asks for its result."""
 
 
 class Notice(TraceEvent, frozen=True, tag="notice"):
