@@ -233,8 +233,16 @@ def test_a_beginners_mistake_is_one_problem_at_its_line(
 @pytest.mark.parametrize("program", ["await_in_vain", "await_in_own_group"])
 def test_an_await_in_vain_is_told_with_what_is_awaited(program: str) -> None:
     timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 4.0)).timeline
-    [told] = [each.explained(timeline).what for each in diagnose(timeline)]
-    assert "tick awaits self.ready, which has not come so far, since 0.500 s" in told
+    [told] = [each.explained(timeline) for each in diagnose(timeline)]
+    assert "tick awaits self.ready, which has not come so far, since 0.500 s" in told.what
+    assert "let on_start complete it" in told.cure
+
+
+def test_of_an_await_of_what_nothing_completes_the_line_is_told_that_makes_it(tmp_path: Path) -> None:
+    program = (PROGRAMS / "await_in_own_group.py").read_text().replace("self.ready.set_result(True)", "pass")
+    timeline = run_program(tmp_path, program, 4.0).timeline
+    [told] = [each.explained(timeline) for each in diagnose(timeline)]
+    assert "nothing in node.py completes self.ready, which line 11 makes" in told.cure
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from sim.diagnosis import diagnose
-from sim.diagnosis.edits.flags import never_set, parties_at
+from sim.diagnosis.edits.flags import asked_at, never_completed, never_set, parties_at
 from sim.diagnosis.rule import Weight
 from sim.trace.timeline import Timeline
 from tests.support.engine_runs import run_program
@@ -86,6 +86,27 @@ def test_what_would_end_a_wait_is_missing_only_if_the_file_has_nothing_like_it(
         f"def a(self):\n    self.it = {made}\n    with self.it:\n        self.it.{wait}\n    self.it.{use}\n"
     )
     assert never_set(str(path), 4) == missing
+
+
+@pytest.mark.parametrize(
+    ("made", "use", "completed", "asked"),
+    [
+        ("Future()", "done()", ("self.it", 2), 0),
+        ("rclpy.task.Future()", "add_done_callback(print)", ("self.it", 2), 0),
+        ("Future()", "set_result(1)", ("", 0), 0),
+        ("Future()", "cancel()", ("", 0), 0),
+        ("Future(); give(self.it)", "done()", ("", 0), 0),
+        ("None; self.it = self.client.call_async(1)", "done()", ("", 0), 2),
+        ("Future()", "done(); self.it = self.client.call_async(1)", ("", 0), 0),
+    ],
+)
+def test_an_awaited_future_is_never_completed_only_if_the_file_makes_it_and_does_nothing_with_it(
+    made: str, use: str, completed: tuple[str, int], asked: int, tmp_path: Path
+) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(f"async def a(self):\n    self.it = {made}\n    await self.it\n    self.it.{use}\n")
+    assert never_completed(str(path), 3) == completed
+    assert asked_at(str(path), 3) == asked
 
 
 def test_a_barrier_has_the_functions_that_wait_at_it_and_none_of_another(tmp_path: Path) -> None:

@@ -1,6 +1,7 @@
 """Loops that only ask for what another function sets: which function, and the edit that lets it run."""
 
 import ast
+from collections.abc import Iterable
 from contextlib import suppress
 
 from sim.diagnosis.edits.program_file import asked_of_file
@@ -60,6 +61,10 @@ def enders(source: SourceEditor, line: int) -> tuple[tuple[str, str, int], ...]:
 @asked_of_file
 def awaited_at(source: SourceEditor, line: int) -> str:
     """Return the one expression that a line awaits; "" if there is none, or another, or it is a call."""
+    return _awaited(source, line)
+
+
+def _awaited(source: SourceEditor, line: int) -> str:
     there = [each.value for each in source.around(ast.Await, line)]
     return ast.unparse(there[0]) if len(there) == 1 and isinstance(there[0], ast.Attribute | ast.Name) else ""
 
@@ -75,19 +80,59 @@ def never_set(source: SourceEditor, line: int) -> str:
     for kind, (way, end, *others) in _ENDED_BY.items():
         awaited = {each for each, _, name in waits if name == way}
         last = awaited.pop().rpartition(".")[2] if len(awaited) == 1 else ""
-        named: list[ast.expr] = [each for each in source.nodes(ast.Attribute) if each.attr == last]
-        named += [each for each in source.nodes(ast.Name) if each.id == last]
-        idle = {id(each.value) for each in source.nodes(ast.Attribute) if each.attr in (way, *others)}
-        idle |= {id(each.context_expr) for each in source.nodes(ast.withitem)}
-        made = {
-            id(target)
-            for each in source.nodes(ast.Assign)
-            if isinstance(each.value, ast.Call) and ast.unparse(each.value.func).rpartition(".")[2] == kind
-            for target in each.targets
-        }
-        if any(id(each) in made for each in named) and all(id(each) in made | idle for each in named):
+        idle: list[ast.expr] = [each.context_expr for each in source.nodes(ast.withitem)]
+        if _makers(source, last, (kind,), (way, *others), idle):
             return next(f"{each}.{end}()" for each, _, name in waits if name == way)
     return ""
+
+
+@asked_of_file
+def never_completed(source: SourceEditor, line: int) -> tuple[str, int]:
+    """Return the future that a line awaits, and the line that makes it, if nothing in the file completes it.
+
+    "" and 0 if something may, as what it is handed on to, or if the file does not make it.
+    """
+    future = _awaited(source, line)
+    idle = [each.value for each in source.nodes(ast.Await)]
+    asking = ("done", "result", "cancelled", "exception", "add_done_callback")
+    makers = _makers(source, future.rpartition(".")[2], ("Future", "create_future"), asking, idle)
+    return (future, makers[0].lineno) if makers else ("", 0)
+
+
+@asked_of_file
+def asked_at(source: SourceEditor, line: int) -> int:
+    """Return the line of the ``call_async()`` whose future a line awaits; 0 for none."""
+    future = _awaited(source, line)
+    around = source.around(ast.AsyncFunctionDef, line)
+    where = around[-1] if around and "." not in future else source.tree
+    made = [each for each in source.nodes(ast.Assign, where) if future in map(ast.unparse, each.targets)]
+    values = {each.lineno: ast.unparse(each.value).partition("(")[0] for each in made}
+    asks = {line: value for line, value in values.items() if value != "None"}
+    return min(asks, default=0) if all(each.endswith(".call_async") for each in asks.values()) else 0
+
+
+def _makers(
+    source: SourceEditor,
+    last: str,
+    kinds: tuple[str, ...],
+    asking: tuple[str, ...],
+    idle: Iterable[ast.expr],
+) -> list[ast.Assign]:
+    """Return the statements that make what has a name, by a call of some kinds, if all else only asks it.
+
+    That is by its methods ``asking``, or where it is one of the expressions ``idle``.
+    """
+    named: list[ast.expr] = [each for each in source.nodes(ast.Attribute) if each.attr == last]
+    named += [each for each in source.nodes(ast.Name) if each.id == last]
+    made = [
+        each
+        for each in source.nodes(ast.Assign)
+        if isinstance(each.value, ast.Call) and ast.unparse(each.value.func).rpartition(".")[2] in kinds
+        if any(ast.unparse(target).rpartition(".")[2] == last for target in each.targets)
+    ]
+    known = {id(target) for each in made for target in each.targets} | {id(each) for each in idle}
+    known |= {id(each.value) for each in source.nodes(ast.Attribute) if each.attr in asking}
+    return made if all(id(each) in known for each in named) else []
 
 
 def wait_at_most(source: SourceEditor, line: int) -> None:

@@ -194,8 +194,8 @@ class ThreadRaised(Rule):
             return Explanation(
                 f"{what} ended by {found.detail}, and nobody asked for its result",
                 "what it raises is kept in its future, and Python prints nothing of it",
-                "correct the line; ask the future for its result(), in a done-callback: it is what "
-                f"{given_by} returns",
+                f"correct the line; ask the future that {given_by} returns for its result(), in "
+                "a done-callback",
                 line_location(*notice.place),
             )
         return Explanation(

@@ -19,9 +19,9 @@ from sim.diagnosis.rule import (
     made_at,
     place_of,
 )
+from sim.diagnosis.rules.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.rules.edits import edits_for_rounds
 from sim.diagnosis.rules.locks import weight_beside_lock
-from sim.diagnosis.rules.waiting import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import awaited_lock, lock_keeper, lock_taker, often, threads_for, who, with_threads
 from sim.quantities.durations import duration

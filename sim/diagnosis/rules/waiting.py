@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits, who_moves
-from sim.diagnosis.edits.flags import awaited_at, event_setters
+from sim.diagnosis.edits.flags import event_setters
 from sim.diagnosis.edits.spins import spin_beside, spins_in_turn, started_late, taken_away
 from sim.diagnosis.rule import (
     CodeLocation,
@@ -19,6 +19,7 @@ from sim.diagnosis.rule import (
     loop_beside_spin,
     place_of,
 )
+from sim.diagnosis.rules.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.rules.edits import not_reached
 from sim.diagnosis.rules.locks import let_return, weight_beside_lock
 from sim.diagnosis.time_limits import ends_by_itself
@@ -34,11 +35,11 @@ from sim.diagnosis.words import (
     who,
     who_waits,
 )
-from sim.quantities.durations import duration, timestamp
+from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import node_name
 from sim.trace.events import EntityId, EntityKind, GroupKind, NodeId, Reason
-from sim.trace.model import AWAIT, EntityInfo, Nanoseconds, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 HALF_A_SECOND = SECOND // 2
@@ -148,26 +149,6 @@ class GroupStarvation(_KeptWaiting):
             room = Remedy((found.culprit,))
             cure = f"{room.words(timeline)}, and {let_complete(place)}"
         return self._explained(found, timeline, held, why, cure, room)
-
-
-def awaits_in_vain(subject: str, place: CodeLocation | None, since: Nanoseconds) -> str:
-    """Return a clause on an await of a future that does not come."""
-    future = awaited_at(place.file, place.first_line) if place else ""
-    awaits = f"{future}, which" if future else "what"
-    return f"{subject} awaits {awaits} has not come so far, since {timestamp(since)}"
-
-
-def let_complete(place: CodeLocation | None) -> str:
-    """Return what to do about the future that is awaited at a place."""
-    setters = event_setters(place.file, place.first_line) if place else ()
-    return f"let {listed(setters)} complete it" if setters else "make sure that something completes it"
-
-
-def awaits_in_vain_since(entity: EntityId, window: Window, timeline: Timeline) -> Nanoseconds | None:
-    """When a callback began an await that lasts, of a future that is not the reply to a call of its."""
-    last = timeline.positions_of(entity, Window(window.start, window.end + 1))[-1:]
-    asks = any(each.caller == entity for each in timeline.moment(window.end).pending_calls)
-    return next((each.start for each in last if each.call == AWAIT and each.end is None and not asks), None)
 
 
 class NoFreeWorker(_KeptWaiting):
