@@ -26,7 +26,7 @@ from cbtui.engines.process_tree import MARK, ProcessTree
 from cbtui.engines.resource_guard import ResourceGuard
 from cbtui.terminal.interrupts import deferred_interrupt
 from sim.engine.commands import Command, Stop, encode
-from sim.engine.failures.crash_dump import ASKED, overflowed, place_in, timed_out
+from sim.engine.failures.crash_dump import ASKED, left_process, overflowed, place_in, timed_out
 from sim.engine.outbox import TRACE_CLOSED
 from sim.engine.programs.ending import GRACE, TO_LEAVE
 from sim.engine.setup import RunSetup
@@ -240,14 +240,22 @@ class ProcessSession:
         if code == TRACE_CLOSED:
             return "the program closed files of the engine's, as os.closerange does; close only your own"
         if code is None or code >= 0:
-            held_up = "code in C held up virtual time for seconds, as only --clock real allows"
-            return held_up if timed_out(stack_dump) else f"the engine ended with exit code {code}"
+            return _exited(code, stack_dump)
         name = signal.Signals(-code).name if -code in set(signal.Signals) else str(-code)
         if -code == signal.SIGKILL:
             return f"the engine was killed by signal {-code}"
         if overflowed(stack_dump):
             return f"the program called itself until its stack was full, and crashed with {name}"
         return f"the program crashed with {name}"
+
+
+def _exited(code: int | None, stack_dump: str) -> str:
+    """Why an engine exited that should not, by its exit code."""
+    if timed_out(stack_dump):
+        return "code in C held up virtual time for seconds, as only --clock real allows"
+    if left_process(stack_dump):
+        return f"the program ended its process by os._exit(), with exit code {code}"
+    return f"the engine ended with exit code {code}"
 
 
 def _engine(

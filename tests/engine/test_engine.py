@@ -138,7 +138,9 @@ def test_an_exception_in_a_callback_names_its_line(tmp_path: Path) -> None:
 
 def test_a_program_that_leaves_the_process_is_a_lost_engine(tmp_path: Path) -> None:
     run = run_program(tmp_path, "import os\nos._exit(7)")
-    assert run.loss == "the engine ended with exit code 7 (node.py:2, in <module>)"
+    assert (
+        run.loss == "the program ended its process by os._exit(), with exit code 7 (node.py:2, in <module>)"
+    )
 
 
 def test_printing_reaches_the_trace_line_by_line(tmp_path: Path) -> None:

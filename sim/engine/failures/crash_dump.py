@@ -80,6 +80,13 @@ def place_in(crash_dump: str, programs: Iterable[str]) -> str:
     return ""
 
 
+def left_process(crash_dump: str) -> bool:
+    """Return whether a program ended the process by ``os._exit()``."""
+    frames = [each for text in _threads(crash_dump)[:1] for each in _frames(text)]
+    is_left = bool(frames[1:]) and frames[0].function == "leave_with_crash_dump"
+    return is_left and not frames[1].file.startswith(_MODEL)
+
+
 def overflowed(crash_dump: str) -> bool:
     """Return whether the crashed thread had more nested calls than the dump shows."""
     return any(_CUT in text for text in _threads(crash_dump)[:1])
