@@ -299,6 +299,7 @@ async def test_what_there_is_to_say_is_whole_as_the_window_opens() -> None:
         await settle(pilot)
         told = app.screen.query_one(".told")
         assert told.size.height > 3
+        assert not app.screen.query_one(".well").display
         assert "A mutually exclusive group lets one callback in at a time" in text_of(app)
 
 

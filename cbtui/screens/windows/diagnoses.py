@@ -172,8 +172,9 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             self.run_worker(partial(self._try_all, self._trial, self._outdated), thread=True)
 
     def _tell_beside(self) -> None:
-        beside, well = sentence(self._beside()), self.query_one(".well", Static)
-        well.update("\n".join(filter(None, (_ALL_IS_WELL * (not self._findings), beside))))
+        beside, well = self._beside(), self.query_one(".well", Static)
+        told = (_ALL_IS_WELL * (not self._findings), sentence(beside) if beside else "")
+        well.update("\n".join(filter(None, told)))
         well.display = bool(beside or not self._findings)
 
     def _check_for_new(self) -> None:
