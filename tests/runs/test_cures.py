@@ -94,6 +94,10 @@ FIT = "define it with the parameters it is called with (diff)"
         ("spin_with_timeout", [DONE, AWAIT.format("tick")]),
         ("event_never_set", ["wait for 0.1 s at most (diff)"]),
         ("barrier_of_more", ["make it a Barrier(1) (diff)"]),
+        (
+            "never_awaited",
+            [f"put await before is_well(), in an async def tick, and {APART.partition(', and')[0]} (diff)"],
+        ),
         ("wait_for_event", [APART.replace("tick", "go")]),
         ("semaphore_in_reentrant_group", ["give take a callback group of its own"]),
         ("job_waits_for_job", []),

@@ -1,4 +1,4 @@
-"""Edits of a callback's parameters and return value."""
+"""Edits of a callback's parameters, of what it returns, and of whether it is a coroutine."""
 
 import ast
 from collections.abc import Sequence
@@ -102,6 +102,25 @@ def return_response(source: SourceEditor, line: int) -> None:
     if len(callback.args.args) != 2 + _own(source, callback) or returns:
         raise NotSimpleError
     _return_at_end(source, callback, callback.args.args[-1].arg)
+
+
+def await_coroutine(source: SourceEditor, line: int) -> None:
+    """Await what a line makes by its only call of an ``async def``; its function becomes one, too.
+
+    The program itself does not call that function: rclpy awaits it.
+    """
+    coroutines = {each.name for each in source.nodes(ast.AsyncFunctionDef)}
+    call = source.call_at(line, coroutines.__contains__)
+    inside = (ast.Call, ast.Attribute, ast.Subscript, ast.keyword, ast.Lambda, ast.GeneratorExp, ast.ListComp)
+    parts = (part for each in source.nodes(ast.AST) if isinstance(each, inside) for part in ast.walk(each))
+    if sum(part is call for part in parts) != 1:  # as a call, it is inside itself
+        raise NotSimpleError
+    if isinstance(source.function_at(line), ast.FunctionDef):
+        function = source.uncalled_at(line)
+        if source.nodes(ast.Yield, function):
+            raise NotSimpleError
+        source.insert_before(function, "async ")
+    source.insert_before(call, "await ")
 
 
 def _return_at_end(source: SourceEditor, callback: ast.FunctionDef, name: str) -> None:

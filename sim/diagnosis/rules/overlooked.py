@@ -1,8 +1,10 @@
 """Rules on answers of rclpy that a program makes nothing of, and on slips that Python passes over."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, line_location
+from sim.diagnosis.edits.functions import await_coroutine
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, line_location
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import awaiting, must_answer, who
 from sim.trace.events import EntityId, EntityKind, GroupKind, Notice, NoticeKind
@@ -74,11 +76,14 @@ class Slip(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         notice = _notice_of(found)
-        advice = notice.advice
-        if notice.kind is NoticeKind.NEVER_AWAITED and (client := _client_beside(notice.entity, timeline)):
+        advice, place = notice.advice, line_location(*notice.place)
+        is_made = notice.kind is NoticeKind.NEVER_AWAITED
+        remedies = by_edit(place, advice, await_coroutine) if is_made else ()
+        if is_made and (client := _client_beside(notice.entity, timeline)):
             own = f"give {who(notice.entity, timeline)} a callback group of its own"
             advice += f"; if it awaits a reply of {client}, {own} too, for it keeps its group meanwhile"
-        return Explanation(notice.problem, _WHY[notice.kind], advice, line_location(*notice.place))
+            remedies += tuple(replace(each, own_groups=(notice.entity,)) for each in remedies)
+        return Explanation(notice.problem, _WHY[notice.kind], advice, place, remedies=remedies)
 
 
 def _client_beside(entity: EntityId, timeline: Timeline) -> str:

@@ -8,7 +8,7 @@ from textwrap import indent
 import pytest
 
 from sim.diagnosis.edits.code_edit import CodeEdit
-from sim.diagnosis.edits.functions import fit_parameters, hand_over_function, return_response
+from sim.diagnosis.edits.functions import await_coroutine, fit_parameters, hand_over_function, return_response
 from sim.diagnosis.edits.groups import give_own_group
 from sim.diagnosis.edits.locks import make_reentrant
 from sim.diagnosis.edits.names import rename, rename_definition
@@ -312,3 +312,31 @@ def test_what_is_taken_from_a_reply_is_taken_once_that_is_there(asked: str, awai
     )
     made = next(n for n, each in enumerate(text.splitlines(), 1) if "create_timer" in each)
     assert f"+        {awaited}  # here" in (changed(text, await_reply, made) or [])
+
+
+@pytest.mark.parametrize(
+    ("statement", "awaited"),
+    [
+        ("self.look()", "await self.look()"),
+        ("on = self.look() and self.on", "on = await self.look() and self.on"),
+        ("asyncio.run(self.look())", None),
+        ("self.look().result()", None),
+        ("found = lambda: self.look()", None),
+    ],
+)
+def test_a_coroutine_that_a_callback_drops_is_awaited_where_it_is_made_and_not_handed_on(
+    statement: str, awaited: str | None
+) -> None:
+    text = node(
+        f"""
+        async def look(self):
+            return True
+
+        def tick(self):
+            {statement}  # here
+        """
+    )
+    lines = ["-    def tick(self):", f"-        {statement}  # here"]
+    lines += ["+    async def tick(self):", f"+        {awaited}  # here"]
+    assert changed(text, await_coroutine) == (lines if awaited else None)
+    assert changed(text.replace("return True", "self.tick()"), await_coroutine) is None
