@@ -3,12 +3,14 @@
 import pytest
 
 import sim.ros.rclpy as rclpy
+from sim.diagnosis import diagnose
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.ros.scheduling.events_executor import EventsExecutor
 from sim.ros.scheduling.executors import SingleThreadedExecutor
 from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, once, spin
 from tests.support.builder import ns
+from tests.support.engine_runs import run_lesson
 from tests.support.simulation import Simulation
 
 
@@ -131,7 +133,7 @@ def test_calls_of_one_callback_on_all_threads_are_no_reason_for_one_thread_more(
         node = Node("n")
 
         def count(_: object) -> None:
-            simulation.sleep(2.0)  # as calls do that wait for one lock
+            simulation.sleep(2.0)
 
         def quick() -> None: ...
 
@@ -147,8 +149,19 @@ def test_calls_of_one_callback_on_all_threads_are_no_reason_for_one_thread_more(
     assert run.one("no-free-worker").culprit == run.trace.entity("count")
     told = run.explained("no-free-worker")
     assert told.what == "quick waited 1.5 s: 3 calls of count kept a thread each; no thread was free"
-    assert told.cure.startswith("give count a MutuallyExclusiveCallbackGroup")
-    assert "num_threads" not in told.cure
+    # Nothing about locks, as none is waited for.
+    assert told.cure == (
+        "give count a MutuallyExclusiveCallbackGroup: then its calls wait outside, without a thread"
+    )
+
+
+def test_calls_that_wait_for_a_lock_are_told_where_they_wait() -> None:
+    timeline = run_lesson("lock-or-group", 6.0).timeline
+    [found] = [each for each in diagnose(timeline) if each.rule.id == "no-free-worker"]
+    assert found.explained(timeline).cure == (
+        "give count_with_lock a MutuallyExclusiveCallbackGroup: then its calls wait outside, "
+        "without a thread; for a lock they wait inside, and one more thread would wait there too"
+    )
 
 
 def test_groups_of_their_own_and_two_threads_are_well() -> None:

@@ -179,10 +179,10 @@ class NoFreeWorker(_KeptWaiting):
         elif beside_itself > 1:
             busy = f"{beside_itself} calls of {culprit} kept a thread each; no thread was free"
             room = Remedy((found.culprit,))
-            cure = (
-                f"give {culprit} a MutuallyExclusiveCallbackGroup: then its calls wait outside, without a "
-                "thread; for a lock they wait inside, and one more thread would wait there too"
-            )
+            outside = "then its calls wait outside, without a thread"
+            cure = f"give {culprit} a MutuallyExclusiveCallbackGroup: {outside}"
+            if self.kind(found, timeline) == "threads-wait-for-lock":
+                cure += "; for a lock they wait inside, and one more thread would wait there too"
         else:
             busy = f"all threads were busy, one with {culprit}"
         why = "its group would have let it in, but a callback also needs a thread to run on"
