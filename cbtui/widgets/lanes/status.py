@@ -87,7 +87,8 @@ class LaneStatus:
             # One callback may run several times at once.
             running = sum(entities[span.entity].group == group.id for span in self.moment.running.values())
             calls = max(holders, running)
-            state = f"{'' if waiting else 'open, '}{calls} run" if calls else "open"
+            run = "runs" if calls == 1 else "run"
+            state = f"{'' if waiting else 'open, '}{calls} {run}" if calls else "open"
         else:
             state = "held" if holders else "free"
         if waiting:

@@ -176,7 +176,7 @@ def test_a_reentrant_group_shows_how_many_run_at_once() -> None:
 
 def test_an_open_group_tells_how_many_run_and_wait() -> None:
     timeline = told(dummy_server_one_thread_run(), until=6.0)
-    assert "│ 1 run, 1 waits" in plain(LanePainter().paint(timeline, *last(10, 6.0), 80, 8).rows)
+    assert "│ 1 runs, 1 waits" in plain(LanePainter().paint(timeline, *last(10, 6.0), 80, 8).rows)
 
 
 def test_a_timer_that_found_no_worker_is_marked_late() -> None:
