@@ -107,7 +107,7 @@ def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) ->
     robot = timeline.robot(at)
     goes_on = [f"{name} still runs" for name in running]
     if robot is not None and max(abs(robot.linear), abs(robot.angular)) >= _MOVES:
-        goes_on.append("the robot drives on" if abs(robot.linear) >= _MOVES else "the robot turns on")
+        goes_on.append(f"the robot still {'drives' if abs(robot.linear) >= _MOVES else 'turns'}")
     first = f"{first}: {', '.join(goes_on)}" if goes_on and not then else first
     return (first, *_waits(timeline, at, at))
 
@@ -212,7 +212,7 @@ def _blocked(blocked: Blocked, deed: Deed, timeline: Timeline) -> str:
 
 def _in_its_call(blocked: Blocked, timeline: Timeline) -> str:
     caller = name_of(blocked.entity, timeline) if blocked.entity else "the program"
-    return f"{caller} has stood in its call of {blocked.service} since {timestamp(blocked.start)}"
+    return f"{caller} has waited in its call of {blocked.service} since {timestamp(blocked.start)}"
 
 
 def _lost(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:

@@ -99,6 +99,15 @@ def test_a_step_to_a_moment_without_a_decision_is_told_at_its_time() -> None:
     assert narration(timeline, ns(1.5))[0].startswith("1.000 s: ")
 
 
+@pytest.mark.parametrize(("linear", "angular", "does"), [(0.1, 0.2, "drives"), (0.0, 0.2, "turns")])
+def test_a_step_in_which_the_robot_moves_on_says_how(linear: float, angular: float, does: str) -> None:
+    run = Run()
+    run.callback(run.timer(run.exclusive(run.node("/n")), "tick", 1.0), run.thread("MainThread"), 1.0, 3.0)
+    run.robot(1.0, linear=linear, angular=angular)
+    first, *_ = narration(told(run, until=1.5), ns(1.4), stepped=True)
+    assert first == f"nothing happens up to 1.400 s: tick still runs, the robot still {does}"
+
+
 def test_decisions_of_a_moment_are_told_in_the_order_of_the_trace() -> None:
     run = Run()
     node = run.node("/n")
@@ -179,7 +188,7 @@ def test_a_callback_that_stands_in_its_call_is_told_after_it_has_begun_to() -> N
     assert narration(timeline, ns(3.0)) == (
         "2.500 s: heard is ready",
         "heard has waited since 2.500 s, 1 queued: group A held by ask",
-        "ask has stood in its call of /ask since 1.500 s",
+        "ask has waited in its call of /ask since 1.500 s",
     )
     assert not any("has stood" in told for told in narration(timeline, ns(1.5)))
 
