@@ -54,6 +54,14 @@ def test_a_service_is_called_as_its_type_allows(services: list[str], said: str, 
     assert said not in over["tries"].splitlines()
 
 
+@pytest.mark.parametrize("spins", ["", "rclpy.spin_once(Node('other'), timeout_sec=0.1)"])
+def test_no_call_is_suggested_of_a_node_that_nobody_spins(spins: str, tmp_path: Path) -> None:
+    code = f"node.create_timer(0.1, print)\n{_SET_BOOL}\nimport time\n{spins}\ntime.sleep(1.0)"
+    run = run_program(tmp_path, _NODE.format(code).partition("rclpy.spin_once(node")[0])
+    run.events.pop()
+    assert "calls ``/switch``" not in page_of_program("node.py", "virtual", run.timeline)["tries"]
+
+
 @pytest.mark.parametrize(
     ("place", "has_cures", "said"),
     [

@@ -1,7 +1,7 @@
 """The guide to a learner's own file as Markdown: what was found in its run, and what to try."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from itertools import islice
 
 from cbtui.runs.setup.changeable import is_set_bool, programs_own
@@ -11,7 +11,7 @@ from sim.diagnosis import Explanation, with_stop
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted, plural
 from sim.trace.descriptions import executor_label, silent_topics
-from sim.trace.events import EntityKind
+from sim.trace.events import EntityKind, NodeId, Reason
 from sim.trace.model import EntityInfo
 from sim.trace.timeline import Timeline
 
@@ -50,6 +50,12 @@ def page_of_program(
         "tries": f"## What to try\n\n{tries}\n",
         "signs": _SIGNS,
     }
+
+
+def unspun_nodes(timeline: Timeline) -> Set[NodeId]:
+    """Return the nodes with a callback that waits now as nobody spins them."""
+    waits = timeline.moment(timeline.end).waiting.values()
+    return {timeline.entities[each.entity].node for each in waits if each.reason is Reason.NOBODY_SPINS}
 
 
 def _found(timeline: Timeline, unmet: Sequence[UnmetChange]) -> str:
@@ -95,7 +101,9 @@ def _tries(timeline: Timeline, problems: Sequence[Explanation], *, has_cures: bo
         line = "" if problems[0].place is None else "its line and "
         what = "tries a cure" if has_cures else "says what to do"
         yield f"{with_stop(as_it_is(problems[0].what))} `d` {line and 'shows '}{line}{what}{more}."
-    met = own if timeline.ended is None else []  # nothing answers or hears once the run is over
+    unspun = unspun_nodes(timeline)
+    answers = timeline.ended is None and timeline.executors  # nothing does before a spin and after the end
+    met = [each for each in own if each.node not in unspun] if answers else []
     services = [each for each in met if each.kind is EntityKind.SERVICE]
     calls = next((each.name for each in services if is_set_bool(each)), None)
     if calls is not None:
