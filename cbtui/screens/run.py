@@ -309,7 +309,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
             self.subject.executor,
             self._exports.percent,
             self.steps,
-            self.runs.findings.nothing_moves_since(),
+            self.runs.findings.standstill(),
             self.runs.pace.slow,
         )
         self.query_one(CodeView).over = not run.alive

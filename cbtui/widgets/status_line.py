@@ -8,9 +8,11 @@ from textual.reactive import reactive
 
 from cbtui.learning.stage import LessonStep, StepState
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
+from cbtui.runs.live.findings import Standstill
 from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import fit
+from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
@@ -58,7 +60,9 @@ class RunStatus:
     steps: tuple[LessonStep, ...] = ()
     """The steps through the lesson, if there are any."""
     still: Nanoseconds | None = None
-    """Nanoseconds since the last callback stopped for ever; None if something moves."""
+    """Nanoseconds since the last callback stopped for ever; None if others run."""
+    moves: str = ""
+    """The one thread that goes on beside the callbacks that stopped; "" for none."""
 
 
 _TENTH = 0.1
@@ -80,13 +84,13 @@ def status_of(
     usual_executor: str,
     exported: int | None = None,
     steps: tuple[LessonStep, ...] = (),
-    still_since: Nanoseconds | None = None,
+    still: Standstill | None = None,
     slow: float | None = None,
 ) -> RunStatus:
     """Return the status of a run; until its executor appears, ``usual_executor`` is shown.
 
-    ``still_since`` is the time at which the last callback stopped for ever, None if something moves; ``slow``
-    is how fast the run goes if that is less than the speed that was asked for.
+    ``still`` tells that all callbacks that run have stopped for ever, None if others do; ``slow`` is how fast
+    the run goes if that is less than the speed that was asked for.
     """
     timeline, recording = run.timeline, run.recording
     at = playhead.now(timeline.end)
@@ -108,7 +112,8 @@ def status_of(
         recorded_bytes=0 if recording is None else recording.size,
         exported=exported,
         steps=steps,
-        still=None if still_since is None else timeline.end - still_since,
+        still=None if still is None else timeline.end - still.since,
+        moves="" if still is None else short_thread(still.moves),
     )
 
 
@@ -153,7 +158,7 @@ def status_row(status: RunStatus, width: int, turn: int = 0) -> list[TextRun]:
     """
     title = TextRun(f" {status.title}", _STRONG)
     state = _state(status, turn)
-    brief_state = TextRun(state.text.removesuffix(_STILL), state.ink)
+    brief_state = TextRun(state.text.removesuffix(_still(status)), state.ink)
     pace = TextRun(f"  {status.pace}", _PLAIN)
     brief = TextRun(f"  {status.brief_pace}", _PLAIN)
     steps, step = _steps(status.steps), _steps(_about_current(status.steps))
@@ -194,11 +199,14 @@ def _state(status: RunStatus, turn: int) -> TextRun:
     if status.state is RunState.STARTING:
         return TextRun(f"{_TURNING[turn % len(_TURNING)]} STARTING", _STRONG)
     if status.state is RunState.LIVE and status.still is not None:
-        return TextRun(f"✗ STUCK {duration(status.still)}{_STILL}", _WARN)
+        return TextRun(f"✗ STUCK {duration(status.still)}{_still(status)}", _WARN)
     return _STATES[status.state]
 
 
-_STILL = ", nothing moves"
+def _still(status: RunStatus) -> str:
+    return f", only {status.moves} moves" if status.moves else ", nothing moves"
+
+
 _TURNING = "◐◓◑◒"
 _STEP_INKS = {StepState.DONE: _PLAIN, StepState.CURRENT: _STRONG, StepState.OPEN: _FAINT}
 

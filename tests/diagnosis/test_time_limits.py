@@ -74,7 +74,7 @@ def test_a_wait_with_a_timeout_is_told_with_its_end(tmp_path: Path, wait: str, t
     (found,) = (each.explanation for each in monitor.findings if each.is_problem)
     assert found.what.startswith(told)
     assert (found.for_ever, found.until) == (False, 9 * SECOND)
-    assert monitor.nothing_moves_since() is None
+    assert monitor.standstill() is None
 
 
 def test_a_timeout_on_the_real_clock_is_seen_too(tmp_path: Path) -> None:
@@ -118,7 +118,7 @@ def test_a_program_that_sleeps_before_it_spins_has_not_spun_so_far(tmp_path: Pat
 def test_a_loop_that_ends_by_itself_is_no_deadlock(tmp_path: Path, loop: str, is_endless: bool) -> None:
     start = "future, tries, end = self.call(), 160, time.monotonic() + 8.0\n"
     monitor = found_in(tmp_path, f"{start}{loop}\n    time.sleep(0.05)", 5.0)
-    assert (monitor.nothing_moves_since() is not None) is is_endless
+    assert (monitor.standstill() is not None) is is_endless
 
 
 def test_of_what_a_recording_calls_a_program_only_a_file_is_read(tmp_path: Path) -> None:

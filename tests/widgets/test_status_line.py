@@ -85,6 +85,7 @@ def test_a_speed_however_small_is_not_told_as_none(
 def test_a_program_in_which_nothing_moves_is_not_only_live() -> None:
     still = replace(LIVE, still=ns(4.1))
     assert "✗ STUCK 4.1 s, nothing moves" in line(still, 100)
+    assert "✗ STUCK 4.1 s, only Thread-1 moves" in line(replace(still, moves="Thread-1"), 100)
     assert "◂ BACK 2.0 s" in line(replace(still, back=ns(2.0)), 100)
 
 

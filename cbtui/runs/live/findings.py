@@ -3,11 +3,12 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from time import monotonic
+from typing import NamedTuple
 
 from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
 from sim.diagnosis.edits.flags import only_sleeps
 from sim.quantities.plural import counted
-from sim.trace.events import Doing
+from sim.trace.events import Doing, Logged
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -59,6 +60,13 @@ class ExplainedFinding:
         return self.at is not None or self.explanation.place is not None
 
 
+class Standstill(NamedTuple):
+    """All callbacks that still run are stuck; ``moves`` is the one thread that goes on beside them, or ""."""
+
+    since: Nanoseconds
+    moves: str = ""
+
+
 class FindingsMonitor:
     """Updates the findings of the rules in a timeline. Not thread-safe, like the timeline.
 
@@ -83,8 +91,8 @@ class FindingsMonitor:
         endless = (each.finding for each in self.findings if each.explanation.for_ever)
         return next((found for found in endless if found.at <= at), None)
 
-    def nothing_moves_since(self) -> Nanoseconds | None:
-        """Since when the program cannot go on, as all that it still runs is stuck; None if it can or logs."""
+    def standstill(self) -> Standstill | None:
+        """Since when all callbacks that run are stuck; None if others run, or several threads move."""
         timeline = self._timeline
         found = self.stuck_at(timeline.end)
         if found is None or timeline.end - found.at < _STANDS_STILL:
@@ -93,15 +101,23 @@ class FindingsMonitor:
             entity for each in self.findings if each.explanation.for_ever for entity in each.finding.stuck
         }
         since = Window(timeline.end - _STANDS_STILL, timeline.end + 1)
-        if timeline.logs_until(since.start) < len(timeline.logs):
-            return None
-        if self._own_threads_go_on(since.start):
-            return None
         ran = (span.entity for thread in timeline.threads for span in timeline.spans_on(thread, since))
-        return found.at if stuck.issuperset(ran) else None
+        if not stuck.issuperset(ran):
+            return None
+        moving = self._own_threads_moving(since.start) | self._threads_logging(since.start)
+        if len(moving) > 1 or "" in moving:
+            return None
+        return Standstill(found.at, *moving)
 
-    def _own_threads_go_on(self, since: Nanoseconds) -> bool:
-        """Whether a thread that the program has started computes, sleeps, went on, or may do so with a lock.
+    def _threads_logging(self, since: Nanoseconds) -> set[str]:
+        """The threads that have logged, "" for an unknown one."""
+        timeline = self._timeline
+        lines = timeline.logs[timeline.logs_until(since) :]
+        threads = (timeline.threads.get(each.thread) if isinstance(each, Logged) else None for each in lines)
+        return {"" if thread is None else thread.name for thread in threads}
+
+    def _own_threads_moving(self, since: Nanoseconds) -> set[str]:
+        """The threads that the program has started and that compute, sleep, went on, or may with a lock.
 
         Sleeping in a loop that does nothing else is no going on.
         Whoever has a lock and is not known to wait may compute, and release it.
@@ -109,13 +125,12 @@ class FindingsMonitor:
         timeline = self._timeline
         own = timeline.own_threads_at(timeline.end)
         acts = (each for each in own if each.doing in (Doing.SLEEPS, Doing.COMPUTES))
-        idle = (only_sleeps(each.frames[-1][0], each.frames[-1][2]) for each in acts)
-        if own != timeline.own_threads_at(since) or not all(idle):
-            return True
+        moving = {each.name for each in acts if not only_sleeps(each.frames[-1][0], each.frames[-1][2])}
+        moving |= {each.name for each in {*own} ^ {*timeline.own_threads_at(since)}}
         waiting = {each.name for each in own} | {each.name for each in timeline.threads.values()}
         stands = (timeline.position_on(thread, timeline.end) for thread in timeline.threads)
         wanted = (each for each in stands if each is not None and not each.is_left)
-        return any(each.taken_by and each.taken_by not in waiting for each in wanted)
+        return moving | {each.taken_by for each in wanted if each.taken_by and each.taken_by not in waiting}
 
     def update_when_due(self) -> bool:
         """Update if it is time, the run has grown much, or its engine has reported something.
