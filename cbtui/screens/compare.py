@@ -165,7 +165,9 @@ class CompareScreen(SizedScreen[None]):
             TextRun(f"   {duration(shown.length)} on screen", _FAINT),
         )
         for number, side in enumerate(self._sides):
-            self.query_one(f"#run{number}", HeadingLine).words = about(number, side)
+            self.query_one(f"#run{number}", HeadingLine).words = about(
+                number, side, self.size.width, self.charset
+            )
             lanes = self._lanes(number)
             lanes.styles.max_height = None if self.has_class(_LANES_ALONE) else (self.size.height - 1) // 4
             # Nothing is known of a run after its end, even of a callback that was still running.
@@ -335,6 +337,7 @@ class CompareScreen(SizedScreen[None]):
         meant = keymap_of(self.app).on(event.key, Scope.COMPARE, Scope.LESSON)
         if meant and canonical(event.key) not in self.query_one(KeyBar).in_force():
             for reason in why_nothing(meant, self.charset):
+                clear_hints(self.app)  # two would reach down to the verdict
                 self.notify(reason, markup=False)
 
     def action_deselect(self) -> None:

@@ -2,29 +2,39 @@
 
 from collections.abc import Sequence
 
+from rich.cells import cell_len
+
 from cbtui.keys.action import KeyAction, Scope
 from cbtui.keys.refused import NOT_IN_COMPARISON
 from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.compared_runs import ComparedSide
+from cbtui.text.cells import fit
 from sim.quantities.durations import timestamp
 from sim.trace.descriptions import executor_label
 from sim.trace.figures.comparison_rows import RUNS
 
+_GAP = "   "
 _PLAIN = Ink(Role.TEXT)
 _STRONG = Ink(Role.STRONG)
 
 
-def about(number: int, side: ComparedSide) -> tuple[TextRun, ...]:
-    """Return the line above a run's lanes: its name, end and failure, what it lost and its executor."""
+def about(number: int, side: ComparedSide, width: int, charset: Charset) -> tuple[TextRun, ...]:
+    """Return the line above a run's lanes: its name, end and failure, what it lost and its executor.
+
+    A failure that is too long for the width is cut.
+    """
     timeline = side.timeline
     state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
     lost = f"lost {timeline.dropped(timeline.end)}"
     ended = timeline.ended
+    name = f" {RUNS[number]}  {side.name}"
     failure = ended.reason if ended is not None and ended.failed else ""
+    room = width - len(f"{name}{_GAP}{state}{_GAP}{_GAP}{lost}")
+    if cell_len(failure) > room:
+        failure = fit(failure, max(0, room), charset).rstrip()
     facts = [text for text in (state, failure, lost, executor_label(timeline)) if text]
-    name = TextRun(f" {RUNS[number]}  {side.name}", _STRONG)
-    return (name, *(TextRun(f"   {fact}", _PLAIN) for fact in facts))
+    return (TextRun(name, _STRONG), *(TextRun(f"{_GAP}{fact}", _PLAIN) for fact in facts))
 
 
 def shorter(first: ComparedSide, second: ComparedSide) -> str:

@@ -231,6 +231,11 @@ async def test_a_key_that_was_moved_says_by_its_new_place_that_it_is_for_a_run()
         await drawn(app, pilot)
         await press(app, pilot, "w", "P")
         assert "works in a run" not in text_of(app)
+        await pilot.press("f9", "s")
+        await until(pilot, lambda: "s, service, works in a run" in text_of(app))
+        assert [each.message.partition(",")[0] for each in app._notifications] == ["s"], (
+            "one covers no verdict"
+        )
         await pilot.press("f9")
         await until(pilot, lambda: "f9, predict, works in a run" in text_of(app))
 
@@ -525,10 +530,10 @@ async def test_a_run_that_has_only_begun_gets_its_verdict_and_the_first_differen
 
 
 async def test_how_a_run_failed_and_what_of_a_recording_is_lost_is_said() -> None:
-    failed = Timeline()
-    failed.extend(
-        [RobotMoved(0, 0, 0, 0, 1, 0, 0, True, False, 0, 0), RunEnded(ns(1), "it broke", failed=True)]
-    )
+    failed, long = Timeline(), Timeline()
+    for timeline, reason in ((failed, "it broke"), (long, " ".join(["it broke"] * 20))):
+        moved = RobotMoved(0, 0, 0, 0, 1, 0, 0, True, False, 0, 0)
+        timeline.extend([moved, RunEnded(ns(1), reason, failed=True)])
     async with compared(
         ComparedSide("a", failed), ComparedSide("b", sides()[1].timeline, damage="it breaks off")
     ) as (
@@ -538,6 +543,8 @@ async def test_how_a_run_failed_and_what_of_a_recording_is_lost_is_said() -> Non
         told = {notification.message for notification in app._notifications}
         assert told == {"it breaks off"}, "how the run failed stands above it, where it covers no verdict"
         assert "run A  a   ends at 1.000 s   it broke   lost 0" in text_of(app)
+    async with compared(ComparedSide("a", long), sides()[1], size=NARROW) as (app, _):
+        assert re.search(r"run A  a   ends at 1.000 s   it broke it broke [^\n]*…   lost 0", text_of(app))
 
 
 @pytest.mark.slow
