@@ -71,6 +71,8 @@ class LogLines(FollowingView):
     def __init__(self) -> None:
         super().__init__()
         self._search = LogSearch(Timeline(), Filter())
+        self.nothing = ""
+        """What is shown if no line passes the filter."""
         self._now = 0
         self._searching = False
         self._kept: int | None = None
@@ -118,6 +120,8 @@ class LogLines(FollowingView):
     def _search_on(self) -> None:
         self._searching = False
         self._scan_new_lines()
+        if not self._searching:
+            self.refresh()  # it is certain now if nothing was found
 
     def _grow_to_what_was_found(self) -> None:
         timeline = self._search.timeline
@@ -269,6 +273,9 @@ class LogLines(FollowingView):
         width = self.scrollable_content_region.width
         if self._later and row == self._count:
             words = later_lines(self._now, self._later, width)
+            return Strip([Segment(words, self.in_ink(Ink(Role.FAINT)))], width)
+        if row == self.below() and not self._count and not self.wanted.passes_all and not self._searching:
+            words = fit(self.nothing, width, Charset.BRAILLE)
             return Strip([Segment(words, self.in_ink(Ink(Role.FAINT)))], width)
         if row >= self._count:
             return Strip.blank(width, self.in_class(""))

@@ -12,6 +12,8 @@ from textual.widgets import Input, Label
 
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
+from cbtui.keys.keymap import keymap_of
+from cbtui.looks.theme import Charset
 from cbtui.widgets.log.filter import Filter, FilterError, filter_of
 from cbtui.widgets.log.lines import LogLines
 from sim.quantities.plural import plural
@@ -83,7 +85,10 @@ class LogView(Vertical):
         """Apply the filter as it is typed; an invalid one passes every line."""
         event.stop()
         wanted, fault = _understood(event.value)
-        self.query_one(LogLines).wanted = wanted
+        lines = self.query_one(LogLines)
+        shows_all = keymap_of(self.app).sign(Scope.FILTER, "drop_filter", Charset.BRAILLE)
+        lines.nothing = f"nothing so far matches {event.value}; {shows_all} shows all"
+        lines.wanted = wanted
         self._complain(fault)
         self._show_filter()
 

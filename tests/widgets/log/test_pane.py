@@ -56,6 +56,22 @@ async def typed(pilot: Pilot[None], text: str) -> None:
     await pilot.pause()
 
 
+async def test_a_filter_that_no_line_passes_says_so_and_how_to_see_all_again() -> None:
+    async with PaneOnly().run_test(size=(80, 8)) as pilot:
+        await showing(pilot, log_of(30), ns(0.01))
+        await typed(pilot, "zzz")
+        assert "nothing so far matches zzz; esc shows all" in shown(pilot.app)
+        await typed(pilot, "line 20")
+        assert "nothing so far matches line 20; esc shows all" in shown(pilot.app), (
+            "it is one of the later lines"
+        )
+        await typed(pilot, "line 5")
+        assert not any("nothing so far" in line for line in shown(pilot.app))
+        await pilot.press("escape")
+        await pilot.pause()
+        assert "line 5" in texts(pilot.app)
+
+
 async def showing(pilot: Pilot[None], timeline: Timeline, now: int | None = None) -> None:
     pilot.app.query_one(LogView).show(timeline, timeline.end if now is None else now)
     pilot.app.query_one(LogLines).focus()
