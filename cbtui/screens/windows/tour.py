@@ -1,6 +1,7 @@
 """The tour: a minute over a lesson that tells what each part of the screen is for."""
 
 from collections.abc import Callable
+from math import ceil
 from typing import NamedTuple
 
 from textual.app import ComposeResult
@@ -123,5 +124,6 @@ class TourScreen(WindowScreen[None]):
         self._show(stop.place)
 
     def _show_left(self) -> None:
-        left = round(self._left / _TICK)
-        self.query_one("#left", Static).update("▪" * left)
+        turns = "goes on" if self._place + 1 < len(STOPS) else "ends"
+        squares = "▪" * round(self._left / _TICK)
+        self.query_one("#left", Static).update(f"{turns} by itself in {ceil(self._left)} s  {squares}")

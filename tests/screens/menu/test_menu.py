@@ -218,12 +218,17 @@ async def test_keys_turn_the_pages_of_the_tour_and_its_last_page_ends_it() -> No
         await pilot.press("T")
         await until(pilot, lambda: isinstance(app.screen, TourScreen))
         assert "⏎ next  ← back" in text_of(app)
+        assert "goes on by itself in 6 s" in text_of(app)
         for key, page in (("left", 1), ("enter", 2), ("right", 3), ("left", 2)):
             await pilot.press(key)
             assert f"Tour {page}/{len(STOPS)}" in text_of(app)
         await pilot.click(KeyBar, offset=(2, 0))
         assert f"Tour 3/{len(STOPS)}" in text_of(app)
-        await pilot.press(*["space"] * (len(STOPS) - 2))
+        await pilot.press(*["space"] * (len(STOPS) - 4))
+        assert "goes on by itself in" in text_of(app)
+        await pilot.press("space")
+        assert "ends by itself in" in text_of(app)
+        await pilot.press("space")
         await until(pilot, lambda: isinstance(app.screen, PredictionScreen))
 
 
