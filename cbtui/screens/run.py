@@ -141,10 +141,11 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         """The app."""
         return console_of(self)
 
-    def tell(self, sentence: str | None) -> None:
-        """Show a sentence for a few seconds; nothing for None."""
+    def tell(self, sentence: str | None, holds: Callable[[], bool] | None = None) -> None:
+        """Show a sentence for a few seconds, and no longer than it ``holds``; nothing for None."""
         if sentence is not None:
             self.notify(sentence, markup=False)
+            self._keys.reason = None if holds is None else (sentence, holds)
 
     def key(self, action: str) -> str:
         """Return the key in force of one of a lesson's actions, as people write it."""

@@ -55,6 +55,13 @@ def clear_hints(app: App[Any]) -> None:
         app.clear_notifications()
 
 
+def take_back(app: App[Any], sentence: str) -> None:
+    """Take away a sentence that lies over the screen."""
+    for each in list(app._notifications):
+        if each.message == sentence:
+            app._unnotify(each)
+
+
 def make_room_for(app: App[Any], sentence: str) -> None:
     """Clear a sentence's own notification, which would end its repetition, and all but one that informs."""
     others = [each for each in app._notifications if each.message != sentence]

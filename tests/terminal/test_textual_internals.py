@@ -85,6 +85,7 @@ WORKAROUNDS: dict[str, tuple[str, list[Callable[..., Any]]]] = {
         "56fa711aecd9",
         [type(vars(Widget)["border_title"]).__set__],
     ),
+    "textual_internals.take_back": ("0ca739607455", [App._unnotify]),
     "textual_internals.make_room_for": ("6aeb8eba3002", [App._unnotify, Toast._on_mount, Toast._expire]),
     "textual_internals.clear_hints": ("68eb0959a230", [App.clear_notifications]),
     "textual_internals.is_being_removed": ("be1dc93ca461", [App._prune]),

@@ -11,9 +11,10 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.live.live_run import ShownRun
 from cbtui.runs.live.replay import RecordedRun
 from cbtui.screens.layout import Layout
-from cbtui.screens.parts.part import RunHost, ScreenPart, ScreenParts
+from cbtui.screens.parts.part import RunHost, ScreenHost, ScreenPart, ScreenParts
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.sized import SizedScreen
+from cbtui.terminal.textual_internals import take_back
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.choice import ChoiceOptions
 from cbtui.widgets.code import CodeView
@@ -67,6 +68,8 @@ class OfferedKeys:
     parts: ScreenParts
     charset: Charset
     first: Callable[[], Sequence[str]] = tuple
+    reason: tuple[str, Callable[[], bool]] | None = None
+    """The last sentence on why a key does nothing, and whether it is still so."""
 
     def offer(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Tell whether an action is available now."""
@@ -82,7 +85,10 @@ class OfferedKeys:
         return self.parts.offer(action, parameters)
 
     def show(self) -> None:
-        """Update the key bar and the lanes' frame if other actions are available."""
+        """Update the key bar and the lanes' frame, and take back a reason that is none any more."""
+        if self.reason is not None and not self.reason[1]():
+            take_back(self.screen.app, self.reason[0])
+            self.reason = None
         lanes, bar = self.screen.query_one(Lanes), self.screen.query_one(KeyBar)
         # In the grid the lanes have a frame, which shows their keys.
         framed = self.screen.layout_now is Layout.GRID
@@ -107,7 +113,7 @@ class Absences(ScreenPart):
     ``kind`` returns what kind of run the screen shows, as a sentence on what that rules out, if there is one.
     """
 
-    host: RunHost
+    host: ScreenHost
     runs: RunController[ShownRun]
     lesson: Lesson | None
     is_available: Callable[[str], bool]
@@ -119,7 +125,7 @@ class Absences(ScreenPart):
 
     def action_no_use(self, wanted: str) -> None:
         """Show the explanation."""
-        self.host.tell(self._why(wanted))
+        self.host.tell(self._why(wanted), lambda: not self.is_available(wanted))
 
     def _why(self, wanted: str) -> str:
         run, key, kind = self.runs.run, self.host.key, self.kind()

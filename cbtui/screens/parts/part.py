@@ -60,6 +60,9 @@ class ScreenHost(WindowHost, RunHost, Protocol):
     def console(self) -> ConsoleApp:
         """The app; available once the screen is shown."""
 
+    def tell(self, sentence: str | None, holds: Callable[[], bool] | None = None) -> None:
+        """Show a sentence for a few seconds, and no longer than it ``holds``; nothing for None."""
+
 
 class ScreenParts:
     """The actions of a screen: those of its parts, its own methods ``action_<id>``, and more by id."""

@@ -75,8 +75,9 @@ class LaneSelection(ScreenPart):
         lanes = self._lanes
         lanes.focus()
         self.bars.select(lanes.selection or lanes.here())
-        if not self.runs.timeline.entities:
-            self.host.tell("There is no bar to select yet: the lanes come with the first callbacks.")
+        if not (timeline := self.runs.timeline).entities:
+            sentence = "There is no bar to select yet: the lanes come with the first callbacks."
+            self.host.tell(sentence, lambda: not timeline.entities)
 
     def action_lane_above(self) -> None:
         """Select the lane above."""

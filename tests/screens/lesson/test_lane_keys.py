@@ -162,6 +162,9 @@ async def test_enter_before_the_first_callback_says_that_there_is_nothing_to_sel
         await press(pilot, "enter")
         told = [each.message for each in app._notifications]
         assert told == ["There is no bar to select yet: the lanes come with the first callbacks."]
+        app.lesson_screen.runs.timeline.extend(EVENTS[:100])
+        app.lesson_screen.draw()
+        assert not list(app._notifications), "there are bars now"
 
 
 async def test_what_is_told_of_a_lane_that_was_selected_empty_follows_its_bars() -> None:

@@ -110,6 +110,15 @@ async def test_a_key_that_leads_no_further_says_so(keys: list[str], said: str) -
         assert [note.message for note in app._notifications][-1] == said
 
 
+async def test_why_a_key_does_nothing_is_said_no_longer_than_it_is_so() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "0")
+        assert [note.message for note in app._notifications] == ["The present is on screen already."]
+        await press(pilot, "left_square_bracket")
+        assert "BACK" in lines_of(app)[0]
+        assert not list(app._notifications)
+
+
 @pytest.mark.parametrize(("rows", "narrated"), [(40, 4), (60, 6)])
 async def test_a_wide_narrator_grows_where_a_moment_needs_more_rows_and_the_panes_have_room(
     rows: int, narrated: int

@@ -25,7 +25,7 @@ class FakeHost:
         if take is not None and self.answers:
             take(self.answers.pop(0))
 
-    def tell(self, sentence: str | None) -> None:
+    def tell(self, sentence: str | None, holds: Callable[[], bool] | None = None) -> None:
         if sentence is not None:
             self.told.append(sentence)
 
