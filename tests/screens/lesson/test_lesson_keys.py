@@ -158,6 +158,8 @@ async def test_r_runs_again_after_the_run_has_ended() -> None:
         app.engines.latest.end(None)
         await settle(pilot)
         assert "■ ENDED" in status(app)
+        await press(pilot, "comma")
+        assert "0 end" in lines_of(app)[-1], "what is over has no present to go back to"
         await press(pilot, "r")
         assert "● LIVE" in status(app)
         assert "t 13.1" in status(app)
