@@ -144,6 +144,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
     def tell(self, sentence: str | None, holds: Callable[[], bool] | None = None) -> None:
         """Show a sentence for a few seconds, and no longer than it ``holds``; nothing for None."""
         if sentence is not None:
+            self._keys.take_back_reason()
             self.notify(sentence, markup=False)
             self._keys.reason = None if holds is None else (sentence, holds)
 

@@ -84,11 +84,16 @@ class OfferedKeys:
             return False
         return self.parts.offer(action, parameters)
 
+    def take_back_reason(self) -> None:
+        """Show the last reason no longer."""
+        if self.reason is not None:
+            take_back(self.screen.app, self.reason[0])
+            self.reason = None
+
     def show(self) -> None:
         """Update the key bar and the lanes' frame, and take back a reason that is none any more."""
         if self.reason is not None and not self.reason[1]():
-            take_back(self.screen.app, self.reason[0])
-            self.reason = None
+            self.take_back_reason()
         lanes, bar = self.screen.query_one(Lanes), self.screen.query_one(KeyBar)
         # In the grid the lanes have a frame, which shows their keys.
         framed = self.screen.layout_now is Layout.GRID

@@ -112,7 +112,7 @@ async def test_a_key_that_leads_no_further_says_so(keys: list[str], said: str) -
 
 async def test_why_a_key_does_nothing_is_said_no_longer_than_it_is_so() -> None:
     async with console() as (app, pilot):
-        await press(pilot, "0")
+        await press(pilot, "u", "0")
         assert [note.message for note in app._notifications] == ["The present is on screen already."]
         await press(pilot, "left_square_bracket")
         assert "BACK" in lines_of(app)[0]
