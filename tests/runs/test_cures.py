@@ -88,6 +88,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("event_of_its_group", ["give on_bell a callback group of its own"]),
         ("int_for_float", ["write a float (diff)"]),
         ("misspelt_service", ["call /motor_power (diff)"]),
+        ("publishes_in_loop", ["spin the node in a thread beside the loop (diff)"]),
         ("rate_in_main", ["spin the node in a thread beside the loop (diff)"]),
         ("spin_once", ["return from go, and go on where what it waits for is set (diff)"]),
         ("type_mismatch", ["take the type that is published (diff)"]),

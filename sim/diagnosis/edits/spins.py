@@ -148,11 +148,37 @@ def spin_beside(source: SourceEditor, line: int) -> None:
         case ast.Expr(value=ast.Call(func=ast.Attribute(value=rate, attr="sleep"))) if around:
             node = makers.get(ast.unparse(rate)) or getattr(rate, "value", None)
             if node is not None:
-                spins = f"Thread(target=rclpy.spin, args=({source.code_of(node)},), daemon=True).start()"
-                source.insert_before(around[0], f"{spins}\n{indentation(around[0])}")
-                source.import_names("threading", ["Thread"])
+                _start_spinning(source, source.code_of(node), around[0])
                 return
     raise NotSimpleError
+
+
+def spin_node_beside(source: SourceEditor, line: int) -> None:
+    """Spin the only node that a program makes, and spins nowhere, in a thread that begins before a loop."""
+    loops = [each for each in source.nodes(ast.While) if each.lineno == line]
+    kinds = {each.name for each in source.nodes(ast.ClassDef) if "Node" in map(_last_name, each.bases)}
+    made = [
+        each
+        for each in source.nodes(ast.Assign)
+        if isinstance(each.value, ast.Call) and _last_name(each.value.func) in {"Node", "create_node", *kinds}
+    ]
+    spins = any("spin" in _last_name(each.func) for each in source.nodes(ast.Call))
+    if spins or not loops or len(made) != 1 or not isinstance(made[0].targets[0], ast.Name):
+        raise NotSimpleError
+    where, there = (source.around(ast.FunctionDef, each) for each in (line, made[0].lineno))
+    if where != there or made[0].lineno > line:
+        raise NotSimpleError
+    _start_spinning(source, made[0].targets[0].id, loops[0])
+
+
+def _last_name(expression: ast.expr) -> str:
+    return ast.unparse(expression).rpartition(".")[2]
+
+
+def _start_spinning(source: SourceEditor, node: str, before: ast.stmt) -> None:
+    spins = f"Thread(target=rclpy.spin, args=({node},), daemon=True).start()"
+    source.insert_before(before, f"{spins}\n{indentation(before)}")
+    source.import_names("threading", ["Thread"])
 
 
 @asked_of_file

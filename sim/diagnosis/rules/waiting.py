@@ -6,7 +6,7 @@ from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits, who_moves
 from sim.diagnosis.edits.flags import event_setters
-from sim.diagnosis.edits.spins import spin_beside, spins_in_turn, started_late, taken_away
+from sim.diagnosis.edits.spins import spin_beside, spin_node_beside, spins_in_turn, started_late, taken_away
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
@@ -310,6 +310,7 @@ class NodeNeverSpins(Rule):
             how_often = "spins too rarely" if ever else "comes to no spin()"
             place, cure = loop, how
             what = f"the program is in the loop of line {loop.first_line}, and {how_often}"
+            remedies = by_edit(loop, "spin the node in a thread beside the loop", spin_node_beside)
         if loop is not None and cure is SPIN_BESIDE:
             what = f"the program waits in Rate.sleep() at line {loop.first_line}, and nothing spins"
             why = "a rate's timer is a callback too: callbacks run only inside spin()"

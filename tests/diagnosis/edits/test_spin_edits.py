@@ -8,6 +8,7 @@ from sim.diagnosis.edits.spins import (
     await_in_loop,
     never_made,
     spin_beside,
+    spin_node_beside,
     spin_past,
     spin_together,
     spins_in_turn,
@@ -162,6 +163,27 @@ def spun_before_loop(node: str) -> list[str]:
 def test_a_rate_of_an_unknown_node_or_without_a_loop_stays() -> None:
     assert changed(LOOP.format("", "rate"), spin_beside) is None
     assert changed("import rclpy\nself.rate.sleep()  # here\n", spin_beside) is None
+
+
+@pytest.mark.parametrize(
+    ("made", "more", "spun"),
+    [
+        ("n = Node('n')", "", True),
+        ("n = rclpy.create_node('n')", "", True),
+        ("n = Own()", "", True),
+        ("n = Other()", "", False),
+        ("n = Node('n')", "m = Node('m')", False),
+        ("n = Node('n')", "rclpy.spin(n)", False),
+        ("def make():\n    n = Node('n')", "", False),
+    ],
+)
+def test_a_node_is_spun_beside_a_loop_if_it_is_the_only_one_and_spun_nowhere(
+    made: str, more: str, spun: bool
+) -> None:
+    program = (
+        f"import rclpy\n{made}\nwhile rclpy.ok():  # here\n    time.sleep(1)\nclass Own(Node): ...\n{more}\n"
+    )
+    assert changed(program, spin_node_beside) == (spun_before_loop("n") if spun else None)
 
 
 SPINS = "import asyncio\nasync def spin():\n    while ok():  # here\n        rclpy.spin_once(node){0}\n{1}"
