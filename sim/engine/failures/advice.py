@@ -10,7 +10,7 @@ from difflib import get_close_matches
 from types import FrameType, ModuleType
 
 from sim.engine.failures.missing_names import on_missing_name, on_newer
-from sim.ros.exceptions import NotInitializedException
+from sim.ros.exceptions import NotInitializedException, ParameterNotDeclaredException
 from sim.ros.middleware.process import current_process
 
 
@@ -32,6 +32,8 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
             advice = on_newer(name) or _on_unready_node(name, obj) or _nearest(name, dir(obj))
         case TypeError(args=[str(text)]) if "unexpected keyword argument '" in text:
             advice = on_newer(text.split("'")[-2])
+        case ParameterNotDeclaredException() if frame is not None:
+            advice = _nearest(str(error).rpartition(": ")[2], _parameters_of(frame.f_locals.get("self")))
         case NotInitializedException():
             advice = "call rclpy.init() before the first node is made, at the beginning of main()"
         case _ if type(error).__module__ == "_curses":
@@ -47,6 +49,12 @@ def _on_unready_node(attribute: str, obj: object) -> str:
     if attribute.startswith("_") and isinstance(obj, Node) and "_agenda" not in vars(obj):
         return f"{type(obj).__name__}.__init__ has to call super().__init__('name of the node') first"
     return ""
+
+
+def _parameters_of(node: object) -> Iterable[str]:
+    from sim.ros.node.node import Node
+
+    return node.get_parameters_by_prefix("") if isinstance(node, Node) else ()
 
 
 def _nearest(name: str, known: Iterable[str]) -> str:

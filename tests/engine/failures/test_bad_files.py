@@ -187,6 +187,13 @@ FILES = {
         HEAD + "Node('n')",
         f"node.py:7: {RAISED} NotInitializedException: rclpy.init() has not been called.",
     ),
+    "a misprinted parameter": Bad(
+        HEAD
+        + "rclpy.init()\nclass A(Node):\n    def f(self):\n        self.declare_parameter('max_speed', 1.0)\n"
+        "        self.get_parameter('maxspeed')\nA('a').f()",
+        f"node.py:11: {RAISED} ParameterNotDeclaredException: Invalid access to undeclared parameter(s): "
+        "maxspeed; did you mean 'max_speed'?",
+    ),
     "a bad name of a topic": Bad(
         NODE + "node.create_publisher(Int32, 'my topic', 10)",
         f"node.py:9: {RAISED} InvalidTopicNameException: Invalid topic name: topic name must not contain "
