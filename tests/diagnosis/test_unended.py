@@ -117,3 +117,60 @@ def test_a_barrier_has_the_functions_that_wait_at_it_and_none_of_another(tmp_pat
     )
     assert parties_at(str(path), 5) == ("gate", 3, ("a", "b"))
     assert parties_at(str(path), 3) == ("", 0, ())
+
+
+IN_TURN = """
+import threading
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+
+class Order(Node):
+    def __init__(self):
+        super().__init__("order")
+        self.a, self.b, self.c = None, None, None
+        self.a = threading.Lock()
+        self.b = threading.RLock()
+        self.c = threading.Lock()
+        own = MutuallyExclusiveCallbackGroup()
+        self.create_timer(0.5, self.one)
+        self.create_timer(0.7, self.two, callback_group={group})
+
+    def one(self):
+        with {first}:
+            pass
+
+    def two(self):
+        with {second}:
+            pass
+
+rclpy.init()
+executor = MultiThreadedExecutor({threads})
+executor.add_node(Order())
+executor.spin()
+"""
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "group", "threads", "told"),
+    [
+        ("self.a, self.b", "self.b, self.a", "own", 2, True),
+        ("self.a, self.b:\n          with self.c", "self.c, self.a", "own", 2, True),
+        ("self.a, self.b", "self.a, self.b", "own", 2, False),
+        ("self.c, self.a, self.b", "self.c, self.b, self.a", "own", 2, False),
+        ("self.a, self.b", "self.b, self.a", "None", 2, False),
+        ("self.a, self.b", "self.b, self.a", "own", 1, False),
+        ("self.a, self.b", "self.b:\n            pass\n        with self.a", "own", 2, False),
+    ],
+)
+def test_locks_in_opposite_orders_are_worth_a_remark_where_callbacks_may_run_at_once(
+    first: str, second: str, group: str, threads: int, told: bool, tmp_path: Path
+) -> None:
+    program = IN_TURN.format(first=first, second=second, group=group, threads=threads)
+    timeline = run_program(tmp_path, program, 3.0).timeline
+    found = [each for each in diagnose(timeline) if each.rule.id == "locks-in-turn"]
+    assert [each.explained(timeline).what.partition(":")[0] for each in found] == (
+        [f"one takes {first[:6]} and then {second[:6]}, two first {second[:6]} and then {first[:6]}"] * told
+    )
+    assert all(each.weight_in(timeline) is Weight.REMARK for each in found)

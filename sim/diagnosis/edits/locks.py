@@ -1,8 +1,12 @@
 """Edits of callbacks that take locks."""
 
 import ast
+from collections.abc import Iterator
+from itertools import combinations
+from typing import NamedTuple
 
 from sim.diagnosis.edits.polling import leave_out
+from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.replies import future_of, is_at, plain_call
 from sim.diagnosis.edits.source_editor import Function, NotSimpleError, SourceEditor, indentation
 
@@ -20,6 +24,57 @@ def take_together(source: SourceEditor, line: int, other: int) -> None:
     source.replace_lines(
         inner, inner, source.lines_moved(_header_end(inner), inner.body[-1], inner.col_offset)
     )
+
+
+@asked_of_file
+def locks_in_turn(source: SourceEditor) -> tuple[tuple[int, int, int, int, str, str], ...]:
+    """Return pairs of methods that take two locks in opposite orders, with the locks in that of the first.
+
+    Each by its line, and that of its inner ``with``. Methods that have a third lock in common exclude each
+    other. The locks are made by the class itself.
+    """
+    return tuple(
+        (one.lineno, first.line, two.lineno, second.line, first.outer, first.inner)
+        for owner in source.nodes(ast.ClassDef)
+        for one, two in combinations((each for each in owner.body if isinstance(each, ast.FunctionDef)), 2)
+        for first in _taken_inside(source, one, _made_in(source, owner))
+        for second in _taken_inside(source, two, _made_in(source, owner))
+        if (first.outer, first.inner) == (second.inner, second.outer) and not first.held & second.held
+    )
+
+
+class _Taken(NamedTuple):
+    """A lock that is taken inside another one, with all others that are held then."""
+
+    outer: str
+    inner: str
+    line: int
+    held: frozenset[str]
+
+
+def _made_in(source: SourceEditor, owner: ast.ClassDef) -> set[str]:
+    """Return the attributes to which a class assigns locks."""
+    made = (each for each in source.nodes(ast.Assign, owner) if isinstance(each.value, ast.Call))
+    return {
+        ast.unparse(target)
+        for each in made
+        if ast.unparse(each.value).rpartition(".")[2] in ("Lock()", "RLock()")
+        for target in each.targets
+        if isinstance(target, ast.Attribute)
+    }
+
+
+def _taken_inside(source: SourceEditor, part: ast.AST, locks: set[str], *held: str) -> Iterator[_Taken]:
+    """Yield each lock that a part of a method takes by ``with``, once for each that it has already."""
+    for each in ast.iter_child_nodes(part):
+        now = held
+        for item in each.items if isinstance(each, ast.With) else ():
+            if (lock := ast.unparse(item.context_expr)) in locks:
+                others = ((outer, frozenset(now) - {outer}) for outer in now)
+                yield from (_Taken(outer, lock, item.context_expr.lineno, rest) for outer, rest in others)
+                now = (*now, lock)
+        if not isinstance(each, ast.Lambda | ast.FunctionDef | ast.AsyncFunctionDef):
+            yield from _taken_inside(source, each, locks, *now)
 
 
 def take_before(source: SourceEditor, line: int, other: int) -> None:

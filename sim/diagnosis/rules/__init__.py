@@ -14,7 +14,7 @@ from sim.diagnosis.rules.errors import (
 )
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.leaks import NeverDestroyed
-from sim.diagnosis.rules.locks import LockHeldLong
+from sim.diagnosis.rules.locks import LockHeldLong, LocksInTurn
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, SentTooEarly, StaleData
 from sim.diagnosis.rules.names import MisspeltTopic
 from sim.diagnosis.rules.overlooked import AnswerOverlooked, Slip
@@ -87,6 +87,7 @@ RULES: tuple[Rule, ...] = (
     StaleData(),
     DroppedMessages(),
     ThreadWaitsForNobody(),
+    LocksInTurn(),
     GapsInTrace(),
     MeantInMilliseconds(),
     GroupsChangeNothing(),

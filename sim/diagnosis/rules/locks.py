@@ -2,13 +2,14 @@
 
 from collections.abc import Iterable, Iterator
 
+from sim.diagnosis.edits.locks import locks_in_turn
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_location, place_of
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import listed, lock_keeper, lock_taker, often, who
+from sim.diagnosis.words import listed, lock_keeper, lock_taker, often, threads_for, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import doing_of
-from sim.trace.events import Doing, EntityId
+from sim.trace.events import Doing, EntityId, GroupKind
 from sim.trace.model import Nanoseconds, Position, Window
 from sim.trace.timeline import Timeline
 
@@ -58,6 +59,45 @@ class LockHeldLong(Rule):
             "whoever wants a lock waits as long as it is held, and keeps thread and group meanwhile",
             LET_GO,
             place or place_of(found.culprit or found.subject, timeline),
+        )
+
+
+class LocksInTurn(Rule):
+    """Two callbacks that may run at once take the same two locks in opposite orders.
+
+    As long as each has both before the other begins, nothing happens. Once they wait for each other, that is
+    told instead.
+    """
+
+    id = "locks-in-turn"
+    summary = "two callbacks take two locks in opposite orders"
+    weight = Weight.REMARK
+    is_effect = True
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each such pair of callbacks that have both run."""
+        timeline, called = view.timeline, Window(0, view.end + 1)
+        known = {(each.file, each.first_line): each for each in view.few_entities if each.callback}
+        for file in {file for file, _ in known if file}:
+            for one, _, two, line, *locks in locks_in_turn(file):
+                pair = [known[file, each] for each in (one, two) if (file, each) in known]
+                kinds = {timeline.groups[each.group].kind for each in pair}
+                beside = len({each.group for each in pair}) == 2 or kinds == {GroupKind.REENTRANT}
+                ran = [each for each in pair if timeline.calls_of(each.id, called)]
+                is_alone = threads_for((each.id for each in ran), view.end, timeline) == 1
+                if len(ran) == 2 and beside and not is_alone and ran[0].node == ran[1].node:
+                    about = f"{file}:{line} {' '.join(locks)}"
+                    yield Finding(self, 0, view.end, pair[0].id, pair[1].id, about, detail=file, size=line)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        *_, outer, inner = found.about.split()
+        one, two = who(found.subject, timeline), who(found.culprit, timeline)
+        return Explanation(
+            f"{one} takes {outer} and then {inner}, {two} first {inner} and then {outer}: run at "
+            "once, they may wait for each other for ever",
+            "whoever waits for a lock keeps the ones it has; that it went well so far says nothing",
+            "take locks in the same order everywhere, or let go of one before you take the next",
+            line_location(found.detail, found.size),
         )
 
 
