@@ -333,6 +333,12 @@ def _ending(body: Callable[[], None], end: _End, clock: VirtualClock) -> Callabl
         end.holder = clock.current
         try:
             body()
+        except Exception as error:  # noqa: BLE001 - Python would hand it over when time has gone on
+            threading.excepthook(
+                threading.ExceptHookArgs(
+                    (type(error), error, error.__traceback__, threading.current_thread())
+                )
+            )
         finally:
             end.reach()
 

@@ -438,6 +438,25 @@ def test_what_a_thread_raises_as_the_program_ends_took_nothing_from_the_run(
     assert [each.rule.id for each in diagnose(run.timeline)] == told
 
 
+def test_a_thread_that_raises_does_so_before_virtual_time_goes_on_to_the_end(tmp_path: Path) -> None:
+    program = """
+import threading
+import time
+import rclpy
+from rclpy.node import Node
+
+def work():
+    time.sleep(0.5)
+    raise ValueError("no scan")
+
+rclpy.init()
+threading.Thread(target=work).start()
+rclpy.spin(Node("n"))
+"""
+    found = diagnose(run_program(tmp_path, program, 3.0).timeline)
+    assert [(each.rule.id, each.at) for each in found] == [("thread-raised", SECOND // 2)]
+
+
 @pytest.mark.parametrize(
     ("asks", "told"),
     [
