@@ -98,7 +98,7 @@ def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) ->
     present = (timeline.position_on(thread, at) for thread in timeline.threads)
     since = max((each.start for each in present if each and each.start > last), default=at)
     before = "; ".join(_done(timeline, since))
-    first = f"nothing happens up to {timestamp(at)}"
+    first = f"nothing happens before {timestamp(at)}"
     if then:
         first = f"{timestamp(at)}: {then}"
     elif before:

@@ -88,10 +88,10 @@ def test_a_step_to_a_moment_without_a_decision_is_told_at_its_time() -> None:
     run.printed("three", 2.8)
     timeline = told(run, until=2.9)
     assert narration(timeline, ns(1.0), stepped=True) == narration(timeline, ns(1.0))
-    assert narration(timeline, ns(1.5), stepped=True)[0] == "nothing happens up to 1.500 s: tick still runs"
+    assert narration(timeline, ns(1.5), stepped=True)[0] == "nothing happens before 1.500 s: tick still runs"
     assert narration(timeline, ns(1.8), stepped=True)[0] == "1.800 s: tick has slept, and goes on"
     assert narration(timeline, ns(1.9), stepped=True)[0] == (
-        "1.800 s: tick has slept, and goes on; then nothing happens up to 1.900 s: tick still runs"
+        "1.800 s: tick has slept, and goes on; then nothing happens before 1.900 s: tick still runs"
     )
     assert narration(timeline, ns(2.5), stepped=True)[0] == "2.500 s: /empty replies"
     assert narration(timeline, ns(2.7), stepped=True)[0] == "2.700 s: a line is written to the log"
@@ -105,7 +105,7 @@ def test_a_step_in_which_the_robot_moves_on_says_how(linear: float, angular: flo
     run.callback(run.timer(run.exclusive(run.node("/n")), "tick", 1.0), run.thread("MainThread"), 1.0, 3.0)
     run.robot(1.0, linear=linear, angular=angular)
     first, *_ = narration(told(run, until=1.5), ns(1.4), stepped=True)
-    assert first == f"nothing happens up to 1.400 s: tick still runs, the robot still {does}"
+    assert first == f"nothing happens before 1.400 s: tick still runs, the robot still {does}"
 
 
 def test_decisions_of_a_moment_are_told_in_the_order_of_the_trace() -> None:
