@@ -77,9 +77,9 @@ def test_messages_lost_during_several_calls_are_not_said_to_be_lost_in_one() -> 
 
     run = diagnosed(program)
     told = run.explained("dropped-messages").what
-    assert "lost 73 messages while its calls ran, 600 ms each: its queue holds 10" in told
+    assert "lost 73 messages while its calls ran; each took 600 ms, and its queue holds 10" in told
     early = diagnosed(program, until=7.0).explained("dropped-messages").what
-    assert "while its calls ran, 600 ms each" in early, "the call that is not over has no length yet"
+    assert "while its calls ran; each took 600 ms" in early, "the call that is not over has no length yet"
 
 
 def test_a_loss_between_two_calls_does_not_hide_that_the_callback_is_too_slow() -> None:
@@ -215,7 +215,7 @@ def test_a_subscription_that_asks_for_more_than_is_offered_is_told(
     run = publisher_and_subscription(offered, requested)
     assert run.told() == {("qos-mismatch", "hear")}
     told = run.explained("qos-mismatch")
-    assert told.what == f"{policy} does not match: hear hears nothing from a publisher of /t"
+    assert told.what == f"{policy} does not match; hear hears nothing from a publisher of /t"
     ends = re.search(r"the publisher of (.*):(\d+) and the subscription of (.*):(\d+)$", told.cure)
     assert ends is not None
     assert ends[1] == ends[3] == Path(__file__).name
@@ -241,7 +241,7 @@ def test_all_policies_of_a_file_that_do_not_match_are_named() -> None:
         spin(node, None)
 
     told = diagnosed(program).explained("qos-mismatch")
-    assert told.what.startswith("DURABILITY and RELIABILITY do not match: ")
+    assert told.what.startswith("DURABILITY and RELIABILITY do not match; ")
 
 
 def test_a_subscription_that_waits_for_a_message_is_one_of_the_program() -> None:
@@ -251,7 +251,7 @@ def test_a_subscription_that_waits_for_a_message_is_one_of_the_program() -> None
         wait_for_message(Int32, node, "t", qos_profile=RELIABLE, time_to_wait=0.1)
 
     told = diagnosed(program).explained("qos-mismatch")
-    assert ": a subscription of the program hears nothing from a publisher of /t" in told.what
+    assert "; a subscription of the program hears nothing from a publisher of /t" in told.what
     assert told.cure.count(Path(__file__).name) == 2
 
 
@@ -321,7 +321,7 @@ def test_a_subscription_of_another_program_that_does_not_match_is_told() -> None
     run = diagnosed(program)
     assert run.told() == {("qos-mismatch", "")}
     told = run.explained("qos-mismatch")
-    assert ": a subscription outside the program hears nothing" in told.what
+    assert "; a subscription outside the program hears nothing" in told.what
     assert told.cure.startswith(f"let the publisher of {Path(__file__).name}:")
     assert told.cure.endswith("offer ReliabilityPolicy.RELIABLE: the subscription is outside the program")
 

@@ -185,7 +185,7 @@ def test_a_topic_with_two_types_is_told_with_both_lines() -> None:
 
     run = diagnosed(program, 1.0)
     told = run.explained("qos-mismatch")
-    assert told.what.startswith("message types differ: ")
+    assert told.what.startswith("message types differ; ")
     assert told.what.endswith("hears nothing from a publisher of /speed")
     ends = line_with('create_publisher(Int32, "speed"'), line_with('create_subscription(Bool, "speed"')
     assert told.cure == (

@@ -47,7 +47,7 @@ FOR_EVER = (
     "deadlock: tick waits in spin_until_future_complete() for ever; "
     "all callbacks of its node are in group A, which tick holds"
 )
-TAKEN = "node /caller left its executor for that of {}() in tick; the first one no longer serves it"
+TAKEN = "node /caller left its executor, which no longer serves it; {}() in tick has taken it over"
 
 
 REPLY_HELD = (

@@ -479,9 +479,12 @@ _FOUR_CALLS = (2.55, 10.55, 10.6, 10.65)
 @pytest.mark.parametrize(
     ("lesson", "calls", "shown"),
     [
-        ("reentrant-2-threads", _FOUR_CALLS, "timer waited 4.6 s: 2 calls of SetBool kept a thread each"),
+        ("reentrant-2-threads", _FOUR_CALLS, "timer waited 4.6 s: both threads ran SetBool (node.py:97)"),
         ("no-groups-at-all", _FOUR_CALLS, "timer waited 4.5 s: group A was held by SetBool (node.py:97)"),
         ("cancel-never-served", (1.0,), "/fetch_it server waited 5.0 s: its only thread ran execute"),
+        ("lookup-in-a-callback", (2.03,), "lower waited 1.0 s in lookup_transform() (node.py:60)"),
+        ("lock-or-group", (), "blink waited 750 ms: all 4 threads ran count_with_lock"),
+        ("stale-data", (), "decide lost 70 messages while its calls ran (node.py:56)"),
         ("three-cures", (), "ask_and_await took 1.5 s with a period of 1.0 s (node.py:71)"),
     ],
 )
@@ -500,9 +503,9 @@ def test_in_80_columns_no_lesson_s_problem_is_cut_within_a_clause(
 @pytest.mark.parametrize(
     ("lesson", "shown"),
     [
-        ("spin-inside-a-callback", "line 63: node /asker left its executor for that of spin_unti…"),
-        ("qos-never-matches", "line 51: RELIABILITY does not match: temperature_callback he…"),
-        ("synchroniser-never-fires", "line 67: the stamps are at least 20 ms apart: the synchronis…"),
+        ("spin-inside-a-callback", "node /asker left its executor, which no longer serves it"),
+        ("qos-never-matches", "RELIABILITY does not match (node.py:51)"),
+        ("synchroniser-never-fires", "at 2.0 s: the stamps are at least 20 ms apart (node.py:67)"),
         ("clock-set-back", "done_at was kept when sim time was set back by 950 ms"),
     ],
 )

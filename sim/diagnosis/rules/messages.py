@@ -79,7 +79,7 @@ class DroppedMessages(Rule):
         taken = any(each.node == entity.node for each in timeline.spin_clashes)
         at = timeline.end if taken else _waited(found, timeline)  # a node is lost when its spin has returned
         waits = timeline.waits_of(entity.id, Window(at, at + 1))
-        because, place = "", place_of(found.subject, timeline)
+        because, each_took, place = "", "", place_of(found.subject, timeline)
         own = _waits_for_itself(entity, at, timeline)
         if waits:
             if own:
@@ -92,12 +92,12 @@ class DroppedMessages(Rule):
             calls = timeline.spans_of(entity.id, Window(found.at, found.until + 1))
             lengths = [each.end - each.start for each in calls if each.end is not None]
             if own and len(lengths) > 1:
-                because += f", {duration(sum(lengths) // len(lengths))} each"
+                each_took = f"; each took {duration(sum(lengths) // len(lengths))}, and"
         room = remedy_for_waits([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
         faster = f"let {subject} return sooner, or publish less often"
         cure = f"{room.words(timeline) or faster}; a longer queue only delays it"
         if lock := _lock_before(found, timeline):
-            because, room = f" while it waited for {awaited_lock(lock, timeline)}", Remedy()
+            because, each_took, room = f" while it waited for {awaited_lock(lock, timeline)}", "", Remedy()
             cure = f"in {lock_taker(lock, timeline)}, {LET_GO}"
         if not waits and (made := made_at(entity)):
             losses = Counter(timeline.losses_of(entity.id, Window(found.at, found.until + 1)))
@@ -112,7 +112,7 @@ class DroppedMessages(Rule):
         sent = found.count + timeline.calls_of(entity.id, Window(0, timeline.end + 1))
         part = f"{found.count} of {sent}" if _keeps_little(entity, at, timeline) else str(found.count)
         messages = "1 message" if part == "1" else f"{part} messages"
-        holds = f": its queue holds {entity.depth}" if entity.depth else ""
+        holds = f"{each_took or ':'} its queue holds {entity.depth}" if entity.depth else ""
         calls = timeline.spans_of(entity.id, Window(found.until - SECOND, found.until + 1))
         age = max((each.age for each in calls), default=0)
         old = f"; what {subject} took then was up to {duration(age)} old" if own and age >= SECOND else ""
@@ -340,7 +340,7 @@ class QosMismatch(Rule):
         other = next((each for each in (publisher, subscription) if each and edited and each != edited), None)
         seen = other.first_line if other and edited and other.file == edited.file else 0
         return Explanation(
-            f"{differs}: {subject} hears nothing from a publisher of {found.about}{outside}",
+            f"{differs}; {subject} hears nothing from a publisher of {found.about}{outside}",
             _POLICY_RULES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
             cure,
             place or place_of(found.subject, timeline),

@@ -83,8 +83,8 @@ class NestedSpin(Rule):
             node = timeline.nodes.get(clash.node, "its node")
             where = f" in {subject}" if clash.entity else ""
             what = (
-                f"node {node} left its executor for that of {clash.function}(){where}; the first one no "
-                "longer serves it"
+                f"node {node} left its executor, which no longer serves it; "
+                f"{clash.function}(){where} has taken it over"
             )
             why = (
                 "a node is in one executor at a time: this one has it until the call returns, "

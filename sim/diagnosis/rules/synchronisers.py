@@ -85,7 +85,7 @@ class NeverSynchronised(Rule):
             )
         more = f"a slop of {slop}" if event.slop else f"an ApproximateTimeSynchronizer with slop={slop}"
         return Explanation(
-            f"the stamps are at least {duration(event.apart)} apart: {nothing} of {came}",
+            f"the stamps are at least {duration(event.apart)} apart; {nothing} of {came}",
             f"{takes}; it keeps the last messages of each topic until their partners come, and says nothing",
             f"take {more}, which most of these messages are within",
             place,

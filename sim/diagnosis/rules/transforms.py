@@ -54,14 +54,14 @@ class LookupKeepsTransform(Rule):
         at = next(lookups)
         place, subject = line_location(at.file, at.line), who(found.culprit, timeline)
         listener, call = who(found.subject, timeline), found.about.rpartition(".")[2]
-        kept = "while no thread was free"
+        kept = "and no thread was free for that"
         if threads_for([found.culprit], found.until, timeline) == 1:
-            kept = f"and kept {only_thread(timeline)} meanwhile"
+            kept = f"and {subject} kept {only_thread(timeline)} meanwhile"
         room = remedy_for_waits(_kept(found, timeline), found.culprit, window, timeline)
         beside = room.words(timeline)
         return Explanation(
-            f"{subject} waited {duration(found.lasted)} in {call}() for what only {listener} can bring, "
-            f"{kept}{often(found.count)}",
+            f"{subject} waited {duration(found.lasted)} in {call}(); only {listener} can bring what it looks "
+            f"for, {kept}{often(found.count)}",
             "a lookup with a timeout sleeps on its thread and runs no callbacks, not even the listener's",
             "ask without a timeout for the newest one there is, by Time(); or await lookup_transform_async()"
             f"{f'; to wait there, {beside}' if beside else ''}",

@@ -177,7 +177,10 @@ class NoFreeWorker(_KeptWaiting):
         if threads_for([found.culprit, found.subject], found.until, timeline) == 1:
             busy = f"{only_thread(timeline)} ran {culprit}"
         elif beside_itself > 1:
+            every = threads_for([found.culprit], found.until, timeline)
             busy = f"{beside_itself} calls of {culprit} kept a thread each; no thread was free"
+            if beside_itself == every:
+                busy = f"{'both' if every == 2 else f'all {every}'} threads ran {culprit}"
             room = Remedy((found.culprit,))
             outside = "then its calls wait outside, without a thread"
             cure = f"give {culprit} a MutuallyExclusiveCallbackGroup: {outside}"
