@@ -71,6 +71,8 @@ class DiagnosisLine(PaintedWidget):
         rows = diagnosis_rows(self.diagnosis, self.note, self.problems, size.width) if size.width else [[]]
         if self.styles.height is None or self.styles.height.value != len(rows):
             self.styles.height = len(rows)
+            for notifications in self.screen.query("ToastRack"):
+                notifications.styles.margin = (0, 0, len(rows) + 1, 0)
 
 
 def diagnosis_rows(

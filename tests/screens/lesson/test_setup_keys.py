@@ -281,6 +281,17 @@ async def test_a_notification_hides_neither_the_diagnosis_nor_the_keys(size: tup
         assert app.screen.query_one(Toast).region.bottom <= keys.region.y
 
 
+async def test_a_notification_hides_no_line_of_how_a_run_ended() -> None:
+    run = shared_group_run()
+    run.over(12.5, f"node.py:55: the program raised ValueError: {'word ' * 20}", failed=True)
+    async with console(events=run.events) as (app, pilot):
+        app.notify("told while the end is on screen")
+        await pilot.pause()
+        line = app.screen.query_one(DiagnosisLine)
+        assert line.region.height > 1
+        assert app.screen.query_one(Toast).region.bottom == line.region.y
+
+
 async def test_a_run_with_other_threads_says_that_the_calls_of_the_run_before_are_not_repeated() -> None:
     called = CommandGiven(ns(12.0), "call /motor_power true", CommandKind.CALL)
     async with console(events=[*shared_group_run().events, called]) as (app, pilot):
