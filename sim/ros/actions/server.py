@@ -184,6 +184,8 @@ class ActionServer(ActionWaitable):
             self._logger.debug(f"New goal rejected: {asked.goal_id.uuid}")
             return
         self._logger.debug(f"New goal accepted: {asked.goal_id.uuid}")
+        with self._host.lock:
+            self.publish_status()
         await await_or_execute(self._handle_accepted_callback, goal_handle)
 
     async def _accepted(self, asked: Any) -> ServerGoalHandle | None:
