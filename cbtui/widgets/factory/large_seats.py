@@ -52,7 +52,7 @@ class LargeSeatPainter(SeatPainter):
 
     def _kept(self, entity: EntityInfo, line: int, rows: int) -> None:
         self._seat(self._start + 1, line)
-        self._words(suspended_texts(entity), line, PLAIN)
+        self._words(suspended_texts(entity, is_open=self._place.area.is_open), line, PLAIN)
 
     def _free_seats(self, line: int) -> None:
         for place in range(min(4, (self._end - self._start) // (_CHAIR + 1))):

@@ -52,7 +52,12 @@ class SeatPainter:
         seats: list[Callable[[int, int], None]] = []
         seats += [partial(self._worker, worker) for worker in area.visitors if worker.inside]
         seats += [partial(self._kept, entity) for entity in area.kept]
-        leaving = [worker for worker in area.visitors if not worker.inside]
+        awaits = {entity.id for entity in area.kept}
+        leaving = [
+            worker
+            for worker in area.visitors
+            if not worker.inside and worker.span and worker.span.entity not in awaits
+        ]
         if area.is_open:
             seats += [partial(self._left, worker) for worker in leaving]
             glyphs = self._canvas.glyphs
@@ -150,7 +155,7 @@ class SeatPainter:
         self._seat(self._start, line)
         self._canvas.put(self._start + 1, line, self._canvas.glyphs.away, self._line_ink)
         room = self._end - self._start - 5
-        texts = suspended_texts(entity)
+        texts = suspended_texts(entity, is_open=self._place.area.is_open)
         self._canvas.write(self._start + 4, line, first_fitting(texts, room) or texts[-1], PLAIN, room)
 
     def _free_seats(self, line: int) -> None:

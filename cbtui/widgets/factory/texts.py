@@ -259,7 +259,9 @@ def finished_texts(worker: FactoryWorker, callback: str, timeline: Timeline) -> 
     )
 
 
-def suspended_texts(entity: EntityInfo) -> tuple[str, ...]:
-    """Return that a call on no thread holds a seat, from the longest text to the shortest."""
+def suspended_texts(entity: EntityInfo, *, is_open: bool) -> tuple[str, ...]:
+    """Return that a call on no thread awaits, and keeps a seat unless its area is open; longest first."""
     name = entity.spoken_name
+    if is_open:
+        return (f"{name} awaits, on no thread", f"{name} awaits", f"{short_name(name)} awaits")
     return (f"kept by {name}, which awaits", f"kept by {name}", f"kept: {short_name(name)}")

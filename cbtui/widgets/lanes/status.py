@@ -85,10 +85,15 @@ class LaneStatus:
         holders = len(self.moment.holders.get(group.id, ()))
         if group.kind is GroupKind.REENTRANT:
             # One callback may run several times at once.
-            running = sum(entities[span.entity].group == group.id for span in self.moment.running.values())
-            calls = max(holders, running)
-            run = "runs" if calls == 1 else "run"
-            state = f"{'' if waiting else 'open, '}{calls} {run}" if calls else "open"
+            spans = [span.entity for span in self.moment.running.values()]
+            running = sum(entities[entity].group == group.id for entity in spans)
+            here = Window(self.moment.at, self.moment.at + 1)
+            awaiting = {entity for entity, _ in self.timeline.suspensions_in(group.id, here)}
+            awaits = len(awaiting.difference(spans))
+            calls = max(holders - awaits, running)
+            verb, count = ("run", calls) if calls else ("await", awaits)
+            does = f"{count} {verb}{'s' if count == 1 else ''}"
+            state = f"{'' if waiting else 'open, '}{does}" if holders or running else "open"
         else:
             state = "held" if holders else "free"
         if waiting:

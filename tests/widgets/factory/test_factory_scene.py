@@ -8,7 +8,9 @@ from rich.cells import cell_len
 from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.factory import FactoryPainter
 from cbtui.widgets.factory.scene import Area, FactoryScene, WorkerState, scene_of
+from cbtui.widgets.lanes.painter import LanePainter
 from sim.trace.events import Reason, TimerCancelled
+from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.properties import examples
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
@@ -150,6 +152,23 @@ def test_a_suspended_coroutine_keeps_its_seat_and_frees_its_worker() -> None:
     assert [worker.stay for worker in scene.workers] == [WorkerState.IDLE]
     assert [entity.callback for entity in scene.areas[0].kept] == ["ask_callback"]
     assert "kept by ask_callback" in plain(FactoryPainter().paint(timeline, ns(3.0), 78, 9))
+
+
+@pytest.mark.parametrize(("width", "height"), [(78, 9), (130, 30)])
+def test_a_call_that_awaits_in_an_open_area_has_not_ended_and_keeps_no_seat(width: int, height: int) -> None:
+    run = Run()
+    worker = run.thread("MainThread")
+    group = run.reentrant(run.node("/n"))
+    asking = run.subscription(group, "/a", "ask_callback")
+    run.timer(group, "other", 9.0)
+    run.start(asking, worker, 1.0)
+    run.suspend(asking, worker, 2.0)
+    timeline = told(run)
+    picture = plain(FactoryPainter().paint(timeline, ns(2.01), width, height))
+    assert "ask_callback awaits" in picture
+    assert not any(word in picture for word in ("kept", "just ran", "took"))
+    lanes = plain(LanePainter().paint(timeline, Window(0, ns(5.0)), ns(2.01), 140, 8).rows)
+    assert "open, 1 awaits" in lanes
 
 
 def test_a_timer_that_waits_for_its_own_last_call_is_not_counted_among_those_who_wait() -> None:
