@@ -262,6 +262,10 @@ class Timeline:
             for each in self._run.execution.suspended(entity, window)
         ]
 
+    def suspended(self, entity: EntityId, window: Window) -> Sequence[Window]:
+        """The stretches in which calls of an entity await something; one that lasts has no end."""
+        return self._run.execution.suspended(entity, window)
+
     def busy(self, thread: ThreadId, window: Window) -> float:
         """Share of the window, 0 to 1, in which the thread ran callbacks; idle after the run's end."""
         if window.length <= 0:
@@ -272,10 +276,7 @@ class Timeline:
     # moments
 
     def moment(self, at: Nanoseconds) -> Moment:
-        """The state of the run at ``at``.
-
-        All panes query the same moment: the latest one is cached until new events come.
-        """
+        """The state of the run at ``at``; the moment asked for last is cached until new events come."""
         if self._run.moment is None or self._run.moment.at != at:
             self._run.moment = self._moment_at(at)
         return self._run.moment

@@ -229,10 +229,8 @@ def _doing(
 
 def _awaits_since(entity: EntityInfo, moment: Moment, timeline: Timeline) -> Nanoseconds | None:
     """Return since when the longest of a callback's suspended calls awaits; None if none does."""
-    if entity.id not in timeline.ever_suspended:
-        return None
-    suspended = timeline.suspensions_in(entity.group, Window(moment.at, moment.at + 1))
-    return min((each.start for which, each in suspended if which == entity.id), default=None)
+    suspended = timeline.suspended(entity.id, Window(moment.at, moment.at + 1))
+    return min((each.start for each in suspended), default=None)
 
 
 def _blocked_text(calls: Sequence[Span], moment: Moment) -> Iterator[str]:
