@@ -2,7 +2,8 @@
 
 import pytest
 
-from sim.trace.events import Reason
+from sim.quantities.nanoseconds import SECOND
+from sim.trace.events import Reason, RunEnded
 from sim.trace.figures.summary import Summary, robot_incrementally, summarise
 from sim.trace.figures.summary_text import plain_text
 from sim.trace.incremental import run_to_end
@@ -95,6 +96,15 @@ def test_many_timers_of_one_function_and_period_have_one_row(count: int, rows: l
 
 def test_an_empty_timeline_has_a_summary() -> None:
     assert plain_text(summarise(Timeline())) == "run, 0 s\n\nthreads  0 ran callbacks, at most 0 at once\n"
+
+
+@pytest.mark.parametrize(("time_was_up", "told"), [(True, 1), (False, 0)])
+def test_that_the_time_was_up_before_there_was_a_node_is_told(time_was_up: bool, told: int) -> None:
+    timeline = Timeline()
+    timeline.extend([RunEnded(SECOND, "its end", failed=False, time_was_up=time_was_up)])
+    assert (
+        plain_text(summarise(timeline)).count("nodes    none was made by then: let it run for longer") == told
+    )
 
 
 def test_the_servers_of_an_action_in_two_nodes_are_told_apart_by_these() -> None:

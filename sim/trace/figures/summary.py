@@ -81,6 +81,8 @@ class Summary:
     robot: RobotFigures | None
     silent: tuple[str, ...]
     """The topics of subscriptions on which nothing came."""
+    is_short: bool
+    """Whether the time was up before the program had made a node."""
 
 
 def summarise(timeline: Timeline) -> Summary:
@@ -99,6 +101,7 @@ def summarise(timeline: Timeline) -> Summary:
         services=tuple(_services(timeline.calls)),
         robot=run_to_end(robot_incrementally(timeline, whole)),
         silent=silent_topics(timeline),
+        is_short=not timeline.nodes and timeline.ended is not None and timeline.ended.time_was_up,
     )
 
 
