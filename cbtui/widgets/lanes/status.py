@@ -27,6 +27,7 @@ FAINT = Ink(Role.FAINT)
 WARN = Ink(Role.WARN)
 
 _LATE_AT_LEAST = 1_000_000
+_QUIET_AT_LEAST = 100_000_000
 _WIDE = 22
 
 
@@ -127,6 +128,9 @@ class LaneStatus:
             return TextRun("", PLAIN)
         if is_late(latest, timer):
             return TextRun(f"was late {duration(latest.age)}", WARN)
+        quiet = self.moment.at - latest.start
+        if latest.end is not None and quiet > max(2 * timer.period, _QUIET_AT_LEAST):
+            return TextRun(f"last {duration(quiet)} ago", FAINT)  # cancelled, or by a clock that stands still
         return TextRun("on time", FAINT)
 
     def _client(self, client: EntityInfo) -> TextRun:

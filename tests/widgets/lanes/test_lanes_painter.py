@@ -186,6 +186,15 @@ def test_a_timer_that_found_no_worker_is_marked_late() -> None:
     )
 
 
+@pytest.mark.parametrize(("until", "status"), [(3.0, "on time"), (7.5, "last 5.5 s ago")])
+def test_a_timer_that_comes_no_more_though_nothing_keeps_it_is_not_on_time(until: float, status: str) -> None:
+    run = Run()
+    tick = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    for at in (1.0, 2.0):
+        run.callback(tick, run.thread("MainThread"), at, 0.01)
+    assert f"│ {status} " in plain(LanePainter().paint(told(run, until=until), *last(10, until), 80, 8).rows)
+
+
 @pytest.mark.parametrize("start", [4.0 + place / 50 for place in range(10)])
 def test_a_timer_that_has_just_begun_tells_how_late_whatever_fills_its_column(start: float) -> None:
     window = Window(ns(start), ns(start + 10.0))
