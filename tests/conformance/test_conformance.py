@@ -4,13 +4,14 @@ import sys
 
 import pytest
 
-from tests.conformance.comparing import GAP, Outcome, Result, cases, decided, on_model, outcome
+from tests.conformance.comparing import GAP, Case, Outcome, Result, cases, decided, on_model, outcome
 from tests.conformance.drawing import drawn
 from tests.conformance.programs import program
 from tests.conformance.recorded import against_recorded
 from tests.conformance.running import run_all
 from tests.conformance.searching import Search
 from tests.conformance.steered import Steering
+from tests.conformance.systems import Callback, System
 from tests.real.programs import needs_ros
 
 JAZZY = "jazzy@7.1.5"
@@ -109,6 +110,21 @@ def test_an_order_that_real_ros_2_took_is_found_where_an_executor_goes_ahead_of_
         times=(*times[:19], times[20], *times[22:24], *times[22:]),
     )
     assert Search(Result(case, Outcome.ORDER, (real,)), "kilted@9.1.2").finds(120)
+
+
+@pytest.mark.slow
+def test_a_sleep_may_end_between_a_copy_of_the_tasks_and_the_gathering_of_a_pool_that_goes_round() -> None:
+    # Jazzy 7.1.5, 1 run of 24.
+    steps = (("publish", 1.0), ("sleep", 0.3), ("publish", 1.0), ("task", 0.0))
+    timer = Callback(0, "timer", 0, 1, 0.6, 1, (steps,))
+    subscription = Callback(1, "subscription", 0, 1, 1.0, 10, ())
+    system = System((1,), (0,), ("default", "reentrant"), (timer, subscription), 1.1)
+    usual = next(on_model([system], JAZZY))
+    assert usual is not None
+    *before, task, begins, ends = usual.words
+    assert [task, begins] == ["task_0 #1 runs", "subscription_1 #2 begins takes 2"]
+    other = usual._replace(words=(*before, begins, ends, task))
+    assert Search(Result(Case("", system, usual), Outcome.ORDER, (other,)), JAZZY).finds(60)
 
 
 @needs_ros

@@ -33,11 +33,13 @@ class RacingCycle(Cycle):
     """With which number the last of what is waited for became ready before the wait began."""
     _is_woken = False
     """Whether the guard condition was triggered since a wait ended."""
+    _rests = False
+    """Whether time may pass between a copy of the tasks and the gathering, as in one of many vain rounds."""
 
     @property
     def waits(self) -> bool:
-        """Whether the executor waits for what was gathered, and finds nothing of it."""
-        return self._following is WAITING and not self._wait_is_over(self._clock.now())
+        """Whether the executor waits for what was gathered, and finds nothing, or goes round in vain."""
+        return self._rests or (self._following is WAITING and not self._wait_is_over(self._clock.now()))
 
     def next(self, now: int) -> Work | None:
         """Take the next step; return the work that it hands over, if it does."""
@@ -46,6 +48,9 @@ class RacingCycle(Cycle):
             return None
         work = self._serve(now)
         if work is None:
+            self._rests = self._following is GATHERING and not self._rests and self._is_kept_busy()
+            if self._rests:
+                return None
             if self._find(now):
                 work = self._serve(now)
             if work is None and (not self.waits or self._goes_round()):
@@ -54,8 +59,11 @@ class RacingCycle(Cycle):
 
     def _goes_round(self) -> bool:
         """Whether a message that waits for a worker ends the wait, which finds nothing."""
-        self._is_woken = self.pool is not None and self.pool.kept_busy() and self._clock.choose(2) > 0
+        self._is_woken = self._is_kept_busy()
         return self._is_woken
+
+    def _is_kept_busy(self) -> bool:
+        return self.pool is not None and self.pool.kept_busy() and self._clock.choose(2) > 0
 
     def _find(self, now: int) -> bool:
         if self._following is WAITING:
