@@ -103,8 +103,6 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         """What the terminal can show."""
         self.runs = runs
         self._frames = FrameLoop(self, runs, self._draw, lambda: isinstance(self.app.screen, JumpScreen))
-        self._shown_at = 0
-        """The moment that all panes show: that of the last update."""
         self.finisher = FileFinisher(self.tell)
         self.navigation = TimeNavigation(
             lambda: [runs.timeline], lambda: runs.timeline.end, self.redraw, live
@@ -300,7 +298,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
             self._keys.show()
 
     def _draw_beside_lanes(self) -> None:
-        self.query_one(Lanes).told = self._shown_at = self.navigation.now  # all panes show the same moment
+        self.query_one(Lanes).told = self.navigation.now  # all panes show the same moment
         self._narration.draw()
         run, findings, keymap = self.runs.run, self.runs.findings.findings, keymap_of(self.app)
         self.panes.set_robot(has_robot(run) or bool(self.subject.scene))
@@ -338,7 +336,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def draw_pane(self, pane: Widget) -> None:
         """Show it on one pane."""
-        run, now = self.runs.run, self._shown_at
+        run, now = self.runs.run, self.query_one(Lanes).told or 0
         match pane:
             case CodeView() | LogView():
                 pane.show(run.timeline, now)
