@@ -1,7 +1,7 @@
 """The labels at the left of lanes: names, and the letters and textures of groups."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import InitVar, dataclass, field
 
 from cbtui.looks.theme import Glyphs, Ink, Role, TextRun, texture_of
 from cbtui.widgets.lanes.names import (
@@ -13,6 +13,7 @@ from cbtui.widgets.lanes.names import (
     told_apart,
 )
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
+from sim.trace.events import GroupId
 from sim.trace.model import EntityInfo, GroupInfo
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
@@ -26,14 +27,17 @@ _SWATCH = 2
 
 @dataclass(slots=True)
 class LaneLabels:
-    """Labels of ``width`` columns; groups are coloured by their places."""
+    """Labels of ``width`` columns, for the lanes shown; groups are coloured by their places."""
 
     timeline: Timeline
     width: int
     glyphs: Glyphs
+    shown: InitVar[Sequence[Lane]]
     _names: list[str] = field(init=False)
+    _headed: set[GroupId] = field(init=False)
 
-    def __post_init__(self) -> None:
+    def __post_init__(self, shown: Sequence[Lane]) -> None:
+        self._headed = {lane.group.id for lane in shown if isinstance(lane, GroupLane)}
         staged = roster_of(self.timeline).staged(self.timeline)
         self._names = [self._name(member) for _, members in staged for member in members]
 
@@ -47,10 +51,10 @@ class LaneLabels:
             case GroupLane(group):
                 letter = self._letter(group)
                 return [*letter, TextRun(group_name(group, self.room_after(letter)), _PLAIN)]
-            case MemberLane(entity):
+            case MemberLane(entity, group) if group.id in self._headed:
                 name = entity_name(self._name(entity), self.width - 2, ellipsis, self._names)
                 return [TextRun(f"  {name}", _PLAIN)]
-            case SoleLane(entity, group):
+            case SoleLane(entity, group) | MemberLane(entity, group):
                 letter = self._letter(group)
                 name = sole_name(self._name(entity), group, self.room_after(letter), ellipsis, self._names)
                 return [*letter, TextRun(name, _PLAIN)]

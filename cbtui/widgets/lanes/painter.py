@@ -108,7 +108,7 @@ class LanePainter:
         lanes = choose_lanes(every, room, timeline, scale.window, chosen, kept)
         moment = timeline.moment(now if told is None else told)
         known = timeline.end if end is None else end
-        frame = _LaneFrame(self, timeline, scale, layout, now, moment, selection, path, known)
+        frame = _LaneFrame(self, timeline, scale, layout, now, moment, selection, path, known, lanes)
         rows, shown = [], list[Lane]()
         more = rows_granted(lanes, timeline, room - len(lanes) if width >= ROOMY_FROM else 0)
         for lane in lanes if height > 0 else ():
@@ -141,6 +141,7 @@ class _LaneFrame:
         selection: Selection | None,
         path: Sequence[ChainStep],
         end: Nanoseconds,
+        lanes: Sequence[Lane],
     ) -> None:
         self._painter = painter
         self._cache = painter.cache
@@ -157,7 +158,7 @@ class _LaneFrame:
         self._glyphs = GLYPHS[painter.charset]
         self._edge = max(now, end) if timeline.ended is None else end
         self._calls = LatestCalls(timeline)
-        self._labels = LaneLabels(timeline, layout.names, self._glyphs)
+        self._labels = LaneLabels(timeline, layout.names, self._glyphs, lanes)
         self._bars = BarPainter(timeline, self._glyphs, now, self._told, self._edge)
         self._status = LaneStatus(timeline, scale.window, moment, self._calls, self._charset, layout.statuses)
 

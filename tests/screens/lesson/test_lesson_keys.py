@@ -411,7 +411,10 @@ async def test_what_keys_say_covers_no_more_than_two_sentences_and_takes_no_warn
         await press(pilot, *"eCuiw")
         told = [note.message for note in app._notifications]
         assert told[0] == "the disk is full"
-        assert told[1:] == ["No program reads from the keyboard now.", "Only an exercise is watched again."]
+        assert told[1:] == [
+            "There is only one run so far: change something with t, g or p first.",
+            "Only an exercise is watched again.",
+        ]
 
 
 @pytest.mark.parametrize("moment", [0.0, 13.15])

@@ -6,7 +6,7 @@ from cbtui.looks.theme import Charset
 from cbtui.text.cells import CellRow
 from cbtui.widgets.diagnosis import call_note
 from cbtui.widgets.lanes import LanePainter, Selection
-from cbtui.widgets.lanes.rows import MemberLane, ThreadLane, all_lanes
+from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ThreadLane, all_lanes
 from cbtui.widgets.lanes.scale import TimeScale
 from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls
 from sim.trace.events import CallbackAt, Doing, MessageDropped, ProgramAt
@@ -263,6 +263,17 @@ def test_the_selected_lane_and_its_neighbours_are_shown_however_few_there_is_roo
         )
         assert set(every[max(0, place - 1) : place + 2]) <= set(shown)
         assert list(shown) == [each for each in every if each in shown]
+
+
+def test_a_callback_whose_group_has_no_lane_is_labelled_with_its_group() -> None:
+    timeline = told(shared_group_run(), until=12.9)
+    kept = dict.fromkeys(timeline.entities, 0)
+    for height in range(3, 12):
+        picture = LanePainter().paint(timeline, *last(10, 12.9), 140, height, kept=kept)
+        headed = {lane.group for lane in picture.lanes if isinstance(lane, GroupLane)}
+        for row, lane in zip(picture.rows, picture.lanes, strict=False):
+            if isinstance(lane, MemberLane):
+                assert (row[0].text == f"{lane.group.letter} ") == (lane.group not in headed)
 
 
 def test_marks_of_calls_in_a_row_stand_apart() -> None:
