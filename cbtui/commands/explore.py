@@ -40,7 +40,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--preemptions",
         metavar="K",
-        type=values.whole_number,
+        type=values.bound,
         help="in place of seeds, run every order that stops a thread which could go on at most K times",
     )
     parser.add_argument(

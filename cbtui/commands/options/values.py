@@ -85,6 +85,14 @@ def count(text: str) -> int:
     return number
 
 
+def bound(text: str) -> int:
+    """Read how often something may happen at most."""
+    number = whole_number(text)
+    if number < 0:
+        raise argparse.ArgumentTypeError(f"{text} is less than none; give 0 or more")
+    return number
+
+
 def shard(text: str) -> tuple[int, int]:
     """Read a part of a whole: ``2/4``."""
     part, _, parts = text.partition("/")

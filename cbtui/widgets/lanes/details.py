@@ -69,7 +69,9 @@ def _who_runs(timeline: Timeline, span: Span) -> str:
 
 
 def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
-    if span.end is None or span.end > now >= span.start:
+    if span.start > now and span.end is None:
+        yield f"begins at {timestamp(span.start)}"
+    elif span.end is None or span.end > now >= span.start:
         took = _of_all(now - span.start, span, timeline)
         yield f"has run since {timestamp(span.start)}, for {took}"
     else:
@@ -92,7 +94,7 @@ def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
 def position_in(timeline: Timeline, span: Span, now: Nanoseconds) -> Position | None:
     """Where a call is in its code at ``now``; of one that is over, where it was longest."""
     until = timeline.end if span.end is None else span.end
-    if span.start <= now < until or span.end is None:
+    if span.start <= now and (now < until or span.end is None):
         return timeline.position_on(span.thread, now)
     inside = _positions_in(timeline, span, until)
     return max(inside, key=lambda each: (each.end or until) - each.start, default=None)

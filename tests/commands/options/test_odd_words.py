@@ -63,6 +63,7 @@ def _contents(folder: Path) -> dict[str, bytes]:
         (["run", "node.py", "--speed", "1e-300"], "give 0.001 or more, or max"),
         (["run", "node.py", "--seed", "9" * 30], "give 1000000000000000000 or less"),
         (["explore", "node.py", "--schedules", "9" * 30], "are too many at once; give 100000 or fewer"),
+        (["explore", "node.py", "--preemptions", "-1"], "-1 is less than none; give 0 or more"),
         (["serve", "--host", ""], "'' is not an address"),
         (["serve", "--public-url", "http://[x"], "'http://[x' is not an address"),
         (["serve", "--public-url", "http://a:99999"], "'http://a:99999' is not an address"),

@@ -88,6 +88,7 @@ def test_what_still_runs_is_measured_up_to_the_cursor() -> None:
     long = timeline.spans_on(1, Window(ns(5), ns(6)))[0]
     assert "has run since 4.000 s, for 8.9 s" in details_of(timeline, long, ns(12.9)).facts
     assert "has run since 4.000 s, for 2.0 s of 8.9 s" in details_of(timeline, long, ns(6)).facts
+    assert "begins at 4.000 s" in details_of(timeline, long, ns(3)).facts
     wait = next(iter(timeline.moment(ns(6)).waiting.values()))
     assert "2.0 s of 8.9 s from 4.003 s" in details_of(timeline, wait, ns(6)).facts
 
