@@ -11,7 +11,7 @@ from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.figures.chains_text import chain_report
 from sim.trace.figures.statistics import CallbackStatistics, Distribution, Statistics, ages_used, statistics
-from sim.trace.figures.summary import CallbackFigures, Summary, summarise
+from sim.trace.figures.summary import CallbackFigures, Summary, summarise, without_waits
 from sim.trace.figures.summary_text import robot_line, service_line
 from sim.trace.model import AxisMark, AxisMarkKind, Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -164,7 +164,7 @@ def _waits(summary: Summary, timeline: Timeline) -> Iterator[str]:
     if rows:
         yield from _table(("callback", "waited in all", "longest", "because"), rows)
     else:
-        yield "None: every callback ran as soon as it was ready."
+        yield f"{without_waits(summary.callbacks).capitalize()}."
         yield ""
 
 

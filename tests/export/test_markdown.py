@@ -58,7 +58,7 @@ def test_a_timer_tells_how_old_its_data_was() -> None:
 
 
 def test_a_run_without_waits_says_so_and_an_empty_one_makes_a_report() -> None:
-    assert "None: every callback ran as soon as it was ready." in report(timeline_of(Run().events))
+    assert "None, every callback ran as soon as it was ready." in report(timeline_of(Run().events))
     assert report(timeline_of([])).startswith("# A run\n")
 
 

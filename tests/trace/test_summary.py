@@ -124,6 +124,12 @@ def test_where_nobody_waited_the_summary_says_so() -> None:
     assert "longest waits: none, every callback ran as soon as it was ready\n" in plain_text(summary_of(run))
 
 
+def test_a_callback_that_was_late_without_a_known_wait_did_not_run_as_soon_as_it_was_ready() -> None:
+    run, thread, timer, _ = small_run()
+    run.callback(timer, thread, 1.3, 0.5, late=0.3)
+    assert "longest waits: none for a group or a thread\n" in plain_text(summary_of(run))
+
+
 def test_waits_of_one_series_count_as_one_with_the_reason_of_most_of_it() -> None:
     run, _, timer, odom = small_run()
     run.wait_changes(odom, 1.0, 1.0, Reason.NO_FREE_WORKER)

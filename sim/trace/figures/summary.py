@@ -44,6 +44,15 @@ class CallbackFigures:
     errors: int
 
 
+_LATE: Nanoseconds = 50_000_000
+
+
+def without_waits(callbacks: Iterable[CallbackFigures]) -> str:
+    """Say that no callback is known to have waited for others; some may be late, as where nothing spins."""
+    is_late = any(each.late >= _LATE for each in callbacks)
+    return "none for a group or a thread" if is_late else "none, every callback ran as soon as it was ready"
+
+
 @dataclass(frozen=True, slots=True)
 class ServiceFigures:
     """Calls of one service; ``round_trips`` are the times from request to reply."""

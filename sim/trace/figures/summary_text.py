@@ -8,7 +8,7 @@ from dataclasses import replace
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.descriptions import nothing_came
-from sim.trace.figures.summary import CallbackFigures, RobotFigures, ServiceFigures, Summary
+from sim.trace.figures.summary import CallbackFigures, RobotFigures, ServiceFigures, Summary, without_waits
 
 HEADS = ("callback", "group", "calls", "running", "late by", "lost", "errors")
 _MANY = 5
@@ -86,7 +86,7 @@ def _waits(callbacks: Sequence[CallbackFigures]) -> Iterator[str]:
     if not callbacks:
         return
     if not waited:
-        yield "longest waits: none, every callback ran as soon as it was ready"
+        yield f"longest waits: {without_waits(callbacks)}"
         return
     yield "longest waits"
     widest = max(len(name) for name, _ in waited)
