@@ -6,7 +6,7 @@ from typing import TypeAlias
 
 from sim.diagnosis.rule import Finding, Rule, Weight, fault_of
 from sim.diagnosis.rules import RULES
-from sim.diagnosis.rules.failed import FAILED_RULES
+from sim.diagnosis.rules.incomplete import FAILED_RULES
 from sim.diagnosis.timeline_view import TimelineView
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId

@@ -12,7 +12,7 @@ from sim.diagnosis.rules.errors import (
     SpinRaised,
     ThreadRaised,
 )
-from sim.diagnosis.rules.gaps import GapsInTrace
+from sim.diagnosis.rules.incomplete import GapsInTrace
 from sim.diagnosis.rules.leaks import NeverDestroyed
 from sim.diagnosis.rules.locks import LockHeldLong, LocksInTurn
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, SentTooEarly, StaleData
@@ -38,7 +38,8 @@ from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
 from sim.diagnosis.rules.timing import FallsBehind, MeantInMilliseconds, OverlappingCallback, OverrunTimer
 from sim.diagnosis.rules.transforms import LookupKeepsTransform
 from sim.diagnosis.rules.unended import ThreadWaitsForNobody, WaitsForLock
-from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NodeNeverSpins, NoFreeWorker
+from sim.diagnosis.rules.unspun import NodeNeverSpins, SpinsTooRarely
+from sim.diagnosis.rules.waiting import BehindOthers, GroupStarvation, NoFreeWorker
 
 RULES: tuple[Rule, ...] = (
     SelfMadeDeadlock(),
@@ -59,6 +60,7 @@ RULES: tuple[Rule, ...] = (
     SpinRaised(),
     ThreadRaised(),
     NodeNeverSpins(),
+    SpinsTooRarely(),
     NobodyOffers(),
     WaitedInVain(),
     QosMismatch(),

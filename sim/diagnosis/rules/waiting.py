@@ -6,27 +6,19 @@ from typing import ClassVar
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits, who_moves
 from sim.diagnosis.edits.flags import event_setters
-from sim.diagnosis.edits.spins import spin_beside, spin_node_beside, spins_in_turn, started_late, taken_away
 from sim.diagnosis.rule import (
-    CodeLocation,
     Explanation,
     Finding,
     Rule,
     Weight,
-    by_edit,
     entity_of,
     line_of,
-    loop_beside_spin,
     place_of,
 )
 from sim.diagnosis.rules.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
-from sim.diagnosis.rules.edits import not_reached
 from sim.diagnosis.rules.locks import let_return, weight_beside_lock
-from sim.diagnosis.time_limits import ends_by_itself
-from sim.diagnosis.timeline_view import LongWait, TimelineView, raised_last
+from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import (
-    SPIN_BESIDE,
-    SPIN_ONCE,
     group_of,
     listed,
     often,
@@ -37,8 +29,7 @@ from sim.diagnosis.words import (
 )
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.descriptions import node_name
-from sim.trace.events import EntityId, EntityKind, GroupKind, NodeId, Reason
+from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -49,7 +40,7 @@ _HABIT = 3
 """The number of waits from which on their share of a timer's calls counts."""
 
 
-class _KeptWaiting(Rule):
+class KeptWaiting(Rule):
     """Others kept a ready callback waiting longer than the threshold in total, for one reason.
 
     A timer that misses a tick meanwhile waits long, too, if that happens at most of its calls.
@@ -75,10 +66,14 @@ class _KeptWaiting(Rule):
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Irrelevant if it is a timer that seldom waits, not for long; a remark if its culprit waits too."""
-        calls = timeline.calls_of(found.subject, Window(0, timeline.end + 1))
-        if found.size < HALF_A_SECOND and found.count < max(_HABIT, calls / 3):
+        if found.size < HALF_A_SECOND and self._of_habit(found, timeline) is None:
             return None
         return weight_beside_lock(found.culprit, Window(found.at, found.until), timeline)
+
+    def _of_habit(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Return the rule's weight if that happens at a third of the callback's calls, else None."""
+        calls = timeline.calls_of(found.subject, Window(0, timeline.end + 1))
+        return None if found.count < max(_HABIT, calls / 3) else self.weight
 
     def _waiting(self, found: Finding, timeline: Timeline) -> list[EntityId]:
         """Return the callbacks that waited for the culprit at the worst time, the longest wait first."""
@@ -100,7 +95,7 @@ class _KeptWaiting(Rule):
         )
 
 
-class GroupStarvation(_KeptWaiting):
+class GroupStarvation(KeptWaiting):
     """A callback was ready, but another one held its mutually exclusive group.
 
     Others that waited for the culprit's thread meanwhile are part of the finding.
@@ -151,7 +146,7 @@ class GroupStarvation(_KeptWaiting):
         return self._explained(found, timeline, held, why, cure, room)
 
 
-class NoFreeWorker(_KeptWaiting):
+class NoFreeWorker(KeptWaiting):
     """A callback's group was free, but every thread of its executor was busy."""
 
     id = "no-free-worker"
@@ -199,7 +194,7 @@ class NoFreeWorker(_KeptWaiting):
         return None if is_told else super().weigh(found, timeline)
 
 
-class BehindOthers(_KeptWaiting):
+class BehindOthers(KeptWaiting):
     """A callback was ready, but its EventsExecutor was running what came before it.
 
     Source: rclpy's ``events_executor.cpp``, which has one queue and ignores callback groups.
@@ -221,125 +216,6 @@ class BehindOthers(_KeptWaiting):
             "an EventsExecutor asks no group: it runs one callback at a time, in order of arrival",
             f"keep {culprit} short, or let a MultiThreadedExecutor with more than one thread run both{apart}",
         )
-
-
-class NodeNeverSpins(Rule):
-    """A callback of a node is ready, and no executor spins the node, unless an exception ended that.
-
-    None need be ready if the program is in a loop of its own before anything spins. Of a program that waits
-    for a service the rule on that tells.
-    """
-
-    id = "node-never-spins"
-    summary = "callbacks are ready and nobody spins their node"
-    dated_by_first = True
-    threshold = SECOND
-
-    def check(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield for each node the callback that has waited longest."""
-        at = view.timeline.program_at(view.end)
-        if at is not None and at.call == "Client.wait_for_service":
-            return
-        taken = {clash.node for clash in view.timeline.spin_clashes}
-        for node, wait in view.unspun.items():
-            name = node_name(node, view.timeline)
-            since = wait.parts[-1].start
-            is_long = view.end - since >= self.threshold
-            if is_long and node not in taken and raised_last(node, view.timeline) is None:
-                first, size = self._first_of(node, view), view.end - since
-                yield Finding(self, first, view.end, wait.entity, about=name, size=size)
-        yield from () if view.unspun else self._in_loop(view)
-
-    def _first_of(self, node: NodeId, view: TimelineView) -> Nanoseconds:
-        """When the first wait of a node began that lasted as long."""
-        waits = [wait for each in view.entities() if each.node == node for wait in view.waits(each.id)]
-        return min(
-            part.start
-            for wait in waits
-            for part in wait.because(Reason.NOBODY_SPINS)
-            if wait.length(part) >= self.threshold
-        )
-
-    def _in_loop(self, view: TimelineView) -> Iterator[Finding]:
-        """Yield a callback that is not ready, if the program has been in one loop all the time lately."""
-        timeline, before = view.timeline, max(0, view.end - self.threshold)
-        positions = [timeline.program_at(each) for each in (before, view.end)]
-        loops = {
-            each.loop if each and each.call != "Client.wait_for_service" else ("", 0) for each in positions
-        }
-        loop = loops.pop() if len(loops) == 1 else ("", 0)
-        if timeline.executors or not loop[0] or ends_by_itself(*loop):
-            return
-        for each in view.few_entities:
-            if place_of(each.id, timeline) is not None:
-                yield Finding(self, 0, view.end, each.id, about=node_name(each.node, timeline))
-                return
-
-    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        subject = who(found.subject, timeline)
-        node = timeline.entities[found.subject].node
-        ever = any(
-            each.node == node and timeline.calls_of(each.id, Window(0, timeline.end + 1))
-            for each in timeline.entities.values()
-        )
-        place, at = place_of(found.subject, timeline), timeline.program_at(found.until)
-        spins: tuple[int, ...] = ()
-        remedies: tuple[Remedy, ...] = ()
-        what = "nobody spins its node any more" if ever else "nobody ever spun its node"
-        why = "callbacks run only inside spin()"
-        cure = "call rclpy.spin(node), or add the node to an executor and spin that"
-        if timeline.executors and not ever:
-            what = "none of the spinning executors has its node"
-            cure = (
-                "add the node to an executor that spins: one that is only made runs nothing, "
-                "and a second spin() is not reached before the first one returns"
-            )
-            spins = spins_in_turn(place.file) if place and at is None else ()
-        elif ever:
-            cure = "keep spinning the node: spin() has returned, or its executor was shut down"
-        if place and spins:
-            cure = SPIN_ONCE
-            what, place, remedies = not_reached(place.file)
-        elif place and timeline.executors and not ever and at is None:
-            what, cure, place = _taken_or_late(what, cure, place)
-        loop, how = loop_beside_spin(found.until, timeline)
-        if at is not None and not ever:
-            place = CodeLocation(*at.place, at.place[1])
-            what = f"the program is at line {place.first_line}, and has come to no spin() so far"
-            if at.call == "Client.call":
-                what = f"the program waits in {at.call}() at line {place.first_line}, and nothing spins"
-                cure = "use call_async() there, and rclpy.spin_until_future_complete(node, future)"
-        if loop is not None:
-            how_often = "spins too rarely" if ever else "comes to no spin()"
-            place, cure = loop, how
-            what = f"the program is in the loop of line {loop.first_line}, and {how_often}"
-            remedies = by_edit(loop, "spin the node in a thread beside the loop", spin_node_beside)
-        if loop is not None and cure is SPIN_BESIDE:
-            what = f"the program waits in Rate.sleep() at line {loop.first_line}, and nothing spins"
-            why = "a rate's timer is a callback too: callbacks run only inside spin()"
-            remedies = by_edit(loop, "spin the node in a thread beside the loop", spin_beside)
-        ready = f"has been ready for {duration(found.size)} and does not run" if found.size else "cannot run"
-        if found.about not in subject:
-            subject = f"{subject} of {found.about}"
-        return Explanation(f"{subject} {ready}: {what}", why, cure, place, remedies=remedies)
-
-
-def _taken_or_late(what: str, cure: str, place: CodeLocation) -> tuple[str, str, CodeLocation]:
-    """Tell of a node that a second executor took away, or that only a thread spins which starts too late."""
-    line, node, first, second = taken_away(place.file, place.first_line)
-    spin, start = started_late(place.file)
-    earlier = f"start the thread of line {start} before the spin() of line {spin}, which does not return"
-    if line:
-        what = f"{second}.add_node({node}) of line {line} took the node away from {first}"
-        cure = (
-            f"leave that line out: a node is in one executor at a time{f'; and {earlier}' if start else ''}"
-        )
-    elif start:
-        what, cure = (
-            f"the spin() of line {spin} has not returned, so that line {start} was not reached",
-            earlier,
-        )
-    return what, cure, CodeLocation(place.file, line or start, line or start) if line or start else place
 
 
 def _long_for(entity: EntityInfo) -> Nanoseconds:
