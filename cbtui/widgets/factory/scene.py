@@ -276,7 +276,7 @@ class _SceneBuilder:
                 if span.end is not None and self._now - self._glance < span.end <= self._now
             ]
             if ended:
-                return max(ended, key=lambda span: span.end_at(self._now))
+                return max(ended, key=lambda span: (span.end_at(self._now), span.number))
         return None
 
     def _crew(self, members: Sequence[EntityInfo]) -> str:

@@ -16,7 +16,7 @@ from cbtui.widgets.factory.texts import (
     suspended_texts,
 )
 from sim.quantities.durations import duration
-from sim.trace.model import EntityInfo
+from sim.trace.model import EntityInfo, Nanoseconds
 
 _FREE_SEATS = 4
 """Free seats that an open area shows; it always has room for more."""
@@ -67,7 +67,7 @@ class SeatPainter:
             self._open(seats, faces)
             return
         if not seats and leaving:
-            seats = [partial(self._left, max(leaving, key=_ended_at))]
+            seats = [partial(self._left, max(leaving, key=_end_of))]
         self._stacked(seats or [self._free])
 
     def _stacked(self, seats: Sequence[Callable[[int, int], None]]) -> None:
@@ -200,5 +200,7 @@ class SeatPainter:
         return "" if entity is None else entity.spoken_name
 
 
-def _ended_at(worker: FactoryWorker) -> int:
-    return 0 if worker.span is None or worker.span.end is None else worker.span.end
+def _end_of(worker: FactoryWorker) -> tuple[Nanoseconds, int]:
+    """When a call ended, and its place among those that ended then."""
+    span = worker.span
+    return (0, 0) if span is None or span.end is None else (span.end, span.number)

@@ -91,6 +91,19 @@ def test_a_call_that_takes_no_time_is_seen_for_a_glance() -> None:
     assert [worker.stay for worker in scene_at(timeline, 1.2).workers] == [WorkerState.IDLE]
 
 
+@pytest.mark.parametrize("threads", [(0, 1), (1, 0), (0, 0)])
+def test_of_calls_that_ended_at_one_moment_the_last_one_just_ran(threads: tuple[int, int]) -> None:
+    run = Run()
+    workers = [run.thread("Pool-0_0"), run.thread("Pool-0_1")]
+    group = run.exclusive(run.node("/n"))
+    pack, watch = run.timer(group, "pack", 1.0), run.timer(group, "watch", 1.0)
+    run.callback(pack, workers[threads[0]], 1.0, 0.5)
+    run.callback(watch, workers[threads[1]], 1.5, 0.0)
+    picture = plain(FactoryPainter().paint(told(run), ns(1.51), 78, 9))
+    assert "watch took no time" in picture
+    assert "pack took" not in picture
+
+
 @given(st.floats(0.0, 0.149), st.sampled_from([0.1, 1.0, 5.0, 20.0]))
 def test_at_any_speed_a_worker_has_walked_as_far_after_the_same_moment_on_screen(
     shown: float, speed: float
