@@ -54,9 +54,10 @@ def narration(timeline: Timeline, at: Nanoseconds, stepped: bool = False) -> tup
     return (f"{timestamp(last)}: {first}", *more, *_waits(timeline, at, last))
 
 
-def decisions_at(timeline: Timeline, at: Nanoseconds) -> int:
+def decisions_at(timeline: Timeline, at: Nanoseconds, stepped: bool = True) -> int:
     """Return with how many sentences ``narration`` tells what was decided at a moment; at least 1."""
-    return max(1, len(_decided(timeline, at)))
+    last = at if stepped else timeline.neighbour(at + 1, -1)
+    return 1 if last is None else max(1, len(_decided(timeline, last)))
 
 
 def _decided(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:

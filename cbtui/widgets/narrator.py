@@ -7,7 +7,7 @@ from textual.reactive import reactive
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.text.cells import MOST_COLUMNS, fit, lines_of_text
-from cbtui.widgets.narration import narration
+from cbtui.widgets.narration import decisions_at, narration
 from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.quantities.durations import timestamp
 from sim.trace.model import Nanoseconds
@@ -26,8 +26,8 @@ class Narrator(PaintedWidget):
     now: reactive[Nanoseconds] = painted(0)
     stepped: reactive[bool] = painted(False)
     """Whether a step led to the moment, so that it is told even if nothing was decided then."""
-    place: reactive[int] = painted(0)
-    """Which of the decisions of one moment is looked at, from 0."""
+    place: reactive[int | None] = painted(None)
+    """Which of the decisions of one moment is looked at, from 0; None for the newest."""
     charset: reactive[Charset] = painted(Charset.BRAILLE)
     _wanted = ROWS
 
@@ -46,14 +46,16 @@ class Narrator(PaintedWidget):
         """
         width = max(20, size.width)
         told = narration(self.timeline, self.now, self.stepped)
-        lines = self._lines(told, 0, width - 6, MOST_COLUMNS)
+        newest = decisions_at(self.timeline, self.now, self.stepped) - 1
+        here = newest if self.place is None else self.place
+        lines = self._lines(told, 0, here, width - 6, MOST_COLUMNS)
         if len(lines) > size.height > 0:
-            lines = self._lines(told, 0, width - 6, width)
+            lines = self._lines(told, 0, here, width - 6, width)
         if len(lines) > max(size.height, self._wanted) and self.is_running:
             self.call_later(self._grow, len(lines))
-        for first in range(1, self.place + 1):
+        for first in range(1, here + 1):
             if len(lines) > size.height > 0:
-                lines = self._lines(told, first, width - 6, width)
+                lines = self._lines(told, first, here, width - 6, width)
         if len(lines) > size.height > 0:
             last, ink = lines[size.height - 1]
             lines[size.height - 1 :] = [(f"{last} {GLYPHS[self.charset].ellipsis}", ink)]
@@ -63,13 +65,14 @@ class Narrator(PaintedWidget):
         self._wanted = max(self._wanted, rows)
         self.refresh(layout=True)
 
-    def _lines(self, told: Sequence[str], first: int, width: int, most: int) -> list[tuple[str, Ink]]:
+    def _lines(
+        self, told: Sequence[str], first: int, here: int, width: int, most: int
+    ) -> list[tuple[str, Ink]]:
         lines: list[tuple[str, Ink]] = []
         for place, text in enumerate(told[first:], first):
-            here = place == self.place
             when = f"{timestamp(self.now)}, decision {place + 1}: " if place == first > 0 else ""
-            sign = f" {GLYPHS[self.charset].forth} " if here else "   "
+            sign = f" {GLYPHS[self.charset].forth} " if place == here else "   "
             for line in lines_of_text(when + text, width, self.charset, most):
-                lines.append((f"{sign}{line}", _FIRST if here else _NEXT))
+                lines.append((f"{sign}{line}", _FIRST if place == here else _NEXT))
                 sign = "     "
         return lines

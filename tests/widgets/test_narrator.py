@@ -296,6 +296,19 @@ def test_each_decision_of_a_moment_has_a_line_of_its_own_and_the_one_looked_at_i
     assert "2.000 s, decision 2: MainThread is free: second" in narrator.rows(Size(100, 1))[0][0].text
 
 
+@pytest.mark.parametrize("more", range(1, 7))
+def test_each_step_within_a_moment_shows_the_newest_decision(more: int) -> None:
+    run = Run()
+    thread, group = run.thread("MainThread"), run.exclusive(run.node("/n"))
+    for place in range(more):
+        run.callback(run.timer(group, f"tick_{place}", 1.0), thread, 2.0, 0.0)
+    narrator = Narrator()
+    narrator.timeline, narrator.now = told(run, until=2.0), ns(2.0)
+    for narrator.stepped in (True, False):
+        (here,) = (row[0].text for row in narrator.rows(Size(80, ROWS)) if "▸" in row[0].text)
+        assert f"tick_{more - 1} is due" in here
+
+
 def test_what_waits_behind_a_call_that_has_returned_is_free_to_run() -> None:
     run = Run()
     heard = run.subscription(run.exclusive(run.node("/n")), "/a", "heard")
@@ -364,7 +377,7 @@ def test_on_a_wide_screen_sentences_use_its_width_before_any_is_cut() -> None:
     for number in range(3):
         run.callback(run.timer(group, f"tick_number_{number}", 1.0), thread, 1.0, 0.0)
     narrator = Narrator()
-    narrator.timeline, narrator.now = told(run, until=1.5), ns(1.0)
+    narrator.timeline, narrator.now, narrator.place = told(run, until=1.5), ns(1.0), 0
     narrow, wide = (narrator.rows(Size(width, ROWS)) for width in (100, 200))
     assert narrow[-1][0].text.rstrip().endswith("…")
     assert not any("…" in row[0].text for row in wide)

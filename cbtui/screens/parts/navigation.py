@@ -27,8 +27,8 @@ class TimeNavigation(ScreenPart):
     stepped: Callable[[], None] = lambda: None
     decisions: Callable[[], int] = lambda: 1
     playhead: Playhead = field(default_factory=Playhead)
-    place: int = 0
-    """Which decision of the moment on screen is looked at, from 0."""
+    place: int | None = None
+    """Which decision of the moment on screen is looked at, from 0; None for the newest."""
 
     @property
     def now(self) -> Nanoseconds:
@@ -42,7 +42,8 @@ class TimeNavigation(ScreenPart):
 
     def move(self, playhead: Playhead) -> None:
         """Set the playhead."""
-        self.playhead, self.place = playhead, 0
+        self.place = self.place if playhead.at == self.playhead.at else None
+        self.playhead = playhead
         self.moved()
 
     def seek(self, moment: Nanoseconds) -> None:
@@ -93,11 +94,12 @@ class TimeNavigation(ScreenPart):
         self._go_to_event(-1)
 
     def _go_to_event(self, step: int) -> None:
-        place = self.place + step
+        here = self.decisions() - 1 if self.place is None else self.place
+        place = here + step
         if self.playhead.at is None or not 0 <= place < self.decisions():
             self.move(self.playhead.beside(self.timelines(), self.end(), step))
             place = 0 if step > 0 else self.decisions() - 1
-        self.place = place
+        self.place = None if self.playhead.at is None else place
         self.stepped()
 
     @property

@@ -61,6 +61,8 @@ def test_steps_go_through_the_decisions_of_a_moment_before_they_leave_it() -> No
     navigation.decisions = lambda: 2
     navigation.seek(ns(5.0))
     navigation.action_step_back()
+    assert (navigation.now, navigation.place) == (ns(5.0), 0), "the newest one is on screen before it"
+    navigation.action_step_back()
     moments = [(navigation.now, navigation.place)]
     for step in (navigation.action_step_back, navigation.action_step, navigation.action_step):
         step()
