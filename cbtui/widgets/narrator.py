@@ -45,9 +45,11 @@ class Narrator(PaintedWidget):
         Where they still do not fit, those before the decision looked at go first.
         """
         width = max(20, size.width)
-        told = narration(self.timeline, self.now, self.stepped)
+        told = list(narration(self.timeline, self.now, self.stepped))
         newest = decisions_at(self.timeline, self.now, self.stepped) - 1
         here = newest if self.place is None else self.place
+        if here < newest:
+            told[here] += " (panes show the end of this moment)"
         lines = self._lines(told, 0, here, width - 6, MOST_COLUMNS)
         if len(lines) > size.height > 0:
             lines = self._lines(told, 0, here, width - 6, width)

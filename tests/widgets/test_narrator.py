@@ -293,6 +293,11 @@ def test_each_decision_of_a_moment_has_a_line_of_its_own_and_the_one_looked_at_i
     ended, begun, *_ = (row[0].text.rstrip() for row in narrator.rows(Size(100, ROWS)))
     assert ended == "   2.000 s: first returns after 1.0 s, group A is free"
     assert begun.startswith(" ▸ MainThread is free: second is due")
+    assert not any("panes" in row[0].text for row in narrator.rows(Size(100, ROWS)))
+    narrator.place = 0
+    earlier = narrator.rows(Size(100, ROWS))[0][0].text
+    assert "group A is free (panes show the end of this moment)" in earlier
+    narrator.place = 1
     assert "2.000 s, decision 2: MainThread is free: second" in narrator.rows(Size(100, 1))[0][0].text
 
 
