@@ -131,7 +131,9 @@ def _ways_to_say(diagnosis: Diagnosis) -> Iterator[str]:
 
 
 def _texts(diagnosis: Diagnosis) -> Iterator[str]:
-    """Yield texts, the fullest first: short names, no time, the first clauses, nothing in brackets."""
+    """Yield texts, the fullest first: short names, no time, the first clauses, nothing in brackets, not
+    who keeps the threads busy.
+    """
     yield from filter(None, (diagnosis.at_length, diagnosis.text))
     brief = [sub(r"\w+_callback\b(?!\.py)", lambda found: short_name(found[0]), diagnosis.text)]
     brief.append(brief[0].removeprefix(diagnosis.time))
@@ -140,4 +142,6 @@ def _texts(diagnosis: Diagnosis) -> Iterator[str]:
     for text in brief:
         for end in reversed(list(finditer(r"[;.] ", text))):
             yield text[: end.start()]
-    yield sub(r" \([^)]*\)", "", brief[-1])
+    bare = sub(r" \([^)]*\)", "", brief[-1])
+    yield bare
+    yield sub(r"(threads are busy|no thread is free) (with|for it:) .*", r"\1", bare)

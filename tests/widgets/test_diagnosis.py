@@ -393,6 +393,19 @@ def test_a_shortened_sentence_keeps_the_names_of_files() -> None:
     assert "lookup_in_a_callback.py; saving it checks it again after odom" in line
 
 
+@pytest.mark.parametrize(
+    ("sentence", "shown"),
+    [
+        ("all 4 threads are busy with think and store", "all 4 threads are busy"),
+        ("no thread is free for it: think and store run", "no thread is free"),
+    ],
+)
+def test_a_sentence_that_is_too_long_says_what_is_busy_and_not_with_what(sentence: str, shown: str) -> None:
+    told = Diagnosis(f"source waits 600 ms: {sentence}", DiagnosisLevel.WAITS)
+    shorter = diagnosis_row(told, (), "12 problems · d", 72)[0].text.rstrip()
+    assert shorter == f" · source waits 600 ms: {shown}"
+
+
 def test_the_note_gives_way_to_the_diagnosis() -> None:
     runs = diagnosis_row(
         Diagnosis("w" * 70, DiagnosisLevel.TROUBLE), ("/motor_power replied success=True",), "", 80
