@@ -14,7 +14,7 @@ from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.lanes.names import short_thread
 from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
-from sim.trace.events import Doing, EntityId
+from sim.trace.events import Doing, EntityId, Reason
 from sim.trace.figures.waiting import wait_told, waits_since
 from sim.trace.model import AWAIT, EntityInfo, Frame, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.roster import roster_of
@@ -56,6 +56,8 @@ class CallbackMark:
     letter: str
     number: int
     running_long: bool = False
+    reason: Reason | None = None
+    """Why it waits, if it does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,6 +191,7 @@ def marks_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
 def _marked(entity: EntityInfo, timeline: Timeline, moment: Moment) -> CallbackMark:
     group = timeline.groups[entity.group]
     doing, texts, since = _doing(entity, timeline, moment)
+    waits = wait_told(entity.id, moment, timeline) if doing is CallbackActivity.WAITS else None
     return CallbackMark(
         entity.id,
         entity.first_line,
@@ -198,6 +201,7 @@ def _marked(entity: EntityInfo, timeline: Timeline, moment: Moment) -> CallbackM
         group.letter,
         group.place,
         doing is CallbackActivity.RUNS and moment.at - since >= _LONG,
+        None if waits is None else waits.reason,
     )
 
 
@@ -258,6 +262,11 @@ def text_beside(texts: Sequence[str], room: int) -> str:
     return text if len(text) > _SIGN else next(short, text)
 
 
+def _edge(marked: CallbackMark) -> tuple[CallbackActivity, int, Reason | None]:
+    """What the margin beside a callback's lines shows."""
+    return marked.doing, marked.number, marked.reason
+
+
 def changed_lines(before: Sequence[CallbackMark], after: Sequence[CallbackMark]) -> Iterator[tuple[int, int]]:
     """Yield the first line and the length of each range of lines that must be redrawn."""
     known = {marked.first_line: marked for marked in before}
@@ -265,7 +274,7 @@ def changed_lines(before: Sequence[CallbackMark], after: Sequence[CallbackMark])
         old = known.pop(marked.first_line, None)
         if old == marked:
             continue
-        alike = old is not None and old.doing is marked.doing and old.number == marked.number
+        alike = old is not None and _edge(old) == _edge(marked)
         yield marked.first_line, 1 if alike else marked.last_line - marked.first_line + 1
     for gone in known.values():
         yield gone.first_line, gone.last_line - gone.first_line + 1

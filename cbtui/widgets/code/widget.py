@@ -34,7 +34,7 @@ from cbtui.widgets.code.marks import (
 from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.inked_view import InkedView
 from cbtui.widgets.jump import JumpTarget
-from sim.trace.events import EntityId, Reason
+from sim.trace.events import EntityId
 from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -50,10 +50,6 @@ _INKS = {
     CallbackActivity.WAITS: Role.WARN,
     CallbackActivity.AWAITS: Role.LABEL,
     CallbackActivity.RUNS: Role.LABEL,
-}
-_EDGES = {
-    CallbackActivity.RUNS: ("▌", Role.BAR),
-    CallbackActivity.WAITS: (GLYPHS[Charset.BRAILLE].hatch[Reason.GROUP_HELD], Role.HATCH),
 }
 
 
@@ -371,7 +367,9 @@ class CodeView(InkedView):
             return [number, Segment("▶ " if here.texts else "▸ ", self.in_ink(Ink(Role.BAR, here.number)))]
         if marked is None:
             return [number, Segment("  ", self.in_class(""))]
-        glyph, role = _EDGES.get(marked.doing, (" ", Role.FAINT))
+        glyph, role = ("▌", Role.BAR) if marked.doing is CallbackActivity.RUNS else (" ", Role.FAINT)
+        if marked.reason is not None:
+            glyph, role = GLYPHS[Charset.BRAILLE].hatch[marked.reason], Role.HATCH
         return [number, Segment(f"{glyph} ", self.in_ink(Ink(role, marked.number)))]
 
     def _with_text(self, line: Strip, texts: Sequence[str], ink: Ink, width: int) -> Strip:

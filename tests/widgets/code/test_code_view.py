@@ -4,10 +4,11 @@ import pytest
 from textual.app import App, ComposeResult
 from textual.pilot import Pilot
 
+from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.code.marks import marks_at
 from cbtui.widgets.code.source_files import SourceFiles
-from sim.trace.events import RunEnded
+from sim.trace.events import Reason, RunEnded
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.pictures import lines_of
@@ -101,6 +102,25 @@ async def test_the_view_stays_while_a_callback_of_its_own_file_runs_as_long(
         await show(pilot, timeline, 1.5)
         await show(pilot, timeline, 5.0)
         assert app.view.note == "talker.py"
+
+
+@pytest.mark.parametrize(("reason", "sign"), GLYPHS[Charset.BRAILLE].hatch.items())
+async def test_the_margin_beside_a_waiting_callback_has_the_sign_of_the_reason(
+    talker: Path, reason: Reason, sign: str
+) -> None:
+    run = Run()
+    group = run.exclusive(run.node("/t"))
+    talking = run.timer(group, "talk", 1.0, file=str(talker), lines=(3, 6))
+    other = run.timer(group, "other", 1.0)
+    run.callback(other, run.thread("a"), 0.5)
+    run.wait(talking, 1.0, None, reason, other)
+    run.log("still there", 8.0)
+    timeline = Timeline()
+    timeline.extend(run.events)
+    async with CodeOnly(talker).run_test(size=(60, 10)) as pilot:
+        lines = await show(pilot, timeline, 4.0)
+        assert f" {sign} waits " in lines[2]
+        assert [line[5] for line in lines[3:6]] == [sign] * 3
 
 
 async def test_the_view_leaves_a_person_where_a_line_was_picked(talker: Path, listener: Path) -> None:
