@@ -8,7 +8,7 @@ from textual.widget import Widget
 
 from cbtui.keys.action import Scope
 from cbtui.looks.theme import Charset
-from cbtui.runs.live.live_run import ShownRun
+from cbtui.runs.live.live_run import LiveRun, ShownRun
 from cbtui.runs.live.replay import RecordedRun
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.part import RunHost, ScreenHost, ScreenPart, ScreenParts
@@ -138,6 +138,8 @@ class Absences(ScreenPart):
         lessons = f"{key('leave')} leads to the menu with all of them."
         pauses = f"{key('pause')} pauses the run, then {key('step')} makes a step; "
         pauses = pauses if self.is_available("pause") else ""
+        if isinstance(run, LiveRun) and run.alive and not run.virtual:
+            pauses = "On the real clock nobody knows the next event: steps need virtual time; "
         sentences = {
             "step_back": "This is the beginning: no event is before it.",
             "earlier": "This is the beginning.",

@@ -5,6 +5,7 @@ from contextlib import asynccontextmanager
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 from textual.pilot import Pilot
 from textual.widgets import Static
 
@@ -75,6 +76,18 @@ async def test_a_comma_looks_back_by_one_event_and_a_full_stop_forward_until_liv
         await press(pilot, "full_stop")
         assert "LIVE" in status(app)
         assert app.engines.latest.commands == []
+
+
+async def test_a_step_on_the_real_clock_says_why_there_is_none() -> None:
+    async with console() as (app, pilot):
+        run = app.lesson_screen.runs.run
+        run.setup = replace(run.setup, clock="real")
+        for keys in (["full_stop"], ["space", "full_stop"]):
+            await press(pilot, *keys)
+            assert [note.message for note in app._notifications][-1] == (
+                "On the real clock nobody knows the next event: steps need virtual time; "
+                ", looks back, event by event."
+            )
 
 
 @pytest.mark.parametrize(("key", "stays"), [("comma", False), ("N", True)])
