@@ -60,6 +60,12 @@ def decisions_at(timeline: Timeline, at: Nanoseconds, stepped: bool = True) -> i
     return 1 if last is None else max(1, len(_decided(timeline, last)))
 
 
+def decided_about(timeline: Timeline, at: Nanoseconds, place: int) -> EntityId | None:
+    """Return the callback that a decision of a moment is about; ``place`` counts from 0, -1 is the last."""
+    about = [entity for entity, _ in _deeds(timeline, at)]
+    return about[place] if -len(about) <= place < len(about) else None
+
+
 def _decided(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:
     """What was decided at a moment; who has become ready, if that is all, as it is told with the waits."""
     ready = [
@@ -67,26 +73,27 @@ def _decided(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:
         for wait in waits_at(timeline.moment(at), timeline)
         if wait.since == at
     ]
-    return tuple(_deeds(timeline, at)) or tuple(filter(None, ("; ".join(ready),)))
+    return tuple(told for _, told in _deeds(timeline, at)) or tuple(filter(None, ("; ".join(ready),)))
 
 
-def _deeds(timeline: Timeline, at: Nanoseconds) -> Iterator[str]:
-    """What was done at a moment, in the order of the trace; calls without duration and losses each once."""
+def _deeds(timeline: Timeline, at: Nanoseconds) -> Iterator[tuple[EntityId, str]]:
+    """What was done at a moment and by whom, as the trace has it; calls without duration and losses once."""
     made = list(timeline.decisions(Window(at, at + 1)))
     at_once = [span for (_, span), then in pairwise(made) if then == (Deed.ENDED, span)]
     losses = iter(_lost(timeline, at))
     for deed, what in made:
         match what:
             case Span() if deed is Deed.SUSPENDED:
-                yield _suspending(what, timeline)
+                yield what.entity, _suspending(what, timeline)
             case Span() if deed is not Deed.ENDED:
-                yield from _begun(what, deed, timeline, returns=what in at_once)
+                begun = _begun(what, deed, timeline, returns=what in at_once)
+                yield from ((what.entity, told) for told in begun)
             case Span() if what not in at_once:
-                yield returning(what, timeline)
+                yield what.entity, returning(what, timeline)
             case Blocked():
-                yield _blocked(what, deed, timeline)
+                yield what.entity, _blocked(what, deed, timeline)
             case int():
-                yield from losses
+                yield from ((what, told) for told in losses)
 
 
 def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) -> tuple[str, ...]:

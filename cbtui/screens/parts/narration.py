@@ -7,7 +7,8 @@ from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
-from cbtui.widgets.narration import decisions_at
+from cbtui.widgets.code import CodeView, Step
+from cbtui.widgets.narration import decided_about, decisions_at
 from cbtui.widgets.narrator import Narrator
 
 
@@ -47,10 +48,21 @@ class Narration(ScreenPart):
             and self.runs.run.state is RunState.LIVE
         ):
             self._show(False)
+        self.panes.screen.query_one(CodeView).step = self._step
         if self.widget.display:
             self.widget.stepped = was_stepped(self.runs.run, self.navigation)
             self.widget.place = self.navigation.place
             self.widget.now, self.widget.timeline = self.navigation.now, self.runs.timeline
+
+    @property
+    def _step(self) -> Step | None:
+        """The decision to which a step led, while it is told."""
+        was_live = was_stepped(self.runs.run, self.navigation)
+        if not self.widget.display or not (was_live or self.navigation.playhead.at is not None):
+            return None
+        now, place = self.navigation.now, -1 if was_live else self.navigation.place
+        about = decided_about(self.runs.timeline, now, place)
+        return None if about is None else Step(now, place, about)
 
     def action_narrate(self) -> None:
         """Show or hide it."""

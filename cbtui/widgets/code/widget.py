@@ -19,6 +19,7 @@ from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role
 from cbtui.text.cells import fit, visible
+from cbtui.widgets.code.following import CallbackFollower, CallbackLines, Step
 from cbtui.widgets.code.highlight import SourceToken, TokenKind
 from cbtui.widgets.code.marks import (
     CallbackActivity,
@@ -65,7 +66,8 @@ class CodeView(InkedView):
 
     Of several files it shows that of the requested callback, or of one that has run for a while. ``note``
     names the file, and says if it has changed on disk; ``over`` tells whether the run has ended. A line can
-    be picked with the arrow keys or the mouse; enter or a click reports its callback.
+    be picked with the arrow keys or the mouse; enter or a click reports its callback. The screen sets
+    ``step`` while a step led to the moment.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {*(kind.value for kind in TokenKind), _CURSOR}
@@ -105,8 +107,8 @@ class CodeView(InkedView):
         self._file = self._files.main
         self._marks: dict[SourceFile, list[CallbackMark]] = {}
         self._lines: dict[SourceFile, LineMarks] = {}
-        self._long: set[tuple[Path, int]] = set()
-        self._placed = False
+        self._follower = CallbackFollower()
+        self.step: Step | None = None
         self._told_fault = False
         self._changed = False
         self._drawn: dict[int, Strip] = {}
@@ -122,12 +124,12 @@ class CodeView(InkedView):
                 self.refresh_lines(line - 1)
         self._go_to_fault(fault)
         marks = marks_at(timeline, now, self._files)
-        if marks == self._marks:
-            return
-        before, self._marks = self._marked, marks
-        for line, count in changed_lines(before, self._marked):
-            self.refresh_lines(line - 1, count)
-        self._follow()
+        if marks != self._marks:
+            before, self._marks = self._marked, marks
+            for line, count in changed_lines(before, self._marked):
+                self.refresh_lines(line - 1, count)
+            self._go_to(self._follower.begun(marks, self._file))
+        self._go_to(self._follower.stepped(self.step, timeline, self._files))
 
     def _go_to_fault(self, found: Mapping[SourceFile, LineMarks]) -> None:
         """Go to the line that ended the program, once."""
@@ -144,7 +146,7 @@ class CodeView(InkedView):
         file = self._files.of(path)
         if file is not None:
             self._open(file)
-            self._placed = True
+            self._follower.placed = True
             self.picked = line
             self.call_after_refresh(self._bring_into_view, line - 1)
             self.refresh()
@@ -159,8 +161,8 @@ class CodeView(InkedView):
     def read_anew(self, texts: Mapping[str, str]) -> None:
         """Read the files again, as the next run uses those on disk; ``texts`` in place of some, by path."""
         self._files.read_anew(texts)
-        self._placed = self._placed and not self._told_fault
-        self._marks, self._lines, self._long = {}, {}, set()
+        self._follower.forget(placed=self._follower.placed and not self._told_fault)
+        self._marks, self._lines = {}, {}
         self._open(self._files.of(str(self._file.path.absolute())) or self._files.main)
 
     def check_disk(self, entities: Iterable[EntityInfo] = ()) -> None:
@@ -315,35 +317,15 @@ class CodeView(InkedView):
             line = self._with_text(code_line, here.texts, _ink_of(here), width)
         return line if here is None and self.picked != number + 1 else self.set_off(line, _CURSOR)
 
-    def _follow(self) -> None:
-        """Scroll to a callback that has newly run for a while; at first, to any.
-
-        A picked line stays in view. Another file is opened only if nothing in this one runs as long.
-        """
-        long = {
-            (file.path, marked.first_line): file
-            for file, marks in self._marks.items()
-            for marked in marks
-            if marked.running_long
-        }
-        begun = {place: file for place, file in long.items() if place not in self._long}
-        self._long = set(long)
-        if not self._placed and self._marks:
-            self._placed = True
-            file = self._file if self._marked else next(iter(self._marks))
-            begun = begun or {(file.path, self._marks[file][0].first_line): file}
-        if self.picked is not None:
+    def _go_to(self, callback: CallbackLines | None) -> None:
+        """Scroll to a callback and the line where it is, or to that alone; a picked line stays."""
+        if callback is None or self.picked is not None:
             return
-        here = [line for (_, line), file in begun.items() if file is self._file]
-        if not here and begun and self._file not in long.values():
-            (_, line), file = next(iter(begun.items()))
-            self._open(file)
-            here = [line]
-        if here:
-            inside = (line for line, mark in self._here.items() if mark.texts)
-            position = next(inside, here[0])
-            seen_with_it = 0 <= position - here[0] < self.size.height - 2
-            self.call_after_refresh(self._bring_into_view, (here[0] if seen_with_it else position) - 1)
+        self._open(callback.file)
+        inside = range(callback.first, callback.last + 1)
+        at = next((line for line, mark in self._here.items() if mark.texts and line in inside), inside[0])
+        seen_with_it = at - inside[0] < self.size.height - 2
+        self.call_after_refresh(self._bring_into_view, (inside[0] if seen_with_it else at) - 1)
 
     def _bring_into_view(self, line: int) -> None:
         top, height = self.scroll_offset.y, self.size.height

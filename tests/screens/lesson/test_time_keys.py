@@ -11,10 +11,12 @@ from textual.widgets import Static
 
 from cbtui.app import CbtuiApp
 from cbtui.screens.windows.moment import MomentScreen, seconds_in
+from cbtui.widgets.code import CodeView
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.narrator import Narrator
 from sim.engine.commands import Pause, RunUntil, SetSpeed, Step
 from sim.trace.events import TimeHalted
+from sim.trace.model import Window
 from tests.support.builder import Run, ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.fake_session import FakeEngines
@@ -76,6 +78,22 @@ async def test_a_comma_looks_back_by_one_event_and_a_full_stop_forward_until_liv
         await press(pilot, "full_stop")
         assert "LIVE" in status(app)
         assert app.engines.latest.commands == []
+
+
+async def test_the_code_goes_to_the_callback_of_the_last_decision_of_a_step() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "space", "full_stop")
+        step = app.screen.query_one(CodeView).step
+        timeline = app.lesson_screen.runs.run.timeline
+        assert step is None, "nothing was decided at the moment"
+        await press(pilot, "comma")
+        step = app.screen.query_one(CodeView).step
+        assert step is not None
+        decided = [what for _, what in timeline.decisions(Window(step.at, step.at + 1))]
+        what = decided[step.place]
+        assert step.about == (what if isinstance(what, int) else what.entity)
+        await press(pilot, "0", "space")
+        assert app.screen.query_one(CodeView).step is None, "time flows"
 
 
 async def test_a_step_on_the_real_clock_says_why_there_is_none() -> None:

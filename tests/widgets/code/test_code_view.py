@@ -5,7 +5,7 @@ from textual.app import App, ComposeResult
 from textual.pilot import Pilot
 
 from cbtui.looks.theme import GLYPHS, Charset
-from cbtui.widgets.code import CodeView
+from cbtui.widgets.code import CodeView, Step
 from cbtui.widgets.code.marks import marks_at
 from cbtui.widgets.code.source_files import SourceFiles
 from sim.trace.events import Reason, RunEnded
@@ -102,6 +102,24 @@ async def test_the_view_stays_while_a_callback_of_its_own_file_runs_as_long(
         await show(pilot, timeline, 1.5)
         await show(pilot, timeline, 5.0)
         assert app.view.note == "talker.py"
+
+
+async def test_the_view_goes_to_the_callback_of_each_step_once(talker: Path, listener: Path) -> None:
+    app = CodeOnly(talker)
+    async with app.run_test(size=(60, 10)) as pilot:
+        timeline = two_programs(talker, listener)
+        await show(pilot, timeline, 0.5)
+        app.view.step = Step(ns(3.0), 0, 2)
+        assert "# listener 20" in (await show(pilot, timeline, 3.0))[1]
+        app.view.step = Step(ns(3.0), 1, 1)
+        assert "# talker 30" in (await show(pilot, timeline, 3.0))[1]
+        app.view.scroll_to(y=0, animate=False, immediate=True)
+        assert "# talker 1" in (await show(pilot, timeline, 3.0))[0], "who scrolls away stays there"
+        app.view.focus()
+        await pilot.press("down")
+        app.view.step = Step(ns(3.0), 0, 2)
+        await show(pilot, timeline, 3.0)
+        assert app.view.note == "talker.py", "a picked line stays"
 
 
 @pytest.mark.parametrize(("reason", "sign"), GLYPHS[Charset.BRAILLE].hatch.items())
