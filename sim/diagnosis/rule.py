@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, StrEnum
 from pathlib import Path
@@ -16,7 +16,7 @@ from sim.diagnosis.edits.code_edit import CodeEdit
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import SPIN_ALWAYS, SPIN_BESIDE
 from sim.trace.events import AnyEvent, EntityId, ThreadId
-from sim.trace.model import EntityInfo, Nanoseconds, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Position, Window
 from sim.trace.timeline import Timeline
 
 
@@ -233,7 +233,7 @@ def line_of(entity: EntityId, window: Window, timeline: Timeline) -> CodeLocatio
     on several threads, the longest counts.
     """
     on_threads: defaultdict[ThreadId, Counter[tuple[tuple[str, int], ...]]] = defaultdict(Counter)
-    for each in timeline.positions_of(entity, window):
+    for each in positions_of_call(entity, window, timeline):
         end = each.end_at(timeline.end)
         path = tuple((frame.file, frame.line) for frame in each.frames)
         on_threads[each.thread][path] += min(end, window.end) - max(each.start, window.start) + 1
@@ -249,6 +249,15 @@ def line_of(entity: EntityId, window: Window, timeline: Timeline) -> CodeLocatio
         found = min(line for line, length in lines.items() if length >= _ABOUT * longest)
         lasted = Counter({path[1:]: length for path, length in lasted.items() if path[:1] == (found,)})
     return place_of(entity, timeline) if found is None else CodeLocation(*found, found[1])
+
+
+def positions_of_call(entity: EntityId, during: Window, timeline: Timeline) -> Sequence[Position]:
+    """Return where the call was that began with a time and lasted for all of it, else where all were."""
+    known = timeline.positions_of(entity, during)
+    calls = timeline.spans_of(entity, Window(during.start, during.start + 1))
+    ran = (call for call in calls if call.start == during.start and call.end_at(during.end) >= during.end)
+    threads = [call.thread for call in ran]
+    return [each for each in known if each.thread in threads] if threads else known
 
 
 _ABOUT = 0.75

@@ -17,13 +17,16 @@ from sim.ros.scheduling.callback_groups import (
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
+from sim.trace.events import CallbackAt, CallbackEnded, CallbackStarted, Doing, TimePassed
 from sim.trace.execution import Spans
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Span, Window
+from sim.trace.timeline import Timeline
 from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, executor_of, once, spin
 from tests.support.builder import ns
 from tests.support.engine_runs import program_setup, run_lesson, run_program, run_to_end
 from tests.support.simulation import Simulation
+from tests.trace.samples import CAST
 
 
 def ticking(length: float, group: CallbackGroup, threads: int | None = 3) -> Diagnosed:
@@ -328,6 +331,27 @@ def test_a_timer_is_not_said_to_be_slow_where_it_waits_for_a_lock(
     )
     assert told.place is not None
     assert line in (tmp_path / "node.py").read_text().splitlines()[told.place.first_line - 1]
+
+
+def test_what_another_call_waited_for_a_lock_is_not_part_of_a_long_call() -> None:
+    timeline, sleeps, waits = Timeline(), ("node.py", "tick", 20), ("node.py", "tick", 18)
+    timeline.extend(
+        [
+            *CAST,
+            CallbackStarted(ns(0.5), 2, 1, 0, 0, 0),
+            CallbackAt(ns(0.5), 2, 1, Doing.WAITS, "Lock.acquire", (waits,), lock="lock"),
+            CallbackStarted(ns(1.0), 2, 2, 0, 0, 0),
+            CallbackAt(ns(1.0), 2, 2, Doing.SLEEPS, "time.sleep", (sleeps,)),
+            CallbackEnded(ns(1.7), 2, 2),
+            TimePassed(ns(3.0)),
+        ]
+    )
+    [found] = [each for each in diagnose(timeline) if each.rule.id == "overrun-timer"]
+    told = found.explained(timeline)
+    assert told.what.startswith("timer_callback took 700 ms with a period of 500 ms")
+    assert "it waited for" not in told.why
+    assert told.place is not None
+    assert told.place.first_line == sleeps[2]
 
 
 TALKS_FASTER = """

@@ -3,7 +3,16 @@
 from collections.abc import Iterable, Iterator
 
 from sim.diagnosis.edits.locks import locks_in_turn
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, line_location, place_of
+from sim.diagnosis.rule import (
+    CodeLocation,
+    Explanation,
+    Finding,
+    Rule,
+    Weight,
+    line_location,
+    place_of,
+    positions_of_call,
+)
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, lock_keeper, lock_taker, often, threads_for, who
 from sim.quantities.durations import duration
@@ -103,7 +112,7 @@ class LocksInTurn(Rule):
 
 def lock_that_kept(entity: EntityId, during: Window, timeline: Timeline) -> Position | None:
     """Return the longest wait of a callback for a lock that others held, if it waited so most of a time."""
-    waits = list(_long_waits(timeline.positions_of(entity, during), timeline))
+    waits = list(_long_waits(positions_of_call(entity, during, timeline), timeline))
     lasted = (min(each.end_at(timeline.end), during.end) - max(each.start, during.start) for each in waits)
     is_most = bool(waits) and 2 * sum(lasted) > during.end - during.start
     return max(waits, key=lambda each: each.end_at(timeline.end) - each.start) if is_most else None

@@ -18,6 +18,7 @@ from sim.diagnosis.rule import (
     line_of,
     made_at,
     place_of,
+    positions_of_call,
 )
 from sim.diagnosis.rules.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.rules.edits import edits_for_rounds
@@ -139,7 +140,7 @@ class OverrunTimer(Rule):
         if (since := awaits_in_vain_since(found.subject, during, timeline)) is not None:
             why = "a timer is not called again before its callback is over"
             return Explanation(awaits_in_vain(subject, place, since), why, let_complete(place), place)
-        locks = [each for each in timeline.positions_of(found.subject, during) if each.waits_for_lock]
+        locks = [each for each in positions_of_call(found.subject, during, timeline) if each.waits_for_lock]
         why = "the timer is not called again before its callback is over; missed ticks are not made up for"
         cure = f"let {subject} return sooner: do long work step by step, or in a callback of another group"
         cure, remedies = cure + threads, edits_for_rounds(place, found.subject, timeline)
@@ -157,7 +158,9 @@ class OverrunTimer(Rule):
             keeper = line_of(lock_keeper(longest, timeline), during, timeline)
             place, remedies = keeper or line_location(*longest.taken_at) or place, ()
         spans = timeline.spans_of(found.subject, Window(found.at, found.at + 1))
-        goes_on = timeline.ended is None and any(span.end is None for span in spans)
+        goes_on = timeline.ended is None and any(
+            span.end is None and span.start == found.at for span in spans
+        )
         took = f"has run for {duration(found.lasted)} so far" if goes_on else f"took {duration(found.lasted)}"
         return Explanation(
             f"{subject} {took} with a period of {duration(entity.period)}; "
@@ -196,7 +199,7 @@ def _waits_for_reply(found: Finding, timeline: Timeline) -> set[str]:
     place = line_of(found.subject, during, timeline)
     return {
         each.call
-        for each in timeline.positions_of(found.subject, during)
+        for each in positions_of_call(found.subject, during, timeline)
         if each.call in ("Client.call", AWAIT)
         and place is not None
         and (place.file, place.first_line) in ((frame.file, frame.line) for frame in each.frames)
