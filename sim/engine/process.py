@@ -188,7 +188,7 @@ class Engine:
             self._live_on(clock)
         elif isinstance(clock, PacedClock):
             follow(clock)
-            HungCallbacks(clock, record, self._positions.callback_on).start()
+            HungCallbacks(clock, record, self._probe.running, self._positions.look).start()
         self._terminal.put_in_place()
         self._probe.usage.watch_coroutines()
         self._commands.schedule(setup)

@@ -6,7 +6,7 @@ All of it is read from frames and source; no code of the program runs for it.
 import ast
 import linecache
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from inspect import getattr_static
 from itertools import islice
@@ -40,17 +40,22 @@ def waited_lock(
 
     A callback that took it counts as its keeper if its call does not run any more on the thread that took it.
     """
-    objects = [each.f_locals.get("self") for each in inside]
-    name = name_at(own, objects)
-    for lock in objects:
-        if ident := getattr(lock, "holder_ident", 0):
-            now, then = running.get(ident), getattr(lock, "taken_during", None)
-            keeper = then[0] if isinstance(then, tuple) and then != now else 0
-            thread = None if now or keeper else getattr(lock, "taken_by", None)
-            file, _, line = taking(lock, own)
-            by, is_left = ("", False) if thread is None else (thread.name, not thread.is_alive())
-            return WaitedLock(0 if now is None else now.thread, keeper, name, (file, line), by, is_left)
-    return WaitedLock(lock=name)
+    name = name_at(own, [each.f_locals.get("self") for each in inside])
+    lock = taken_lock(inside)
+    if lock is None:
+        return WaitedLock(lock=name)
+    now, then = running.get(lock.holder_ident), lock.taken_during
+    keeper = then[0] if isinstance(then, tuple) and then != now else 0
+    thread = None if now or keeper else lock.taken_by
+    file, _, line = taking(lock, own)
+    by, is_left = ("", False) if thread is None else (thread.name, not thread.is_alive())
+    return WaitedLock(0 if now is None else now.thread, keeper, name, (file, line), by, is_left)
+
+
+def taken_lock(inside: Iterable[FrameType]) -> Any | None:
+    """Return the lock that frames of the library wait for, innermost first; None if its holder is unknown."""
+    objects = (each.f_locals.get("self") for each in inside)
+    return next((each for each in objects if getattr(each, "holder_ident", 0)), None)
 
 
 def taking(lock: Any, waiting: FrameType | None) -> tuple[str, str, int]:

@@ -54,7 +54,7 @@ class EndlessWait(Rule):
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each wait that the engine reported."""
         for notice in on_waits(view.timeline):
-            at = view.timeline.positions_of(notice.entity, Window(notice.t, notice.t + 1))
+            at = _positions_at(notice, view.timeline)
             if any(goes_on(each, view.timeline) for each in at) and not _is_deadlock(notice):
                 continue
             if notice.kind is not NoticeKind.NO_PROGRESS or not _computes(notice, view):
@@ -63,7 +63,7 @@ class EndlessWait(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         notice = _notice_of(found)
-        at = timeline.positions_of(found.subject, _moment(found))
+        at = _positions_at(notice, timeline)
         how = "is in a deadlock" if _is_deadlock(notice) else "stands still"
         what = f" {how}: {notice.problem}" if notice.problem else f": {notice.text}"
         if notice.kind is NoticeKind.NO_PROGRESS and at:
@@ -153,7 +153,7 @@ class StillComputing(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
-        at = timeline.positions_of(found.subject, _moment(found))
+        at = _positions_at(_notice_of(found), timeline)
         loop = line_location(*at[-1].loop) if at else None
         place = loop or line_of(found.subject, _moment(found), timeline)
         where = f" in the loop of line {loop.first_line}" if loop else ""
@@ -247,8 +247,7 @@ def kept_waiting(found: Finding, timeline: Timeline) -> list[EntityId]:
 
 
 def _computes(notice: Notice, view: TimelineView) -> bool:
-    at = view.timeline.positions_of(notice.entity, Window(notice.t, notice.t + 1))
-    return all(each.doing is not Doing.WAITS for each in at)
+    return all(each.doing is not Doing.WAITS for each in _positions_at(notice, view.timeline))
 
 
 def _why(entity: EntityId, loop: CodeLocation | None, timeline: Timeline) -> str:
@@ -315,7 +314,7 @@ def _notice_of(found: Finding) -> Notice:
 
 def _how_long(found: Finding, timeline: Timeline) -> str:
     """For how long a call has not come back: on virtual time, which may stand still, as the engine says."""
-    spans = timeline.spans_of(found.subject, _moment(found))
+    spans = _calls_at(_notice_of(found), timeline)
     if spans and timeline.started is not None and timeline.started.clock == "real":
         return f"has not come back for {duration(found.until - spans[-1].start)}"
     return _notice_of(found).problem or "has not come back for long"
@@ -327,6 +326,21 @@ def _is_deadlock(notice: Notice) -> bool:
 
 
 def _until(notice: Notice, view: TimelineView) -> int:
-    """The end of the call that a notice is about; now if it lasts."""
-    spans = view.timeline.spans_of(notice.entity, Window(notice.t, notice.t + 1))
-    return max((view.end if span.end is None else span.end for span in spans), default=view.end)
+    """The end of the call, or wait, that a notice is about; now if it lasts."""
+    calls = _calls_at(notice, view.timeline)
+    until = max((view.end if call.end is None else call.end for call in calls), default=view.end)
+    at = view.timeline.position_on(notice.thread, view.end) if notice.thread and until == view.end else None
+    is_over = at is not None and not at.waits and not _computes(notice, view)
+    return until if at is None or not is_over else at.start
+
+
+def _calls_at(notice: Notice, timeline: Timeline) -> list[Span]:
+    """Return the call that a notice is about, or all of its callback where the thread is unknown."""
+    calls = timeline.spans_of(notice.entity, Window(notice.t, notice.t + 1))
+    return [each for each in calls if notice.thread in (0, each.thread)]
+
+
+def _positions_at(notice: Notice, timeline: Timeline) -> list[Position]:
+    """Return where the call was that a notice is about, or where all of its callback were."""
+    positions = timeline.positions_of(notice.entity, Window(notice.t, notice.t + 1))
+    return [each for each in positions if notice.thread in (0, each.thread)]

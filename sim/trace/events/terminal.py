@@ -136,6 +136,8 @@ class Notice(TraceEvent, frozen=True, tag="notice"):
     """The program's own line that it is about, if it is about one."""
     error: WireOnly[str] = ""
     """The exception that ended a thread or a program of several, as ``ValueError: no scan``."""
+    thread: WireOnly[ThreadId] = 0
+    """The thread of the call that makes no progress; 0 if it is not known."""
 
 
 class KeyboardAsked(TraceEvent, frozen=True, tag="keyboard"):
