@@ -23,6 +23,7 @@ from sim.trace.figures.waiting import (
     WORTH_TELLING,
     is_held_by_own_call,
     next_in_turn,
+    waited_so_far,
     waits_for_others,
     waits_since,
 )
@@ -333,15 +334,14 @@ def _overdue(entity: EntityInfo, moment: Moment, timeline: Timeline, since: Nano
 def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosis:
     longest = waits[0]
     waited = moment.at - waits_since(longest, moment.queues[longest.entity])
-    others = (
-        f"; {len(waits) - 1} more wait" if len(waits) > 2 else "; 1 more waits" if len(waits) == 2 else ""
-    )
-    what = waiting_name(longest.entity, Window(longest.since, moment.at + 1), timeline)
-    waits_so = f"waits {duration(waited)}: {_why(longest, moment, timeline)}"
+    more = len(waits) - 1
+    others = f"; {more} more wait{'s' if more == 1 else ''}" if more else ""
+    name = _with_lane(longest.entity, timeline)
+    waits_so = f"waits {waited_so_far(longest, moment, timeline)}: {_why(longest, moment, timeline)}"
     level = DiagnosisLevel.TROUBLE if waited >= _SERIOUS else DiagnosisLevel.WAITS
-    brief = f"{_with_lane(longest.entity, timeline)} {waits_so}"
-    what = what if "(" in what else _with_lane(longest.entity, timeline)
-    return Diagnosis(brief, level, at_length=f"{what} {waits_so}{others}")
+    what = waiting_name(longest.entity, Window(longest.since, moment.at + 1), timeline)
+    what = what if "(" in what else name
+    return Diagnosis(f"{name} {waits_so}", level, at_length=f"{what} {waits_so}{others}")
 
 
 def _with_lane(entity: EntityId, timeline: Timeline) -> str:

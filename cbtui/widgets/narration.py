@@ -11,9 +11,11 @@ from sim.trace.events import Doing, EntityId, EntityKind, Reason
 from sim.trace.figures.waiting import (
     WORTH_TELLING,
     admits_others,
+    had_other_reasons,
     is_held_by_own_call,
     next_in_turn,
     waits_at,
+    waits_since,
 )
 from sim.trace.model import Blocked, Deed, EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
@@ -295,20 +297,27 @@ def _by_cause(left: Sequence[Wait], timeline: Timeline, at: Nanoseconds) -> Iter
         if len(waits) == 1:
             yield waiting(waits[0], timeline, at)
         else:
-            yield f"{why}: {'; '.join(_how_long(wait, timeline, at) for wait in waits)}"
+            now = "now " if any(_had_others(wait, timeline, at) for wait in waits) else ""
+            yield f"{now}{why}: {'; '.join(_how_long(wait, timeline, at) for wait in waits)}"
 
 
 def waiting(wait: Wait, timeline: Timeline, at: Nanoseconds, begins: str = "is ready") -> str:
     """Return why a callback that is ready does not run at a moment; ``begins`` is said of a short wait."""
-    return f"{_how_long(wait, timeline, at, begins)}: {_why(wait, timeline)}"
+    now = ", now" if _had_others(wait, timeline, at) else ""
+    return f"{_how_long(wait, timeline, at, begins)}{now}: {_why(wait, timeline)}"
+
+
+def _had_others(wait: Wait, timeline: Timeline, at: Nanoseconds) -> bool:
+    since = waits_since(wait, timeline.queue(wait.entity, at))
+    return had_other_reasons(wait, since, at, timeline)
 
 
 def _how_long(wait: Wait, timeline: Timeline, at: Nanoseconds, begins: str = "is ready") -> str:
     entity = timeline.entities[wait.entity]
-    queued = timeline.queue(entity.id, at).depth
-    is_short = at - wait.since < WORTH_TELLING
-    waits = begins if is_short else f"has waited since {timestamp(wait.since)}"
-    ready = f", {queued} queued" if queued else ", due" if entity.kind is EntityKind.TIMER else ""
+    queue = timeline.queue(entity.id, at)
+    since = waits_since(wait, queue)
+    waits = begins if at - since < WORTH_TELLING else f"has waited since {timestamp(since)}"
+    ready = f", {queue.depth} queued" if queue.depth else ", due" if entity.kind is EntityKind.TIMER else ""
     return f"{entity.spoken_name} {waits}{ready}"
 
 

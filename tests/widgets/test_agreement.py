@@ -42,7 +42,14 @@ from sim.trace.events import (
 from sim.trace.figures.comparison import compare
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.figures.summary import summarise
-from sim.trace.figures.waiting import WORTH_TELLING, waits_at, waits_for_others, waits_since
+from sim.trace.figures.waiting import (
+    WORTH_TELLING,
+    had_other_reasons,
+    waited_so_far,
+    waits_at,
+    waits_for_others,
+    waits_since,
+)
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns
@@ -145,6 +152,31 @@ def test_a_subscription_slower_than_its_messages_tells_everywhere_how_long_the_n
     assert pair.first.longest_wait == ns(2.7)
 
 
+def test_a_reason_is_blamed_for_no_more_than_the_time_since_it_began() -> None:
+    run = Run()
+    run.executor("MultiThreadedExecutor", 2)
+    group, first, second = run.exclusive(run.node("/n")), run.thread("Pool-0_0"), run.thread("Pool-0_1")
+    store, report = run.subscription(group, "/n", "store", depth=9), run.timer(group, "report", 1.0)
+    think = run.timer(run.reentrant(run.node("/m")), "think", 1.0)
+    for at in (1.0, 1.5):
+        run.message(store, at)
+    run.callback(think, first, 0.5, 4.0)
+    run.callback(store, second, 1.0, 1.0)
+    run.wait(store, 1.5, 2.0, Reason.GROUP_HELD, store)
+    run.callback(think, second, 2.0, 0.5)
+    run.wait(store, 2.0, 2.5, Reason.NO_FREE_WORKER, think, workers_busy=True)
+    run.callback(report, second, 2.5, 1.0)
+    run.wait(store, 2.5, 3.5, Reason.GROUP_HELD, report)
+    timeline = told(run, until=3.0)
+    for seconds, lasted in ((2.2, "700 ms"), (3.0, "1.5 s")):
+        at = ns(seconds)
+        moment, belt = timeline.moment(at), scene_of(timeline, at, ns(0.1)).areas[0].belts[0]
+        assert waited_so_far(moment.waiting[store], moment, timeline) == f"{lasted}, now"
+        assert f"waits {lasted}, now: " in diagnosis_at(timeline, at, Concurrency(timeline)).text
+        assert wait_texts(belt, timeline, at)[0].startswith(f"waits {lasted}, now: ")
+        assert "store has waited since 1.500 s, 1 queued, now: " in narration(timeline, at)[-1]
+
+
 def test_between_two_calls_a_queue_is_not_told_as_nothing_that_waits() -> None:
     run = Run()
     scan = run.subscription(run.exclusive(run.node("/n")), "/scan", "scan_callback", depth=100)
@@ -194,7 +226,9 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
         if wait == waits[0] and not told.stays:
             reasons.add(told.text)
         for text in reasons:
-            assert duration(at - waits_since(wait, moment.queues[wait.entity])) in text
+            since = waits_since(wait, moment.queues[wait.entity])
+            assert duration(at - since) in text
+            assert (", now" in text) == had_other_reasons(wait, since, at, timeline)
             is_held = wait.reason is Reason.GROUP_HELD
             assert any(words in text for words in ("held by", "seat taken by")) == is_held
             assert name_of(wait.holder, timeline) in text or not is_held

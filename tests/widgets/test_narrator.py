@@ -45,7 +45,7 @@ def test_a_start_tells_the_thread_the_reason_the_order_and_the_group() -> None:
     node = run.node("/n")
     group, other = run.exclusive(node), run.exclusive(node)
     tick, heard = run.timer(group, "tick", 1.0), run.subscription(other, "/a", "heard")
-    run.message(heard, 0.9)
+    run.message(heard, 1.0)
     run.callback(tick, thread, 1.0, 1.0)
     run.wait(heard, 1.0, 2.0, Reason.NO_FREE_WORKER, tick)
     first, second = narration(told(run, until=1.5), ns(1.0))

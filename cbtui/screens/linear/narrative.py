@@ -16,6 +16,7 @@ from sim.quantities.nanoseconds import SECOND
 from sim.quantities.plural import counted
 from sim.trace.descriptions import name_of
 from sim.trace.events import Logged, Severity
+from sim.trace.figures.waiting import waited_by
 from sim.trace.model import Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -81,7 +82,7 @@ class Narrative:
                 end = min(now, wait.end_at(now))
                 if not wait.is_for_own_call and end - wait.since >= self.least:
                     begins = f"{timestamp(wait.start)}: {waiting(wait, timeline, wait.start, 'waits')}"
-                    took = duration(end - wait.since)
+                    took = duration(waited_by(end, wait, timeline))
                     ends = f"{timestamp(end)}: {entity.spoken_name} waits no longer, after {took}"
                     yield from self._begin_and_end(entity.id, wait, now, begins, ends)
 

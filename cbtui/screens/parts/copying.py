@@ -16,7 +16,7 @@ from cbtui.widgets.lanes.details import details_of_selection
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import executor_label, name_of, why_waiting
 from sim.trace.figures.concurrency import Concurrency
-from sim.trace.figures.waiting import waits_at, waits_since
+from sim.trace.figures.waiting import waited_so_far, waits_at
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -58,8 +58,8 @@ def summary(
     yield from (f"  {each}" for each in what_runs(timeline, now))
     moment = timeline.moment(now)
     for wait in waits_at(moment, timeline):
-        took = duration(max(0, now - waits_since(wait, moment.queues[wait.entity])))
-        yield f"  {name_of(wait.entity, timeline)} waits {took}: {why_waiting(wait, timeline)}"
+        waits = f"waits {waited_so_far(wait, moment, timeline)}: {why_waiting(wait, timeline)}"
+        yield f"  {name_of(wait.entity, timeline)} {waits}"
 
 
 def what_runs(timeline: Timeline, now: Nanoseconds) -> Iterator[str]:

@@ -15,7 +15,7 @@ from cbtui.widgets.lanes.names import short_thread
 from sim.quantities.durations import duration
 from sim.trace.descriptions import doing_of, why_waiting
 from sim.trace.events import Doing, EntityId, Reason
-from sim.trace.figures.waiting import wait_told, waits_since
+from sim.trace.figures.waiting import wait_told, waited_so_far, waits_since
 from sim.trace.model import AWAIT, EntityInfo, Frame, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import NOBODY, Timeline
@@ -222,8 +222,8 @@ def _doing(
     if wait is not None:
         since = waits_since(wait, moment.queues[entity.id])
         hatch, lasted = GLYPHS[Charset.BRAILLE].hatch[wait.reason], duration(moment.at - since)
-        waited = f"{hatch} waits {lasted}"
-        whys = (f"{waited}: {why_waiting(wait, timeline)}", waited, f"{hatch} {lasted}")
+        waited = f"{hatch} waits {waited_so_far(wait, moment, timeline)}"
+        whys = (f"{waited}: {why_waiting(wait, timeline)}", f"{hatch} waits {lasted}", f"{hatch} {lasted}")
         return CallbackActivity.WAITS, whys, since
     recent = timeline.spans_of(entity.id, Window(moment.at - JUST_NOW, moment.at + 1))
     if recent:

@@ -13,7 +13,7 @@ from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.descriptions import doing_of, name_of
 from sim.trace.events import EntityKind, GroupKind, Reason
-from sim.trace.figures.waiting import waits_since
+from sim.trace.figures.waiting import waited_so_far, waits_since
 from sim.trace.model import Blocked, EntityInfo, Nanoseconds, Position
 from sim.trace.timeline import Timeline
 
@@ -117,9 +117,10 @@ def wait_texts(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, .
     if wait is None:
         return ()
     took = duration(max(0, now - waits_since(wait, belt.queue)))
+    before = waited_so_far(wait, timeline.moment(now), timeline)
     verb = "late" if belt.entity.kind is EntityKind.TIMER else "waits"
-    full = [f"{verb} {took}: {why}" for why in _why(belt, timeline)]
-    brief = [f"{took}: {why}" for why in _why(belt, timeline)]
+    full = [f"{verb} {before}: {why}" for why in _why(belt, timeline)]
+    brief = [f"{before}: {why}" for why in _why(belt, timeline)]
     return (*full[:-1], *brief[:-1], full[-1], brief[-1], f"{verb} {took}", took)
 
 

@@ -13,7 +13,7 @@ from lessons.description import Actor
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted
 from sim.trace.descriptions import doing_of, why_waiting
-from sim.trace.figures.waiting import wait_told, waits_since
+from sim.trace.figures.waiting import wait_told, waited_so_far
 from sim.trace.model import EntityInfo, Moment, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -129,8 +129,7 @@ def _state(entity: EntityInfo, timeline: Timeline, moment: Moment) -> _State:
     wait = wait_told(entity.id, moment, timeline)
     if wait is not None:
         reasons = filter(None, (why_waiting(wait, timeline), losses))
-        waited = duration(at - waits_since(wait, moment.queues[entity.id]))
-        return _State(0.0, f"waits {waited}", "; ".join(reasons), True)
+        return _State(0.0, f"waits {waited_so_far(wait, moment, timeline)}", "; ".join(reasons), True)
     before = timeline.spans_of(entity.id, Window(max(0, at - _BACK), at + 1))
     if before:
         since = at - before[-1].end_at(at)

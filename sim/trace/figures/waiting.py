@@ -2,13 +2,17 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import islice
 
+from sim.quantities.durations import duration
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
-from sim.trace.model import Moment, Nanoseconds, Queue, Wait
+from sim.trace.model import Moment, Nanoseconds, Queue, Wait, Window
 from sim.trace.timeline import Timeline
 
 WORTH_TELLING: Nanoseconds = 10_000_000
 """Shorter waits are the usual hand-over between callbacks, and are not reported."""
+_EXAMINED = 100
+"""Of the waits of a callback that waits for very long, only the first are compared."""
 
 
 def waits_since(wait: Wait, queue: Queue) -> Nanoseconds:
@@ -21,6 +25,31 @@ def waits_since(wait: Wait, queue: Queue) -> Nanoseconds:
     if arrived is None:
         return wait.since
     return arrived if wait.is_for_own_call else min(arrived, wait.since)
+
+
+def waited_so_far(wait: Wait, moment: Moment, timeline: Timeline) -> str:
+    """Say before the reason of a wait how long a callback, or its next message, has waited.
+
+    If something else kept it before, the reason is not to blame for all of that: ``1.7 s, now``.
+    """
+    since = waits_since(wait, moment.queues[wait.entity])
+    lasted = duration(max(0, moment.at - since))
+    return f"{lasted}, now" if had_other_reasons(wait, since, moment.at, timeline) else lasted
+
+
+def had_other_reasons(wait: Wait, since: Nanoseconds, at: Nanoseconds, timeline: Timeline) -> bool:
+    """Return whether a callback that waits at a moment was kept by anything else since another one."""
+    waits = islice(timeline.waits_of(wait.entity, Window(since, max(since, at))), _EXAMINED)
+    return any(
+        (each.reason, _holder(each)) != (wait.reason, _holder(wait))
+        and min(each.end_at(at), at) - max(each.start, since) >= WORTH_TELLING
+        for each in waits
+    )
+
+
+def _holder(wait: Wait) -> EntityId:
+    """The callback to blame for a wait; 0 if it waits for any thread, whatever runs on them."""
+    return wait.holder if wait.reason is Reason.GROUP_HELD else 0
 
 
 def waited_by(end: Nanoseconds, wait: Wait, timeline: Timeline) -> Nanoseconds:
