@@ -211,6 +211,23 @@ def test_in_a_reentrant_group_a_callback_waits_for_a_thread_and_not_for_its_own_
     )
 
 
+def test_nobody_waits_for_a_thread_while_one_of_its_executor_is_free() -> None:
+    run = Run()
+    run.executor("MultiThreadedExecutor", 2)
+    think = run.timer(run.reentrant(run.node("/n")), "think", 1.0)
+    source = run.timer(run.reentrant(run.node("/n")), "source", 1.0)
+    run.callback(think, run.thread("ThreadPoolExecutor-0_0"), 1.0, 2.0)
+    run.callback(think, run.thread("ThreadPoolExecutor-0_1"), 1.0, 3.0)
+    run.wait(source, 2.0, 5.0, Reason.NO_FREE_WORKER, think, workers_busy=True)
+    timeline = told(run, until=3.0)
+    assert "no thread is free" in narration(timeline, ns(2.9))[-1]
+    assert narration(timeline, ns(3.0)) == (
+        "3.000 s: think returns after 2.0 s, Pool-0_0 is free",
+        "source is ready for 1.0 s: it is free to run",
+    )
+    assert "no thread" not in diagnosis_at(timeline, ns(3.0), Concurrency(timeline)).text
+
+
 def test_waits_are_told_as_of_the_moment_and_decisions_as_of_their_own() -> None:
     run = Run()
     group = run.exclusive(run.node("/n"))

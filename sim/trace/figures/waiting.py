@@ -73,10 +73,23 @@ def _wait_at(entity: EntityId, moment: Moment, timeline: Timeline) -> Wait | Non
     holders = () if known is None else moment.holders.get(known.group, ())
     if wait is None:
         return _beginning(entity, moment, timeline) if entity in holders else None
+    if wait.reason is Reason.NO_FREE_WORKER and _has_free_thread(wait, moment, timeline):
+        return None
     is_held = wait.reason is Reason.GROUP_HELD or wait.is_for_own_call
     if known is None or not is_held or wait.holder in (0, *holders):
         return wait
     return replace(wait, holder=holders[0]) if holders and wait.reason is Reason.GROUP_HELD else None
+
+
+def _has_free_thread(wait: Wait, moment: Moment, timeline: Timeline) -> bool:
+    """Return whether an executor that had no free thread when a wait was told has one at a moment."""
+    ran = timeline.spans_of(wait.holder, Window(wait.start, moment.at + 1))[-1:]
+    thread = timeline.threads.get(ran[0].thread) if ran else None
+    executor = None if thread is None else timeline.executors.get(thread.executor)
+    if thread is None or executor is None:
+        return thread is not None and thread.id not in moment.running
+    busy = sum(timeline.threads[each].executor == executor.id for each in moment.running)
+    return busy < executor.threads
 
 
 def wait_judged(wait: Wait, moment: Moment, timeline: Timeline) -> Wait:
