@@ -15,12 +15,12 @@ from cbtui.keys.keymap import Keymap, keymap_of, keys_of
 from cbtui.keys.refused import OWN_TIME
 from cbtui.keys.signs import signs_of
 from cbtui.learning.stage import Stage, meaning_of
-from cbtui.looks.theme import GLYPHS, Charset
+from cbtui.looks.theme import Charset
 from cbtui.screens.layout import Layout
+from cbtui.screens.windows.signs import SignList, code_signs, factory_signs, lane_signs
 from cbtui.screens.windows.window import WindowScreen
 from cbtui.text.cells import lines_of_text
 from cbtui.widgets.key_bar import KeyBar
-from sim.trace.events import Reason
 
 _SHOWN = (
     Scope.CHECKS,
@@ -214,52 +214,23 @@ def _page(scope: Scope | None, keymap: Keymap, charset: Charset, absence: _Absen
     """Return the help over a screen of ``scope``, whose own keys come before those of others."""
     place = "" if scope is Scope.LESSON else _IN_A_RUN
     tasks = [_of_task(f"{place}{task}", ids, keymap, charset, absence) for task, ids in TASKS.items()]
+    lanes, *panes = (_of_signs(of(charset)) for of in (lane_signs, factory_signs, code_signs))
     others = {each: _of_scope(each, keymap, charset, absence) for each in _SHOWN}
     if scope in (Scope.MENU, Scope.SEARCH):
-        first = [_stages(), others.pop(scope), _lane_signs(charset)]
-        return _HelpPage(first, tasks, [*others.values()])
+        first = [_stages(), others.pop(scope), lanes]
+        return _HelpPage(first, tasks, [*panes, *others.values()])
     if scope in others:
         tasks.insert(0, others.pop(scope))
     own = [] if scope in (None, Scope.LESSON, *_SHOWN) else [_of_scope(scope, keymap, charset, absence)]
-    return _HelpPage([*own, _lane_signs(charset)], tasks, [*others.values(), _stages()])
+    return _HelpPage([*own, lanes], tasks, [*panes, *others.values(), _stages()])
 
 
 def _stages() -> _Section:
     return _Section("Signs of the menu", [_HelpRow(stage.value, meaning_of(stage)) for stage in Stage])
 
 
-def _lane_signs(charset: Charset) -> _Section:
-    glyphs = GLYPHS[charset]
-    bar, line = glyphs.left[8], glyphs.line
-    return _Section(
-        "Signs of the lanes",
-        [
-            _HelpRow(
-                f"{glyphs.left[4]} {bar * 4}", "a callback runs; letter, colour and fill are its group's"
-            ),
-            _HelpRow(glyphs.textures, "the fills of long bars: groups A to F, then the same again"),
-            _HelpRow(glyphs.hatch[Reason.GROUP_HELD] * 4, "a callback waits: another one holds its group"),
-            _HelpRow(glyphs.hatch[Reason.NO_FREE_WORKER] * 4, "a callback waits: every thread is busy"),
-            _HelpRow(glyphs.hatch[Reason.EVENT_QUEUE] * 4, "a callback waits: others came before it"),
-            _HelpRow(glyphs.hatch[Reason.NOBODY_SPINS] * 4, "a callback waits: nobody spins its node"),
-            _HelpRow(glyphs.blocked * 4, "a thread waits inside a callback: for a reply, a lock, an event"),
-            _HelpRow(glyphs.inner, "a callback runs inside that of the bar, which spins"),
-            _HelpRow(
-                f"{glyphs.point} {line * 4}", "a callback holds its group, for a moment or for long; or runs"
-            ),
-            _HelpRow(glyphs.double_line * 4, "several callbacks of a group run at once"),
-            _HelpRow(glyphs.lost, "a message is lost: its queue was full"),
-            _HelpRow(glyphs.cross, "a callback raised an exception"),
-            _HelpRow("excl reen", "a group's kind where names are short: exclusive, reentrant"),
-            _HelpRow("25% busy", "how much of the time on screen a thread was in a callback"),
-            _HelpRow("late", "a timer was called later than its period says"),
-            _HelpRow(
-                f"{glyphs.up} {glyphs.back}", "a service is called and replies; your own call has its key"
-            ),
-            _HelpRow(glyphs.up, "what else you did: a reset, a ros2 command"),
-            _HelpRow(glyphs.cursor, "the moment on screen, which every pane shows"),
-        ],
-    )
+def _of_signs(signs: SignList) -> _Section:
+    return _Section(signs.heading, [_HelpRow(*row) for row in signs.rows])
 
 
 def _of_task(

@@ -10,6 +10,7 @@ from typing import TypeAlias
 
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.text.cells import fit
+from cbtui.widgets.code.signs import CODE_SIGNS
 from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.lanes.names import short_thread
 from sim.quantities.durations import duration
@@ -165,7 +166,9 @@ def fault_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
         return {}
     path, line = ended.place
     file = files.of(path) if line else None
-    return {} if file is None else {file: {line: LineMark((f"✗ {ended.problem}",), fault=True)}}
+    return (
+        {} if file is None else {file: {line: LineMark((f"{CODE_SIGNS.fault} {ended.problem}",), fault=True)}}
+    )
 
 
 def marks_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, list[CallbackMark]]:
@@ -227,7 +230,7 @@ def _doing(
         return CallbackActivity.WAITS, whys, since
     recent = timeline.spans_of(entity.id, Window(moment.at - JUST_NOW, moment.at + 1))
     if recent:
-        return CallbackActivity.RAN, (f"· {_thread(recent[-1], timeline)}",), recent[-1].start
+        return CallbackActivity.RAN, (f"{CODE_SIGNS.ran} {_thread(recent[-1], timeline)}",), recent[-1].start
     return CallbackActivity.IDLE, ("",), 0
 
 

@@ -32,6 +32,7 @@ from cbtui.widgets.code.marks import (
     marks_at,
     text_beside,
 )
+from cbtui.widgets.code.signs import CODE_SIGNS
 from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.inked_view import InkedView
 from cbtui.widgets.jump import JumpTarget
@@ -341,15 +342,17 @@ class CodeView(InkedView):
         number = Segment(f"{line:>4} ", self.in_ink(Ink(Role.FAINT)))
         here = self._here.get(line)
         if here is not None and here.fault:
-            return [number, Segment("✗ ", self.in_ink(_ink_of(here)))]
+            return [number, Segment(f"{CODE_SIGNS.fault} ", self.in_ink(_ink_of(here)))]
         if marked is not None and marked.first_line == line:
             letter = fit(marked.letter, _GUTTER - 5, Charset.BRAILLE)
             return [number, Segment(letter, self.in_ink(Ink(Role.LETTER, marked.number)))]
         if here is not None:
-            return [number, Segment("▶ " if here.texts else "▸ ", self.in_ink(Ink(Role.BAR, here.number)))]
+            sign = CODE_SIGNS.here if here.texts else CODE_SIGNS.calls
+            return [number, Segment(f"{sign} ", self.in_ink(Ink(Role.BAR, here.number)))]
         if marked is None:
             return [number, Segment("  ", self.in_class(""))]
-        glyph, role = ("▌", Role.BAR) if marked.doing is CallbackActivity.RUNS else (" ", Role.FAINT)
+        is_running = marked.doing is CallbackActivity.RUNS
+        glyph, role = (CODE_SIGNS.runs, Role.BAR) if is_running else (" ", Role.FAINT)
         if marked.reason is not None:
             glyph, role = GLYPHS[Charset.BRAILLE].hatch[marked.reason], Role.HATCH
         return [number, Segment(f"{glyph} ", self.in_ink(Ink(role, marked.number)))]
