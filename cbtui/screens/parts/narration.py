@@ -8,6 +8,8 @@ from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.code import CodeView, Step
+from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.lanes.rows import NONE_KEPT
 from cbtui.widgets.narration import decided_about, decisions_at
 from cbtui.widgets.narrator import Narrator
 
@@ -48,7 +50,9 @@ class Narration(ScreenPart):
             and self.runs.run.state is RunState.LIVE
         ):
             self._show(False)
-        self.panes.screen.query_one(CodeView).step = self._step
+        step, screen = self._step, self.panes.screen
+        screen.query_one(CodeView).step = step
+        screen.query_one(Lanes).kept = NONE_KEPT if step is None else {step.about: 0}
         if self.widget.display:
             self.widget.stepped = was_stepped(self.runs.run, self.navigation)
             self.widget.place = self.navigation.place

@@ -96,6 +96,17 @@ async def test_the_code_goes_to_the_callback_of_the_last_decision_of_a_step() ->
         assert app.screen.query_one(CodeView).step is None, "time flows"
 
 
+async def test_the_lane_of_the_callback_that_a_step_is_about_is_among_the_last_to_be_hidden() -> None:
+    async with console() as (app, pilot):
+        lanes = app.screen.query_one(Lanes)
+        await press(pilot, "space", "comma")
+        step = app.screen.query_one(CodeView).step
+        assert step is not None
+        assert [*lanes.kept] == [step.about]
+        await press(pilot, "0", "space")
+        assert not lanes.kept, "time flows"
+
+
 async def test_a_step_on_the_real_clock_says_why_there_is_none() -> None:
     async with console() as (app, pilot):
         run = app.lesson_screen.runs.run
