@@ -48,7 +48,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         choices=("pos", "pct", "random", "busy"),
         default="pos",
         help="how seeds choose: by priorities of steps, by priorities of threads, at random, or so with "
-        "timers and sleeps that end up to 50 ms late, as on a busy machine (%(default)s)",
+        "timers and sleeps that end up to 50 ms late, and few stalls of all threads for up to 300 ms, as on "
+        "a busy machine (%(default)s)",
     )
     parser.add_argument(
         "--seed", metavar="S", type=values.seed, default=1, help="the seed of the first order (%(default)s)"

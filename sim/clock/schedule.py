@@ -47,6 +47,10 @@ class Schedule:
         """The nanoseconds by which a wait with a deadline ends late."""
         return 0
 
+    def stall(self) -> int:
+        """The nanoseconds, at most to the next deadline, that pass although a thread could go on."""
+        return 0
+
     def hands_over(self) -> bool:
         """Whether a released lock goes to a waiting thread; otherwise the next thread that asks gets it."""
         return True

@@ -41,14 +41,30 @@ class RandomWalk(Schedule):
 class BusyMachine(RandomWalk):
     """As `RandomWalk`, on a machine that is busy: one wait in four ends up to ``LATEST`` nanoseconds late.
 
-    So a timer is called late, and a callback that sleeps takes longer.
+    So a timer is called late, and a callback that sleeps takes longer. Where the threads of pools race, the
+    machine also stalls at most ``MOST_STALLS`` times a run: for up to ``LONGEST_STALL`` nanoseconds, but at
+    most to the next deadline, no thread goes on.
     """
 
     LATEST = 50_000_000
+    LONGEST_STALL = 300_000_000
+    """A log line in rclpy took so long at a load of 10."""
+    MOST_STALLS = 3
+
+    def __init__(self, seed: int) -> None:
+        super().__init__(seed)
+        number = self.MOST_STALLS if self._races else 0
+        self._stalls = {int(10 ** self._random.uniform(1, 5)) for _ in range(number)}
+        self._steps = 0
 
     def lateness(self) -> int:
         """Any time up to ``LATEST``, or mostly none."""
         return self.choose(self.LATEST) if self.choose(4) == 0 else 0
+
+    def stall(self) -> int:
+        """Any time up to ``LONGEST_STALL`` at few steps, early ones and late ones."""
+        self._steps += 1
+        return 1 + self.choose(self.LONGEST_STALL) if self._steps in self._stalls else 0
 
 
 class PctSchedule(RandomWalk):

@@ -57,6 +57,8 @@ class VirtualClock:
 
         It is called on the waiting thread and must not wait.
         """
+        self.on_stall: Callable[[VirtualThread, int], None] = lambda _thread, _duration: None
+        """Called when so many nanoseconds have passed although a thread could go on; it must not wait."""
         self.activity: Callable[[], object] = lambda: None
         self.handle_signals: Callable[[], None] = lambda: None
         """Called on the main thread when it continues after a wait."""
@@ -191,7 +193,10 @@ class VirtualClock:
         if not self.explores or self.no_switching or not self.owns_current_thread():
             return
         me = self.current
-        if (self._ready or accesses) and not me.stays and self._schedule.yields(me, self._ready, accesses):
+        if me.stays:
+            return
+        self._stall(me)
+        if (self._ready or accesses) and self._schedule.yields(me, self._ready, accesses):
             self._ready.append(me)
             self._hand_on(me)
 
@@ -254,6 +259,8 @@ class VirtualClock:
         if not self._ready:
             with self._without_switching():
                 self._await_ready()
+        elif self.explores:
+            self._stall(self._ready[0])
         place = self._schedule.next(self._ready)
         following = self._ready[place]
         del self._ready[place]
@@ -261,9 +268,21 @@ class VirtualClock:
 
     def _await_ready(self) -> None:
         while not self._ready:
-            self.time.jump()
-            if self._schedule.explores:
-                self.time.serve_equals()
+            self._jump()
+
+    def _jump(self, limit: int | None = None) -> None:
+        self.time.jump(limit)
+        if self._schedule.explores:
+            self.time.serve_equals()
+
+    def _stall(self, thread: VirtualThread) -> None:
+        """Let time pass, as far as the schedule has it, although a thread could go on."""
+        now, deadline = self.time.now, self._deadlines.first()
+        if (deadline is None or deadline > now) and (longest := self._schedule.stall()):
+            with self._without_switching():
+                self._jump(now + longest)
+                if self.time.now > now:
+                    self.on_stall(thread, self.time.now - now)
 
     @contextmanager
     def _without_switching(self) -> Generator[None, None, None]:

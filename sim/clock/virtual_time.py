@@ -145,12 +145,14 @@ class VirtualTime:
         if self.recesses.idles:
             self.now = min([self.now + RECESS, *self.deadlines.later_than(self.now)])
 
-    def jump(self) -> None:
-        """Advance time to the next deadline, or until an event from outside lets a thread run."""
+    def jump(self, limit: int | None = None) -> None:
+        """Advance time to the next deadline or ``limit``, or until an outside event lets a thread run."""
         deadline = self.deadlines.first()
         target = deadline
         if deadline is None or deadline > self.now:
             target = self._stopover_before(deadline)
+            if limit is not None:
+                target = limit if target is None else min(limit, target)
             if not self._inbox.waiting and self._input_is_taken():
                 return
             if self._inputs.scheduled:

@@ -86,6 +86,7 @@ class RunStores:
         self.velocities: History[ev.VelocityCommanded] = History(attrgetter("t"), ev.VelocityCommanded, spill)
         self.scans = Scans(spill)
         self.choices: list[ev.ThreadChosen] = []
+        self.stalls: list[ev.MachineStalled] = []
         self.conflicts: list[ev.AccessesConflicted] = []
         self._handlers: dict[type, Callable[[Any], object]] = self._make_handlers()
 
@@ -170,6 +171,7 @@ class RunStores:
             ev.CallUnblocked: self.blocking.finish,
             ev.Logged: self.logs.add,
             ev.ThreadChosen: self.choices.append,
+            ev.MachineStalled: self.stalls.append,
             ev.AccessesConflicted: self.conflicts.append,
             ev.Printed: self._printed,
             ev.ArenaShown: lambda event: setattr(self, "arena", event if event.robot_radius else None),

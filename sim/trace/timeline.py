@@ -79,8 +79,8 @@ class Timeline:
         """The ``ros2`` lines with their output and ends, text typed for programs and printed meanwhile."""
         self.notices: Sequence[ev.Notice] = run.notices
         """The engine's notices, in order."""
-        self.choices: Sequence[ev.ThreadChosen] = run.choices
-        """The choices among threads of a schedule that is played, in order."""
+        self.choices, self.stalls = run.choices, run.stalls
+        """The choices among threads of a schedule that is played, and where a machine stalls, in order."""
         self.conflicts: Sequence[ev.AccessesConflicted] = run.conflicts
         """The accesses to shared data that nothing kept apart, in order."""
         self.mismatches: Sequence[ev.QosMismatched] = run.mismatches

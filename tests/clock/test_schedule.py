@@ -128,3 +128,14 @@ def test_on_a_busy_machine_some_waits_end_late_and_elsewhere_none() -> None:
     assert 50 < sum(each > 0 for each in late) < 150
     assert BusyMachine.LATEST / 2 < max(late) < BusyMachine.LATEST
     assert not any(schedule_of(seed).lateness() for seed in (0, 3, "pct:3", "random:3", "moves:3=1"))
+
+
+def test_a_busy_machine_stalls_a_few_times_where_pools_race_and_elsewhere_never() -> None:
+    for seed in range(1, 60):
+        schedule = BusyMachine(seed)
+        stalls = [stall for _ in range(10**5) if (stall := schedule.stall())]
+        assert bool(stalls) == schedule.races()
+        assert len(stalls) <= BusyMachine.MOST_STALLS
+        assert all(stall <= BusyMachine.LONGEST_STALL for stall in stalls)
+    for other in (0, 4, "pct:4", "random:4", "moves:3=1", "ask:"):
+        assert not any(schedule_of(other).stall() for _ in range(10**3))

@@ -115,3 +115,22 @@ class Mine(Node):
     def brew(self):
         assert self.boiled, "cold water"
 """
+
+AT_THE_OVEN = f"""{_HEAD}
+
+class Mine(Node):
+    def __init__(self):
+        super().__init__("oven")
+        self.turns = 0
+        group = ReentrantCallbackGroup()
+        self.kneads = self.create_timer(0.1, self.knead, callback_group=group)
+        self.create_timer(0.28, self.bake, callback_group=group)
+
+    def knead(self):
+        self.kneads.cancel()
+        for _ in range(300):
+            self.turns += 1
+
+    def bake(self):
+        assert self.turns == 300, "raw dough"
+"""

@@ -21,6 +21,7 @@ from cbtui.runs.judged.shards import Shard
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
 from tests.commands.exploring_files import (
+    AT_THE_OVEN,
     CHECK_THEN_ACT,
     IN_ONE_GROUP,
     JUST_IN_TIME,
@@ -77,6 +78,16 @@ def test_only_a_busy_machine_shows_what_is_done_just_in_time(file: Path) -> None
     assert " --seed busy:" in command
     again = cbtui(*shlex.split(command)[1:])
     assert "AssertionError: cold water" in again.stdout + again.stderr
+
+
+@pytest.mark.slow
+def test_only_a_busy_machine_stalls_while_a_callback_could_go_on_and_it_is_told(file: Path) -> None:
+    file.write_text(AT_THE_OVEN)
+    words = ("explore", str(file), "--schedules", "24", "--for", "0.4")
+    assert "none failed" in cbtui(*words).stdout
+    explored = " ".join(cbtui(*words, "--strategy", "busy").stdout.split())
+    assert "bake raised AssertionError raw dough 1. 0." in explored
+    assert re.search(r"s the machine is slow: \d+ ms pass before \S+ \(mine.py:\d+, in knead\)", explored)
 
 
 @pytest.mark.slow

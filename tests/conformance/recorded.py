@@ -18,7 +18,8 @@ class Recorded(NamedTuple):
 
     ``runs`` is how many runs of the model come to that, of many orders; 0: its usual order is the same.
     ``moves``: at which of its choices a run that follows the lines takes which option, and the first one at
-    all others, to come to it at once; ``races``: whether the threads of pools race in that.
+    all others, to come to it at once; ``races``: whether the threads of pools race in that; ``stalls``:
+    before which of these choices the machine stalls, and for how many nanoseconds.
     """
 
     distro: str
@@ -29,6 +30,7 @@ class Recorded(NamedTuple):
     runs: int = 0
     moves: tuple[tuple[int, int], ...] = ()
     races: bool = True
+    stalls: tuple[tuple[int, int], ...] = ()
 
     def steering(self) -> Steering | None:
         """What a run of the model that follows the lines chooses; None: its usual order."""
@@ -37,7 +39,8 @@ class Recorded(NamedTuple):
         others = dict(self.moves)
         (real,) = self.real
         lines = [*words_of(self.system, real).values()]
-        return Steering([others.get(place, 0) for place in range(max(others) + 1)], None, lines, self.races)
+        chosen = [others.get(place, 0) for place in range(max(others) + 1)]
+        return Steering(chosen, None, lines, self.races, self.stalls)
 
 
 def record(distro: str, results: list[Result], runs: int = 0) -> None:

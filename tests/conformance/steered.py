@@ -29,6 +29,8 @@ class Steering(NamedTuple):
     wanted: Sequence[Sequence[str]] = ()
     races: bool = False
     """Whether the threads of pools race."""
+    stalls: Sequence[tuple[int, int]] = ()
+    """Before which choices, and for how many nanoseconds, time passes although a thread could go on."""
 
 
 class Steered(Schedule):
@@ -50,6 +52,7 @@ class Steered(Schedule):
         self._line = line
         self._following: Hashable = None
         self._races = steering.races
+        self._stalls = deque(steering.stalls)
         self._wanted = [deque(lines) for lines in steering.wanted]
         self._about_to_say: dict[Hashable, str] = {}
 
@@ -97,6 +100,12 @@ class Steered(Schedule):
     def races(self) -> bool:
         """As the steering has it."""
         return self._races
+
+    def stall(self) -> int:
+        """As the steering has it."""
+        if not self._stalls or self._stalls[0][0] > len(self.made):
+            return 0
+        return self._stalls.popleft()[1]
 
     def hands_over(self) -> bool:
         """A choice, too."""

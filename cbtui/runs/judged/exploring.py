@@ -17,7 +17,7 @@ from cbtui.engines.forking import forking_context
 from cbtui.engines.session import ProcessSession
 from cbtui.runs.judged.check_text import verdict_line
 from cbtui.runs.judged.checking import ObservedRun, observe
-from cbtui.runs.judged.schedule_text import conflict_text, step_text
+from cbtui.runs.judged.schedule_text import conflict_text, stall_text, step_text
 from cbtui.runs.recorded.repeat import why_unrepeatable
 from lessons.checks import problems
 from lessons.judge import Judge
@@ -97,7 +97,7 @@ class ScheduleResult:
     repeatable: bool = field(default=True, compare=False)
     """Whether a run with the same seed is expected to be the same."""
     steps: tuple[str, ...] = field(default=(), compare=False)
-    """Where a schedule of moves leaves the usual order, in order."""
+    """Where a schedule of moves leaves the usual order, and where another one's machine stalls."""
     conflicts: tuple[str, ...] = field(default=(), compare=False)
     """Where data was used twice, and changed or read by another thread in between."""
     unmatched: bool = field(default=False, compare=False)
@@ -161,7 +161,10 @@ class Exploration:
             tuple(_told(each, observed.timeline) for each in found.values()),
             tuple(dict.fromkeys(_warnings(observed))),
             repeatable,
-            tuple(map(step_text, filter(attrgetter("chosen"), observed.timeline.choices))),
+            (
+                *map(step_text, filter(attrgetter("chosen"), observed.timeline.choices)),
+                *map(stall_text, observed.timeline.stalls),
+            ),
             tuple(conflict_text(each, observed.timeline) for each in observed.timeline.conflicts),
             any(each.kind is NoticeKind.UNMATCHED for each in observed.timeline.notices),
         )

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
-from sim.quantities.durations import timestamp
-from sim.trace.events import AccessesConflicted, ThreadChosen
+from sim.quantities.durations import duration, timestamp
+from sim.trace.events import AccessesConflicted, MachineStalled, ThreadChosen
 from sim.trace.timeline import Timeline
 
 
@@ -11,6 +11,12 @@ def step_text(choice: ThreadChosen) -> str:
     """Say which thread goes on in place of which."""
     how = "stops" if choice.preempts else "waits"
     return f"{timestamp(choice.t)} {choice.left} {how}; {choice.follows} goes on"
+
+
+def stall_text(stall: MachineStalled) -> str:
+    """Say what time passes before which thread goes on."""
+    passed = duration(stall.duration)
+    return f"{timestamp(stall.t)} the machine is slow: {passed} pass before {stall.before} goes on"
 
 
 def conflict_text(conflict: AccessesConflicted, timeline: Timeline) -> str:

@@ -4,11 +4,12 @@ from collections.abc import Callable
 
 from sim.clock import VirtualClock
 from sim.clock.moves import Choice, MovesSchedule
+from sim.clock.virtual_threads import VirtualThread
 from sim.engine.exploration.asking import AskedChoices, position
 from sim.engine.exploration.conflicts import Conflicts
 from sim.engine.exploration.line_switches import LineSwitches
 from sim.ros.middleware.host import Host
-from sim.trace.events import AnyEvent, ThreadChosen
+from sim.trace.events import AnyEvent, MachineStalled, ThreadChosen
 
 
 def explore(clock: VirtualClock, host: Host, record: Callable[[AnyEvent], None]) -> AskedChoices | None:
@@ -22,6 +23,11 @@ def explore(clock: VirtualClock, host: Host, record: Callable[[AnyEvent], None])
             asked = AskedChoices(clock, schedule, host, record)
             schedule.decide = asked.decide
         _tell_choices(clock, schedule, record)
+
+    def tell_stall(thread: VirtualThread, duration: int) -> None:
+        record(MachineStalled(clock.now(), duration, position(thread)))
+
+    clock.on_stall = tell_stall
     LineSwitches(clock, Conflicts(clock, host.probe.callback_here, record)).start()
     return asked
 

@@ -1,7 +1,7 @@
 """Exploring orders of threads: the choices of a schedule, and what threads share without guarding it."""
 
 from sim.trace.events.event import TraceEvent
-from sim.trace.events.fields import SourcePlace, WireOnly
+from sim.trace.events.fields import Nanoseconds, SourcePlace, WireOnly
 
 
 class ThreadChosen(TraceEvent, frozen=True, tag="choice"):
@@ -21,6 +21,14 @@ class ThreadChosen(TraceEvent, frozen=True, tag="choice"):
     """The first of them and its line, if another one was chosen; else empty."""
     follows: str = ""
     """The one that was chosen instead, and its line; else empty."""
+
+
+class MachineStalled(TraceEvent, frozen=True, tag="stall"):
+    """Time has passed although a thread could go on, as the run's schedule has it."""
+
+    duration: Nanoseconds
+    before: str
+    """A thread that could go on, and its line."""
 
 
 class ChoiceAsked(TraceEvent, frozen=True, tag="choice_asked"):
