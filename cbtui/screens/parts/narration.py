@@ -64,7 +64,8 @@ class Narration(ScreenPart):
         was_live = was_stepped(self.runs.run, self.navigation)
         if not self.widget.display or not (was_live or self.navigation.playhead.at is not None):
             return None
-        now, place = self.navigation.now, -1 if was_live else self.navigation.place
+        now, place = self.navigation.now, self.navigation.place
+        place = -1 if was_live or place is None else place
         about = decided_about(self.runs.timeline, now, place)
         return None if about is None else Step(now, place, about)
 
