@@ -25,7 +25,10 @@ FAULTS = {
     "sys.exit": Ends(
         "sys.exit(3)", f"the run is over: the program ended with exit code 3 ({AT})", RunState.ENDED
     ),
-    "os._exit": Ends("os._exit(3)", f"engine lost: ended with exit code 3 {IN_FAULT}"),
+    "os._exit": Ends(
+        "os._exit(3)",
+        f"engine lost: the program ended its process by os._exit(), with exit code 3 {IN_FAULT}",
+    ),
     "os.abort": Ends("os.abort()", f"engine lost: the program crashed with SIGABRT {IN_FAULT}"),
     "a crash in C": Ends(
         "import ctypes; ctypes.string_at(0)",
