@@ -58,7 +58,9 @@ class OwnThreads:
             found = None if ident in in_callbacks else position_of(sys._current_frames().get(ident))
             if found is not None:
                 self._tell_of_program(now, process, *found)
-        self._tell_of_threads(now, self._positions(in_callbacks | {ident for ident, _ in programs}))
+        # The engine's own main thread may be seen before its program has begun, and after its end.
+        mains = {threading.main_thread().ident or 0, *(ident for ident, _ in programs)}
+        self._tell_of_threads(now, self._positions(in_callbacks | mains))
 
     def _tell_of_program(self, now: int, process: Process, position: PositionFields, timeout: int) -> None:
         """Record where a program is; without frames if it spins, but not in a node's constructor."""

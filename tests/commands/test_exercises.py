@@ -247,7 +247,11 @@ def test_check_writes_plain_characters_where_the_terminal_has_no_others(here: Pa
     ("source", "sentence"),
     first_row_daily(
         (SYNTAX_ERROR, "split_groups.py:28: expected ':'"),
-        (LEAVES, "split_groups.py ended its whole process at 0.000 s: the engine ended with exit code 3"),
+        (
+            LEAVES,
+            "split_groups.py ended its whole process at 0.000 s: the program ended its process by "
+            "os._exit(), with exit code 3",
+        ),
         (A_GIGABYTE, "split_groups.py wrote more than 32 MB of log by 0.000 s"),
         ("raise RuntimeError('no')\n", "split_groups.py:1: the program raised RuntimeError: no"),
         ("", "split_groups.py defines no main() and runs nothing at its top level"),

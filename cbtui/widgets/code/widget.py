@@ -324,8 +324,11 @@ class CodeView(InkedView):
             return
         self._open(callback.file)
         inside = range(callback.first, callback.last + 1)
-        at = next((line for line, mark in self._here.items() if mark.texts and line in inside), inside[0])
-        seen_with_it = at - inside[0] < self.size.height - 2
+        there = [line for line, mark in self._here.items() if mark.texts]
+        is_in_call = any(line in inside for line in self._here)  # of a function beside it
+        at = next((line for line in there if line in inside), next(iter(there), 0) if is_in_call else 0)
+        at = at or inside[0]
+        seen_with_it = 0 <= at - inside[0] < self.size.height - 2
         self.call_after_refresh(self._bring_into_view, (inside[0] if seen_with_it else at) - 1)
 
     def _bring_into_view(self, line: int) -> None:
