@@ -10,6 +10,7 @@ import sys
 from collections.abc import Sequence
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
+from itertools import accumulate
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, cast
 
@@ -47,21 +48,21 @@ def install() -> None:
     sys.modules["rosidl_parser.definition"] = parser.definition
     if not any(isinstance(finder, InterfaceFinder) for finder in sys.meta_path):
         sys.meta_path[:0] = (_ModelFinder(), InterfaceFinder())
-    _load_face()
+    import_all_of("rclpy")  # before a program's time starts
 
 
-def _load_face() -> None:
-    """Import all of rclpy before a program's time starts, except deprecated modules, which warn."""
-    face = importlib.import_module("rclpy")
+def import_all_of(package: str) -> None:
+    """Import rclpy by either of its names with all its modules except deprecated ones, which warn."""
+    face = importlib.import_module(package)
     folders = [folder for folder in face.__path__ if not folder.endswith("_deprecated")]
-    for each in pkgutil.walk_packages(folders, "rclpy."):
+    for each in pkgutil.walk_packages(folders, f"{package}."):
         importlib.import_module(each.name)
 
 
 def _home_of(name: str) -> str | None:
     """The model's name of a module that a program imports; None for other modules."""
-    roots = (root for root in HOMES if name == root or name.startswith(f"{root}."))
-    root = next(roots, None)
+    prefixes = accumulate(name.split("."), "{}.{}".format)
+    root = next((each for each in prefixes if each in HOMES), None)
     return None if root is None else f"{HOMES[root]}.{name}"
 
 

@@ -99,7 +99,9 @@ _PLAIN = (io.TextIOBase, io.BufferedWriter, io.BufferedRandom, io.RawIOBase, io.
 
 
 def _files() -> list[Any]:
-    return [each for each in gc.get_objects() if issubclass(type(each), io.IOBase) and _is_written(each)]
+    every = gc.get_objects()
+    kinds = {kind for kind in set(map(type, every)) if issubclass(kind, io.IOBase)}
+    return [each for each in every if type(each) in kinds and _is_written(each)]
 
 
 def _is_written(file: Any) -> bool:
