@@ -90,7 +90,8 @@ class CommandLoop:
         if isinstance(command, commands.CompleteLine):
             clock.time.steer(lambda: self._carry_out(command))
             return
-        if clock.time.in_moment and not isinstance(command, commands.Stop):
+        # What the console itself wants is not told of.
+        if clock.time.in_moment and not isinstance(command, commands.Stop | commands.KeepContents):
             text = "time stands in the middle of a moment, and this comes at its end: step, or let time go on"
             self._record(Notice(clock.now(), Severity.WARN, text))
         clock.time.give(lambda: self._carry_out(command))

@@ -17,6 +17,7 @@ from sim.engine.commands import (
     CallService,
     Command,
     CompleteLine,
+    KeepContents,
     Pause,
     Resume,
     RunLine,
@@ -112,13 +113,14 @@ def test_a_line_that_is_given_in_the_middle_of_a_moment_waits_for_its_end_and_sa
         run.until(TimeHalted, 4)
         run.give(Step())
         run.until(TimeHalted, 5)
-        run.give(RunLine(1, "ros2 node list"), CompleteLine(2, "ros2 no", 7))
+        run.give(KeepContents(wanted=True), RunLine(1, "ros2 node list"), CompleteLine(2, "ros2 no", 7))
         completed = run.until(LineCompleted)
         notice = run.until(Notice)
         assert isinstance(notice, Notice)
         assert notice.text.startswith("time stands in the middle of a moment")
         assert completed.t == notice.t
         assert not [event for event in run.events if isinstance(event, LineEnded)]
+        assert len([event for event in run.events if isinstance(event, Notice)]) == 1, "of the person's line"
         run.give(Resume())
         run.until(LineEnded)
 
