@@ -53,6 +53,8 @@ def test_an_exception_that_no_later_callback_brings_out_is_swallowed() -> None:
     assert run.problems() == {("exception-swallowed", "fails")}
     told = run.explained("exception-swallowed")
     assert told.what == "fails raised what spin() has not raised: ValueError: no scan"
+    assert told.place is not None
+    assert 'raise ValueError("no scan")' in Path(__file__).read_text().splitlines()[told.place.first_line - 1]
 
 
 def test_a_callback_that_began_in_the_moment_of_an_exception_does_not_bring_it_out() -> None:

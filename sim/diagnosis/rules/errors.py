@@ -8,7 +8,17 @@ from sim.diagnosis.edits.functions import fit_parameters, hand_over_function
 from sim.diagnosis.edits.names import rename_definition
 from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.replies import futures_used, use_in_done_callback
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, by_edit, line_location, made_at, place_of
+from sim.diagnosis.rule import (
+    CodeLocation,
+    Explanation,
+    Finding,
+    Rule,
+    Weight,
+    by_edit,
+    line_location,
+    made_at,
+    place_of,
+)
 from sim.diagnosis.rules.known_errors import NO_FLOAT, known_reason
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of, raised_last
 from sim.diagnosis.words import listed, often, who
@@ -159,7 +169,7 @@ class SpinRaised(Rule):
             f"{subject} raised {span.error}{on}, and nobody spins its node any more: {waiting} cannot run",
             "an exception of a callback comes out of spin() and ends it, and a thread that only spins",
             f"correct the line, or catch the exception in {subject}",
-            line_location(*span.raised_at) or place_of(found.subject, timeline),
+            _raised_at(span, timeline),
         )
 
 
@@ -251,7 +261,7 @@ class ExceptionSwallowed(Rule):
             f"{subject} raised what spin() has not raised: {found.detail}{often(found.count)}",
             why,
             cure,
-            place_of(found.subject, timeline),
+            _raised_at(_span(found, timeline), timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
@@ -261,13 +271,22 @@ class ExceptionSwallowed(Rule):
             return None if ended.error in (None, found.detail) else Weight.PROBLEM
         if timeline.end - found.until < self.threshold and ended is None:
             return None
-        span = timeline.spans_of(found.subject, Window(found.at, found.at + 1))[-1]
-        if _came_out(span, timeline):
+        if _came_out(_span(found, timeline), timeline):
             return None
         since = Window(found.until, timeline.end + 1)
         pool = pool_of(found.thread, timeline)
         handed_out = (span.start for each in pool for span in timeline.spans_on(each, since))
         return None if any(start > found.until for start in handed_out) else Weight.PROBLEM
+
+
+def _span(found: Finding, timeline: Timeline) -> Span:
+    """Return the call that raised."""
+    return timeline.spans_of(found.subject, Window(found.at, found.at + 1))[-1]
+
+
+def _raised_at(span: Span, timeline: Timeline) -> CodeLocation | None:
+    """Return the program's own line that raised, else the callback of the call."""
+    return line_location(*span.raised_at) or place_of(span.entity, timeline)
 
 
 def _came_out(span: Span, timeline: Timeline) -> bool:
@@ -307,12 +326,11 @@ class ExceptionCaught(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         subject = who(found.subject, timeline)
-        span = timeline.spans_of(found.subject, Window(found.at, found.at + 1))[0]
         return Explanation(
             f"{subject} raised {found.detail}{often(found.count)}, and the program caught it",
             "what an except clause around spin() or spin_once() takes, and does not log, nobody hears of",
             f"correct the line, or catch the exception in {subject} and log it there",
-            line_location(*span.raised_at) or place_of(found.subject, timeline),
+            _raised_at(_span(found, timeline), timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
