@@ -333,7 +333,7 @@ def _overdue(entity: EntityInfo, moment: Moment, timeline: Timeline, since: Nano
 
 def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosis:
     longest = waits[0]
-    waited = moment.at - waits_since(longest, moment.queues[longest.entity])
+    waited = moment.at - waits_since(longest, moment.queues[longest.entity], timeline)
     more = len(waits) - 1
     others = f"; {more} more wait{'s' if more == 1 else ''}" if more else ""
     name = _with_lane(longest.entity, timeline)

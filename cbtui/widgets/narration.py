@@ -308,14 +308,14 @@ def waiting(wait: Wait, timeline: Timeline, at: Nanoseconds, begins: str = "is r
 
 
 def _had_others(wait: Wait, timeline: Timeline, at: Nanoseconds) -> bool:
-    since = waits_since(wait, timeline.queue(wait.entity, at))
+    since = waits_since(wait, timeline.queue(wait.entity, at), timeline)
     return had_other_reasons(wait, since, at, timeline)
 
 
 def _how_long(wait: Wait, timeline: Timeline, at: Nanoseconds, begins: str = "is ready") -> str:
     entity = timeline.entities[wait.entity]
     queue = timeline.queue(entity.id, at)
-    since = waits_since(wait, queue)
+    since = waits_since(wait, queue, timeline)
     waits = begins if at - since < WORTH_TELLING else f"has waited since {timestamp(since)}"
     ready = f", {queue.depth} queued" if queue.depth else ", due" if entity.kind is EntityKind.TIMER else ""
     return f"{entity.spoken_name} {waits}{ready}"

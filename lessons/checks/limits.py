@@ -8,6 +8,7 @@ from lessons.checks.reading import calls_of, entities_named, seconds, spans_of, 
 from sim.quantities.nanoseconds import SECOND
 from sim.quantities.plural import counted
 from sim.trace.descriptions import why_waiting
+from sim.trace.figures.waiting import waited_by
 from sim.trace.model import Wait
 from sim.trace.timeline import Timeline
 
@@ -43,15 +44,13 @@ def never_waits_longer_than(callback: str, limit: float) -> Check:
     def judge(run: Timeline) -> Verdict:
         if not calls_of(run, callback) and not any(_waits(run, callback)):
             return Verdict(False, expected, f"no call of {callback}")
-        longest = max(
-            _waits(run, callback), key=lambda series: _end(run, series[-1]) - series[0].since, default=None
-        )
+        longest = max(_waits(run, callback), key=lambda series: _length(run, series[-1]), default=None)
         if longest is None:
             return Verdict(True, expected, "no wait")
-        length = _end(run, longest[-1]) - longest[0].since
+        length = _length(run, longest[-1])
         why = why_waiting(max(longest, key=lambda wait: _end(run, wait) - wait.start), run)
         seen = f"a wait of {seconds(length, limit)}, {why}"
-        return Verdict(length <= limit * SECOND, expected, seen, longest[0].since)
+        return Verdict(length <= limit * SECOND, expected, seen, _end(run, longest[-1]) - length)
 
     return Check(f"{callback} never waits too long", judge)
 
@@ -144,6 +143,10 @@ def _waits(run: Timeline, name: str) -> list[list[Wait]]:
         for each in entities_named(run, name)
         for _, series in groupby(run.waits_of(each, whole_run(run)), key=attrgetter("since"))
     ]
+
+
+def _length(run: Timeline, last: Wait) -> int:
+    return waited_by(_end(run, last), last, run)
 
 
 def _end(run: Timeline, wait: Wait) -> int:

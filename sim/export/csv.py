@@ -8,6 +8,7 @@ from typing import Any, TextIO
 from sim.export.open_calls import CallSegment, OpenCalls
 from sim.export.reorder_buffer import ReorderBuffer
 from sim.export.texts import cell, seconds
+from sim.export.waits_of_calls import WaitsOfCalls
 from sim.trace import events as ev
 from sim.trace.events import AnyEvent, EntityId
 from sim.trace.model import Nanoseconds
@@ -32,7 +33,8 @@ class CallTable:
     """Writes a row when a call leaves its thread, so rows are in order of their end.
 
     A coroutine's call that was suspended has several rows, the first with its wait. ``wait_s`` is how long
-    the callback was ready before it ran, ``age_s`` the age of its message then, or how late its timer was.
+    the callback, or its message, had waited before it ran, ``age_s`` the age of its message then, or how
+    late its timer was.
     Calls that never end come last and have neither end nor duration. Open the file with ``newline=""``.
     Memory does not grow with the length of the run. Not thread-safe.
     """
@@ -43,16 +45,17 @@ class CallTable:
         self._reordered = ReorderBuffer()
         self._participants = Participants()
         self._open_calls = OpenCalls()
-        self._waiting: dict[EntityId, Nanoseconds] = {}
-        self._waited: dict[EntityId, Nanoseconds] = {}
+        self._waits = WaitsOfCalls()
         self._entity_cells = cache(self._make_cells)
         self._handlers: dict[type, Callable[[Any], object]] = {
             ev.ProcessAppeared: self._participants.add_process,
             ev.ThreadAppeared: self._participants.add_thread,
             ev.GroupAppeared: self._participants.add_group,
             ev.EntityAppeared: self._participants.add_entity,
-            ev.WaitStarted: self._wait_started,
-            ev.WaitEnded: self._wait_ended,
+            ev.EntityReady: self._waits.arrive,
+            ev.MessageDropped: self._waits.lose,
+            ev.WaitStarted: self._waits.start,
+            ev.WaitEnded: self._waits.end,
             ev.CallbackStarted: self._callback_started,
             ev.CallbackEnded: self._callback_ended,
             ev.CallbackSuspended: self._callback_suspended,
@@ -77,18 +80,10 @@ class CallTable:
         for event in events:
             handlers[event.__class__](event)
 
-    def _wait_started(self, event: ev.WaitStarted) -> None:
-        self._waiting[event.entity] = event.since
-
-    def _wait_ended(self, event: ev.WaitEnded) -> None:
-        since = self._waiting.pop(event.entity, None)
-        if since is not None:
-            self._waited[event.entity] = event.t - since
-
     def _callback_started(self, event: ev.CallbackStarted) -> None:
         for segment in self._open_calls.ended_unseen(event.thread):
             self._write(segment, event.t)
-        self._open_calls.start(event, self._waited.pop(event.entity, 0))
+        self._open_calls.start(event, self._waits.before(event))
 
     def _callback_ended(self, event: ev.CallbackEnded) -> None:
         left = self._open_calls.finish(event)

@@ -11,7 +11,7 @@ from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.figures.chains_text import chain_report
 from sim.trace.figures.statistics import CallbackStatistics, Distribution, Statistics, ages_used, statistics
-from sim.trace.figures.summary import CallbackFigures, Summary, summarise, without_waits
+from sim.trace.figures.summary import CallbackFigures, Summary, summarise, waits_in_run, without_waits
 from sim.trace.figures.summary_text import robot_line, service_line
 from sim.trace.model import AxisMark, AxisMarkKind, Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -169,16 +169,17 @@ def _waits(summary: Summary, timeline: Timeline) -> Iterator[str]:
 
 
 def _reasons(each: CallbackFigures, timeline: Timeline) -> Iterator[Sequence[str]]:
-    """The total wait for each reason, the longest first."""
+    """The total wait for each reason, the longest first, and the longest wait of which it is the main one."""
     total: defaultdict[str, Nanoseconds] = defaultdict(int)
     longest: defaultdict[str, Nanoseconds] = defaultdict(int)
-    for wait in timeline.waits_of(each.entity.id, Window(0, timeline.end + 1)):
-        why = why_waiting(wait, timeline)
-        length = wait.end_at(timeline.end) - wait.start
-        total[why] += length
-        longest[why] = max(longest[why], length)
+    waits = timeline.waits_of(each.entity.id, Window(0, timeline.end + 1))
+    for wait in waits:
+        total[why_waiting(wait, timeline)] += wait.end_at(timeline.end) - wait.start
+    for whole in waits_in_run(waits, timeline):
+        longest[whole.why] = max(longest[whole.why], whole.length)
     for why in sorted(total, key=lambda why: -total[why]):
-        yield plain(each.name), duration(total[why]), duration(longest[why]), plain(why)
+        most = duration(longest[why]) if longest[why] else "-"
+        yield plain(each.name), duration(total[why]), most, plain(why)
 
 
 def _threads(timeline: Timeline, summary: Summary, figures: Statistics) -> Iterator[str]:

@@ -21,8 +21,8 @@ from sim.trace.model import Nanoseconds
 class CallSegment:
     """A call of a callback on a thread, or the part of it between two suspensions.
 
-    ``wait`` is how long the callback had been ready when the call began; 0 after a suspension. ``lane`` is
-    the call's lane in its group, the same for all its segments.
+    ``wait`` is how long the callback, or its message, had waited when the call began; 0 after a suspension.
+    ``lane`` is the call's lane in its group, the same for all its segments.
     """
 
     number: int

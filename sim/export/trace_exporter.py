@@ -9,10 +9,11 @@ from sim.export.reorder_buffer import PayloadKind, ReorderBuffer
 from sim.export.texts import printable
 from sim.export.trace_sink import NO_ARGS, NO_LINKS, Args, Arrows, TraceSink, TrackId
 from sim.export.track_layout import TrackLayout
+from sim.export.waits_of_calls import WaitsOfCalls
 from sim.trace import events as ev
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import AnyEvent, EntityId, EntityKind, ThreadId
-from sim.trace.model import Nanoseconds, Wait
+from sim.trace.model import Nanoseconds
 
 _UNFINISHED: Args = {"unfinished": "yes"}
 
@@ -31,8 +32,8 @@ class TraceExporter:
         self._layout = TrackLayout(sink)
         self._flows = Flows()
         self._open_calls = OpenCalls()
-        self._waiting: dict[EntityId, Nanoseconds] = {}
-        self._waited: dict[EntityId, Nanoseconds] = {}
+        self._waits = WaitsOfCalls()
+        self._waiting: set[EntityId] = set()
         self._blocked: dict[ThreadId, ev.CallId] = {}
         self._handlers: dict[type, Callable[[Any], object]] = self._make_handlers()
 
@@ -129,6 +130,7 @@ class TraceExporter:
     # queues and waits
 
     def _entity_ready(self, event: ev.EntityReady) -> None:
+        self._waits.arrive(event)
         self._reordered.forget(event)
         left = tuple(self._flows.arrive(event.message, event.entity, event.depth))
         if left:
@@ -136,6 +138,7 @@ class TraceExporter:
         self._show_depth(event.entity, event.t, event.depth)
 
     def _message_dropped(self, event: ev.MessageDropped) -> None:
+        self._waits.lose(event)
         self._lose(event.entity, event.t, "lost", self._flows.take(event.message, event.entity))
         self._show_depth(event.entity, event.t, event.depth)
 
@@ -158,9 +161,9 @@ class TraceExporter:
 
     def _wait_started(self, event: ev.WaitStarted) -> None:
         self._stop_waiting(event.entity, event.t)
-        self._waiting[event.entity] = event.since
+        self._waiting.add(event.entity)
         entity = self._layout.entity(event.entity)
-        wait = Wait(event.t, None, event.since, event.entity, event.reason, event.holder, event.workers_busy)
+        wait = self._waits.start(event)
         args: dict[str, str | int | float] = {
             "reason": event.reason.value,
             "ready_since_s": event.since / 1e9,
@@ -172,13 +175,12 @@ class TraceExporter:
         self._sink.begin(self._layout.waits(entity), event.t, name, "wait", args)
 
     def _wait_ended(self, event: ev.WaitEnded) -> None:
-        since = self._waiting.get(event.entity)
-        if since is not None:
-            self._waited[event.entity] = event.t - since
-            self._stop_waiting(event.entity, event.t)
+        self._waits.end(event)
+        self._stop_waiting(event.entity, event.t)
 
     def _stop_waiting(self, entity: EntityId, t: Nanoseconds) -> None:
-        if self._waiting.pop(entity, None) is not None:
+        if entity in self._waiting:
+            self._waiting.remove(entity)
             self._sink.end(self._layout.waits(self._layout.entity(entity)), t)
 
     # calls
@@ -188,7 +190,7 @@ class TraceExporter:
             self._end_span(segment, event.t)
             self._end_call(segment, event.t)
         self._unblock(event.thread, event.t)
-        segment = self._open_calls.start(event, self._waited.pop(event.entity, 0))
+        segment = self._open_calls.start(event, self._waits.before(event))
         entity = self._layout.entity(event.entity)
         args = {
             **entity.args,

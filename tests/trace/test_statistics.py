@@ -255,19 +255,28 @@ def naive_waits(naive: Naive, calls: list[Span], entity: EntityId, window: Windo
 
 
 def naive_length(naive: Naive, wait: Wait, end: int) -> int:
-    """How long a callback, or the message that it is to take next, has waited by the end."""
-    arrived = naive.queue(wait.entity, max(wait.start, end - 1)).next_arrived
-    if arrived is None:
-        return end - wait.since
-    return end - (arrived if wait.holder == wait.entity else min(arrived, wait.since))
+    """How long a callback, or the message that it takes at the end or is to take next, has waited by then."""
+    kept_since, is_own = wait.since, wait.is_for_own_call
+    series = [each for each in naive.waits if (each.entity, each.since) == (wait.entity, wait.since)]
+    if series[0].is_for_own_call and series[0].end is not None and not is_own:
+        arrived = naive.queue(wait.entity, series[0].end).next_arrived
+        kept_since = wait.since if arrived is None else min(arrived, series[0].end)
+    messages = naive.queue(wait.entity, max(wait.start, end - 1)).messages
+    if not messages:
+        return end - kept_since
+    arrived = messages[0].arrived
+    begun = [each for each in naive.spans if (each.entity, each.start) == (wait.entity, end)]
+    calls = [each for each in begun if not resumed(naive, each)]
+    if wait.end == end and calls:
+        arrived = next((each.arrived for each in messages if each.id == calls[0].message), end)
+    return end - (arrived if is_own else min(arrived, kept_since))
 
 
 def naive_pending(naive: Naive, entity: EntityId, window: Window) -> list[int]:
     """How late a timer's call is that waits as the window ends, or how old what another one waits for."""
     end = min(window.end, max((event.t for event in naive.events), default=0))
-    if KINDS[entity] is EntityKind.TIMER:
-        return [end - wait.since for at, wait in naive.waiting(window.end - 1).items() if at == entity]
-    return [end - message.since for message in naive.queue(entity, window.end - 1).messages[:1]]
+    waits = [end - wait.since for at, wait in naive.waiting(window.end - 1).items() if at == entity]
+    return [end - message.since for message in naive.queue(entity, window.end - 1).messages[:1]] or waits
 
 
 def naive_jitter(calls: list[Span], kind: EntityKind) -> Distribution | None:

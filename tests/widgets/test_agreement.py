@@ -226,7 +226,7 @@ def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
         if wait == waits[0] and not told.stays:
             reasons.add(told.text)
         for text in reasons:
-            since = waits_since(wait, moment.queues[wait.entity])
+            since = waits_since(wait, moment.queues[wait.entity], timeline)
             assert duration(at - since) in text
             assert (", now" in text) == had_other_reasons(wait, since, at, timeline)
             is_held = wait.reason is Reason.GROUP_HELD
@@ -301,7 +301,7 @@ def assert_short_waits_count_nowhere(timeline: Timeline, at: int, files: SourceF
     short = {
         each.entity: each
         for each in moment.waiting.values()
-        if at - waits_since(each, moment.queues[each.entity]) < WORTH_TELLING
+        if at - waits_since(each, moment.queues[each.entity], timeline) < WORTH_TELLING
     }
     in_code = [mark for marks in marks_at(timeline, at, files).values() for mark in marks]
     assert not any("waits" in mark.texts[0] for mark in in_code if mark.entity in short)

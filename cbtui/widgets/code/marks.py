@@ -223,7 +223,7 @@ def _doing(
         lasted = duration(moment.at - awaits)
         return CallbackActivity.AWAITS, (f"▶ awaits {lasted}", f"▶ {lasted}"), awaits
     if wait is not None:
-        since = waits_since(wait, moment.queues[entity.id])
+        since = waits_since(wait, moment.queues[entity.id], timeline)
         hatch, lasted = GLYPHS[Charset.BRAILLE].hatch[wait.reason], duration(moment.at - since)
         waited = f"{hatch} waits {waited_so_far(wait, moment, timeline)}"
         whys = (f"{waited}: {why_waiting(wait, timeline)}", f"{hatch} waits {lasted}", f"{hatch} {lasted}")

@@ -116,7 +116,7 @@ def wait_texts(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, .
     wait = belt.wait
     if wait is None:
         return ()
-    took = duration(max(0, now - waits_since(wait, belt.queue)))
+    took = duration(max(0, now - waits_since(wait, belt.queue, timeline)))
     before = waited_so_far(wait, timeline.moment(now), timeline)
     verb = "late" if belt.entity.kind is EntityKind.TIMER else "waits"
     full = [f"{verb} {before}: {why}" for why in _why(belt, timeline)]

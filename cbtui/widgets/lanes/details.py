@@ -12,7 +12,7 @@ from sim.diagnosis.words import awaited_lock
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import doing_of, name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind, Reason
-from sim.trace.figures.waiting import WORTH_TELLING, wait_judged, waits_since
+from sim.trace.figures.waiting import WORTH_TELLING, wait_judged, waited_by, waits_since
 from sim.trace.model import Call, EntityInfo, Nanoseconds, Position, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -84,8 +84,9 @@ def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
     yield from _blocked(timeline, span, now)
     waits = _waits_before(timeline, span)
     if waits:
-        since = waits_since(waits[-1], timeline.queue(span.entity, span.start - 1))
-        yield f"waited {duration(span.start - since)}: {_reasons(timeline, waits)}"
+        waited = waited_by(span.start, waits[-1], timeline)
+        reasons = _reasons(timeline, [wait for wait in waits if wait.end_at(now) > span.start - waited])
+        yield f"waited {duration(waited)}" + (f": {reasons}" if reasons else "")
     entity = timeline.entities.get(span.entity)
     if entity is not None:
         yield from _cause(timeline, span, entity)
@@ -210,7 +211,7 @@ def _of_wait(timeline: Timeline, wait: Wait, now: Nanoseconds) -> Iterator[str]:
     until = now if wait.end is None or wait.end > now >= wait.start else wait.end
     yield f"{_of_all(until - wait.start, wait, timeline)} from {timestamp(wait.start)}"
     yield _reason(timeline, wait)
-    since = waits_since(wait, timeline.queue(wait.entity, max(until - 1, wait.start)))
+    since = waits_since(wait, timeline.queue(wait.entity, max(until - 1, wait.start)), timeline)
     if since < wait.start:
         yield f"{'ready' if since == wait.since else 'next in its queue'} since {timestamp(since)}"
     if wait.workers_busy and wait.reason is not Reason.NO_FREE_WORKER:

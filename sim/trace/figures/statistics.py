@@ -118,7 +118,7 @@ def statistics_incrementally(
         starts.extend(span.start for span in calls)
         ages.extend(span.age for span in calls)
         yield
-    pending = _pending_age(timeline, known, window)
+    pending = pending_age(timeline, known, window)
     of_ages = yield from _distributed(ages, pending)
     return CallbackStatistics(
         entity=known,
@@ -133,12 +133,12 @@ def statistics_incrementally(
     )
 
 
-def _pending_age(timeline: Timeline, entity: EntityInfo, window: Window) -> Nanoseconds:
+def pending_age(timeline: Timeline, entity: EntityInfo, window: Window) -> Nanoseconds:
     """The age of what a call is for that waits as the window ends, or how late it is then; 0 for none."""
     end = min(window.end, timeline.end)
-    if entity.kind is not EntityKind.TIMER:
-        since = timeline.queue(entity.id, window.end - 1).oldest
-        return 0 if since is None else end - since
+    since = timeline.queue(entity.id, window.end - 1).oldest
+    if since is not None:
+        return end - since
     waits = timeline.waits_of(entity.id, Window(window.end - 1, window.end))
     return max((end - wait.since for wait in waits if wait.end is None or wait.end >= window.end), default=0)
 

@@ -8,6 +8,7 @@ from itertools import groupby, pairwise
 from sim.trace.descriptions import node_name, silent_topics, why_waiting
 from sim.trace.events import EntityId, RobotMoved, VelocityCommanded
 from sim.trace.figures.concurrency import threads_at_once
+from sim.trace.figures.statistics import pending_age
 from sim.trace.figures.waiting import waited_by
 from sim.trace.incremental import Incremental, collect, run_to_end, split
 from sim.trace.model import Call, EntityInfo, Nanoseconds, Wait, Window
@@ -18,8 +19,8 @@ _BETWEEN_POSES: Nanoseconds = 20_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class LongestWait:
-    """The longest wait of a callback, or of its next message; ``why`` is the reason of most of that time."""
+class WaitInRun:
+    """A wait of a callback, or of its next message; ``why`` is the reason of most of that time."""
 
     length: Nanoseconds
     why: str
@@ -38,7 +39,7 @@ class CallbackFigures:
     group: str
     calls: int
     running: float
-    longest_wait: LongestWait | None
+    longest_wait: WaitInRun | None
     late: Nanoseconds
     drops: int
     errors: int
@@ -131,7 +132,7 @@ def _callbacks(timeline: Timeline, whole: Window) -> Iterator[CallbackFigures]:
             calls=timeline.calls_of(entity.id, whole),
             running=running / length if length else 0.0,
             longest_wait=_longest(waits, timeline),
-            late=max([*(span.age for span in spans), *_pending(waits, timeline)], default=0),
+            late=max([span.age for span in spans] + [pending_age(timeline, entity, whole)]),
             drops=drops,
             errors=sum(bool(span.error) for span in spans),
         )
@@ -156,24 +157,21 @@ def _known_by(entity: EntityInfo) -> str:
     return "" if entity.name == entity.spoken_name else entity.name
 
 
-def _longest(waits: Iterable[Wait], timeline: Timeline) -> LongestWait | None:
-    """The longest series of waits; a series has one ``since``."""
-    longest: LongestWait | None = None
+def _longest(waits: Iterable[Wait], timeline: Timeline) -> WaitInRun | None:
+    return max(waits_in_run(waits, timeline), key=lambda wait: wait.length, default=None)
+
+
+def waits_in_run(waits: Iterable[Wait], timeline: Timeline) -> Iterator[WaitInRun]:
+    """Yield those waits that took any time, each with all its reasons: a series has one ``since``."""
     for _, each in groupby(waits, key=lambda wait: wait.since):
         series = list(each)
         ends = [wait.end_at(timeline.end) for wait in series]
         length = waited_by(max(ends), series[-1], timeline)
-        if length > (longest.length if longest else 0):
-            shares: defaultdict[str, int] = defaultdict(int)
-            for wait, end in zip(series, ends, strict=True):
-                shares[why_waiting(wait, timeline)] += end - wait.start
-            longest = LongestWait(length, max(shares, key=shares.__getitem__))
-    return longest
-
-
-def _pending(waits: Iterable[Wait], timeline: Timeline) -> Iterator[Nanoseconds]:
-    """How late a call is that has not begun when the run ends."""
-    yield from (timeline.end - wait.since for wait in waits if wait.end is None)
+        shares: defaultdict[str, int] = defaultdict(int)
+        for wait, end in zip(series, ends, strict=True):
+            shares[why_waiting(wait, timeline)] += end - max(wait.start, max(ends) - length)
+        if length:
+            yield WaitInRun(length, max(shares, key=shares.__getitem__))
 
 
 def _services(calls: Iterable[Call]) -> Iterator[ServiceFigures]:

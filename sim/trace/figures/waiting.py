@@ -15,16 +15,36 @@ _EXAMINED = 100
 """Of the waits of a callback that waits for very long, only the first are compared."""
 
 
-def waits_since(wait: Wait, queue: Queue) -> Nanoseconds:
+def waits_since(wait: Wait, queue: Queue, timeline: Timeline) -> Nanoseconds:
     """Return since when a callback, or the message that it is to take next from its queue, has waited.
 
-    A callback that took one message while others were queued has waited for less time than they have; if its
-    queue loses messages, for longer, which counts unless only its own last call keeps it from running.
+    This is what every pane, figure and export tells of a wait. A message waits from its arrival to the call
+    that takes it; one that its queue loses has waited for no call. While only the callback's own last call
+    keeps it from running, nothing else waits. While others keep it from running, the callback waits as well:
+    since it became ready or its own last call was over, whatever its queue has lost since then.
     """
-    arrived = queue.next_arrived
+    return wait_began(wait, _kept_since(wait, timeline), queue.next_arrived)
+
+
+def wait_began(wait: Wait, kept_since: Nanoseconds, arrived: Nanoseconds | None) -> Nanoseconds:
+    """Return when a wait began, as ``waits_since``.
+
+    ``kept_since`` is since when others keep its callback from running, ``arrived`` when its message came.
+    """
     if arrived is None:
+        return kept_since
+    return arrived if wait.is_for_own_call else min(arrived, kept_since)
+
+
+def _kept_since(wait: Wait, timeline: Timeline) -> Nanoseconds:
+    """Since when others keep a callback from running; if its own last call did first, what was next then."""
+    if wait.start == wait.since or wait.is_for_own_call:
         return wait.since
-    return arrived if wait.is_for_own_call else min(arrived, wait.since)
+    first = timeline.waits_of(wait.entity, Window(wait.since, wait.since + 1))[-1:]
+    if not first or first[0].end is None or not first[0].is_for_own_call:
+        return wait.since
+    arrived = timeline.queue(wait.entity, first[0].end).next_arrived
+    return wait.since if arrived is None else min(arrived, first[0].end)
 
 
 def waited_so_far(wait: Wait, moment: Moment, timeline: Timeline) -> str:
@@ -32,7 +52,7 @@ def waited_so_far(wait: Wait, moment: Moment, timeline: Timeline) -> str:
 
     If something else kept it before, the reason is not to blame for all of that: ``1.7 s, now``.
     """
-    since = waits_since(wait, moment.queues[wait.entity])
+    since = waits_since(wait, moment.queues[wait.entity], timeline)
     lasted = duration(max(0, moment.at - since))
     return f"{lasted}, now" if had_other_reasons(wait, since, moment.at, timeline) else lasted
 
@@ -53,8 +73,14 @@ def _holder(wait: Wait) -> EntityId:
 
 
 def waited_by(end: Nanoseconds, wait: Wait, timeline: Timeline) -> Nanoseconds:
-    """Return for how long a callback, or its next message, has waited just before ``end``."""
-    return end - waits_since(wait, timeline.queue(wait.entity, max(wait.start, end - 1)))
+    """Return for how long a callback, or the message that it took at ``end``, has waited by then."""
+    queue = timeline.queue(wait.entity, max(wait.start, end - 1))
+    if wait.end == end:
+        for call in timeline.calls_begun(wait.entity, Window(end, end + 1))[:1]:
+            arrivals = (each.arrived for each in queue.messages if each.id == call.message)
+            arrived = next(arrivals, end if queue.messages else None)
+            return end - wait_began(wait, _kept_since(wait, timeline), arrived)
+    return end - waits_since(wait, queue, timeline)
 
 
 def waits_at(moment: Moment, timeline: Timeline) -> Iterator[Wait]:
@@ -117,14 +143,14 @@ def waits_for_others(moment: Moment, timeline: Timeline) -> list[Wait]:
     The longest is first.
     """
     waits = (wait for wait in waits_at(moment, timeline) if not wait.is_for_own_call)
-    ordered = sorted((waits_since(wait, moment.queues[wait.entity]), wait.entity) for wait in waits)
+    ordered = sorted((waits_since(wait, moment.queues[wait.entity], timeline), wait.entity) for wait in waits)
     return [wait for _, entity in ordered if (wait := wait_told(entity, moment, timeline)) is not None]
 
 
 def wait_told(entity: EntityId, moment: Moment, timeline: Timeline) -> Wait | None:
     """Return the wait of a callback at a moment, its own last call's included, if it is worth telling."""
     wait = _wait_at(entity, moment, timeline)
-    if wait is None or moment.at - waits_since(wait, moment.queues[entity]) < WORTH_TELLING:
+    if wait is None or moment.at - waits_since(wait, moment.queues[entity], timeline) < WORTH_TELLING:
         return None
     return wait
 
@@ -142,7 +168,7 @@ def next_in_turn(moment: Moment, timeline: Timeline) -> dict[EntityId, Nanosecon
     }
     held = {wait.entity for wait in waits_at(moment, timeline) if not wait.is_for_own_call}
     turns = (wait for wait in moment.waiting.values() if wait.entity not in held)
-    return found | {wait.entity: waits_since(wait, moment.queues[wait.entity]) for wait in turns}
+    return found | {wait.entity: waits_since(wait, moment.queues[wait.entity], timeline) for wait in turns}
 
 
 _QUEUES = (EntityKind.SUBSCRIPTION, EntityKind.SERVICE)
