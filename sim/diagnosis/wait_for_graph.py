@@ -154,9 +154,10 @@ class WaitForGraph:
             call = self._call(number)
             if call is not None and self._is_answered(call):
                 yield call
-        for wait in self._moment.waiting.values():  # the replies that came since an action's client waits
+        for wait in self._moment.waiting.values():  # the replies that an action's client has not taken
             action, _, end = self._timeline.entities[wait.entity].name.partition(" ")
-            since = Window(max(0, wait.since - 1), self._at + 1)
+            taken = self._timeline.calls_begun(wait.entity, Window(0, self._at + 1))[-1:]
+            since = Window(max([0, *(each.start for each in taken)]), self._at + 1)
             for call in self._timeline.calls_within(since) if end == "client" else ():
                 if call.service.startswith(f"{action}/_action/") and self._is_answered(call):
                     yield call

@@ -14,9 +14,12 @@ from sim.ros.scheduling.callback_groups import (
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
+from sim.trace.events import EntityAppeared, EntityKind
+from sim.trace.timeline import Timeline
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, serve_outside, spin
 from tests.support.builder import ns
 from tests.support.engine_runs import program_setup, run_program, run_to_end
+from tests.support.runs import Run
 from tests.support.simulation import Simulation
 
 Group = Callable[[], CallbackGroup]
@@ -76,6 +79,29 @@ def test_as_many_calls_as_threads_need_one_thread_more(count: int, kind: Group) 
     told = run.explained("needs-one-more-worker")
     assert f"{'both' if count == 2 else f'all {count}'} stand still: " in told.what
     assert f"num_threads={count + 1}" in told.cure
+
+
+def test_a_goal_awaited_in_the_group_of_its_client_is_a_deadlock_even_if_its_reply_is_seen_late() -> None:
+    run, client = Run(), 9
+    run.executor("MultiThreadedExecutor", 4)
+    node = run.node("/n")
+    group, thread = run.exclusive(node), run.thread("MainThread")
+    run.add(
+        EntityAppeared(0, client, node, group, EntityKind.WAITABLE, "/turn client", "", "node.py", 1, 1, 0, 0)
+    )
+    ask = run.timer(group, "ask", 1.0)
+    run.start(ask, thread, 1.0)
+    run.call("/turn/_action/send_goal", 1.0, 1.02, entity=ask)
+    run.suspend(ask, thread, 1.0)
+    run.wait(client, 1.03, holder=ask)
+    run.stop(9.0)
+    timeline = Timeline()
+    timeline.extend(run.events)
+    (found,) = diagnose(timeline)
+    assert found.explained(timeline).what == (
+        "deadlock: ask waits for /turn/_action/send_goal for ever; "
+        "the reply of /turn/_action/send_goal waits for group A, which ask holds"
+    )
 
 
 def test_one_thread_more_is_not_advised_alone_where_a_group_keeps_out_an_answer_too(tmp_path: Path) -> None:
