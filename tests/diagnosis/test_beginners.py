@@ -111,7 +111,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("loop_with_break", "stays-in-loop", "while True:", "keep the state in self and return"),
         ("qos_mismatch", "qos-mismatch", "self.create_subscription(", "the same QoSProfile"),
         ("rate_sleep", "self-made-deadlock", "self.rate.sleep()", "num_threads=2"),
-        ("wrong_arity", "program-raised", "def on_chatter(self):", "def on_chatter(self, message)"),
+        (
+            "wrong_arity",
+            "program-raised",
+            "def on_chatter(self):",
+            "wrong_arity.py:10 raised it: rclpy calls on_chatter with other arguments; in line 16 write",
+        ),
         ("no_self", "program-raised", "def on_chatter():", "def on_chatter(self, message)"),
         ("function_called", "program-raised", "self.create_timer(", "without calling it"),
         ("class_for_group", "program-raised", "callback_group=", "such as ReentrantCallbackGroup()"),

@@ -7,6 +7,7 @@ import linecache
 import re
 from contextlib import suppress
 from itertools import takewhile
+from pathlib import Path
 from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
@@ -40,15 +41,19 @@ def culprit_of(error: BaseException, is_own: IsOwn) -> tuple[str, int, str] | No
     frames = list(walk_tb(error.__traceback__))
     if not frames or not isinstance(error, (TypeError, AttributeError, RuntimeError, ValueError)):
         return None
+    own = [(frame.f_code.co_filename, line) for frame, line in frames if is_own(frame)]
     if str(error) == "invalid method signature":  # of inspect, on a method without self
         handed_over = (each for each, _ in reversed(frames) if "callback" in each.f_locals)
-        return next((_unfit(each.f_locals["callback"], "subscription") for each in handed_over), None)
+        unfit = (_unfit(each.f_locals["callback"], "subscription", own[-1:]) for each in handed_over)
+        return next(unfit, None)
     if is_own(frames[-1][0]):
         return _hiding_attribute(error, *frames[-1])
-    return _rejected_callback(error, frames[-1][0]) or _hiding(frames, is_own)
+    return _rejected_callback(error, frames[-1][0], own[-1:]) or _hiding(frames, is_own)
 
 
-def _rejected_callback(error: BaseException, frame: FrameType) -> tuple[str, int, str] | None:
+def _rejected_callback(
+    error: BaseException, frame: FrameType, raised: list[tuple[str, int]]
+) -> tuple[str, int, str] | None:
     text = str(error)
     if "add_entity()" in text or not any(each in text for each in ("positional argument", "callback should")):
         return None
@@ -60,11 +65,14 @@ def _rejected_callback(error: BaseException, frame: FrameType) -> tuple[str, int
     kind = getattr(caller, "kind", _KINDS.get(number, "subscription"))
     if callback is None and _calls_with_future(caller):
         callback, kind = getattr(caller, "_handler", None), "client"
-    return _unfit(callback, kind)
+    return _unfit(callback, kind, raised)
 
 
-def _unfit(callback: Any, kind: str) -> tuple[str, int, str] | None:
-    """File and line of a callback that takes other arguments than one of its kind, and how to define it."""
+def _unfit(callback: Any, kind: str, raised: list[tuple[str, int]]) -> tuple[str, int, str] | None:
+    """File and line of a callback that takes other arguments than one of its kind, and how to define it.
+
+    That names the line, too, at which the exception was ``raised``, if it is one of the program's own.
+    """
     callback = inspect.unwrap(callback)
     code = getattr(callback, "__code__", None)
     if code is None:
@@ -75,10 +83,12 @@ def _unfit(callback: Any, kind: str) -> tuple[str, int, str] | None:
         if code.co_name == "<lambda>"
         else f"def {code.co_name}({', '.join(taken)})"
     )
+    at = "".join(f"{Path(file).name}:{line} raised it: " for file, line in raised)
+    named = "the lambda" if code.co_name == "<lambda>" else code.co_name
     return (
         code.co_filename,
         code.co_firstlineno,
-        f"rclpy calls it with other arguments; write {written}",
+        f"{at}rclpy calls {named} with other arguments; in line {code.co_firstlineno} write {written}",
     )
 
 
