@@ -164,7 +164,7 @@ async def test_that_no_cure_helps_is_told_with_what_was_tried(answer: Verdict, t
         await pilot.pause()
         shown = " ".join(line.strip("│ ") for line in text_of(app).splitlines())
         assert f"· {told}" in shown
-        assert ("→ by itself not enough here: " in shown) == (answer.helps is False)
+        assert ("→ what was tried is not enough here; in all: " in shown) == (answer.helps is False)
 
 
 async def test_where_the_code_is_of_no_simple_shape_it_is_told_that_no_cure_is_offered() -> None:

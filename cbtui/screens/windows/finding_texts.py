@@ -12,7 +12,7 @@ from sim.diagnosis import location_text, sentence, with_stop
 from sim.quantities.durations import timestamp
 from sim.quantities.plural import counted
 
-_IN_VAIN = "by itself not enough here: "
+_IN_VAIN = "what was tried is not enough here; in all: "
 _TIME = 10
 
 

@@ -227,7 +227,9 @@ def sleep_in_loop(source: SourceEditor, line: int) -> None:
 
 
 def _sleeps(loop: ast.While) -> bool:
-    return any(is_idle(each) and not isinstance(each, ast.Pass) for each in loop.body)
+    calls = (each.func for each in ast.walk(loop.test) if isinstance(each, ast.Call))
+    waits = any(isinstance(each, ast.Attribute) and each.attr.startswith("wait") for each in calls)
+    return waits or any(is_idle(each) and not isinstance(each, ast.Pass) for each in loop.body)
 
 
 def _asking(source: SourceEditor, line: int) -> ast.While:

@@ -334,6 +334,7 @@ def test_a_loop_sleeps_by_the_module_that_is_imported() -> None:
     "loop",
     [
         "while not self.done:  # here\n    time.sleep(0.1)",
+        "while not self.client.wait_for_service(1.0):  # here\n    self.log.info('no')",
         "while self.n < 9:  # here\n    self.n += 1",
         "while not self.done:  # here\n    self.step()",
     ],
