@@ -137,7 +137,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("result_of_helper", "program-raised", "response.message", "use the result in a done-callback"),
         ("call_before_spin", "node-never-spins", "self.client.call(", "use call_async() there"),
         ("publishes_in_loop", "node-never-spins", "while rclpy.ok():", "a timer's callback"),
-        ("spin_once_seldom", "spins-too-rarely", "def steer(self):", "call rclpy.spin(node)"),
+        ("spin_once_seldom", "spins-too-rarely", "while rclpy.ok():", "call rclpy.spin(node)"),
         ("rate_in_main", "node-never-spins", "rate.sleep()", "spin the node in a thread beside the loop"),
         ("two_spins", "node-never-spins", "rclpy.spin(listener)", "add all nodes to one executor"),
         (

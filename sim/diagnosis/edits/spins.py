@@ -249,6 +249,14 @@ def _spins(statement: ast.stmt, spinning: set[str]) -> bool:
 
 
 @asked_of_file
+def loop_of_spin_once(source: SourceEditor) -> int:
+    """Return the line of the loop that calls ``spin_once()``; 0 if a file has several such, or none."""
+    calls = [each for each in source.nodes(ast.Call) if _last_name(each.func) == "spin_once"]
+    loops = {loop.lineno for each in calls for loop in source.around(ast.While, each.lineno)[-1:]}
+    return loops.pop() if len(loops) == 1 else 0
+
+
+@asked_of_file
 def starving_loop(source: SourceEditor) -> tuple[int, str, tuple[str, ...]]:
     """Return the line and function of the loop of a coroutine that spins and never awaits, and the others.
 

@@ -1,9 +1,17 @@
 """Rules on nodes that nobody spins, or that are spun too rarely."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 from sim.diagnosis.cures import Remedy
-from sim.diagnosis.edits.spins import spin_beside, spin_node_beside, spins_in_turn, started_late, taken_away
+from sim.diagnosis.edits.spins import (
+    loop_of_spin_once,
+    spin_beside,
+    spin_node_beside,
+    spins_in_turn,
+    started_late,
+    taken_away,
+)
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
@@ -11,6 +19,7 @@ from sim.diagnosis.rule import (
     Rule,
     Weight,
     by_edit,
+    line_location,
     loop_beside_spin,
     place_of,
 )
@@ -144,14 +153,18 @@ class SpinsTooRarely(KeptWaiting):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         loop, cure = loop_beside_spin(found.at + found.size // 2, timeline)
+        known = place_of(found.subject, timeline)
+        if loop is None and known is not None:
+            loop = line_location(known.file, loop_of_spin_once(known.file))
         where = f"the loop of line {loop.first_line} comes" if loop else "the program comes"
-        return self._explained(
+        told = self._explained(
             found,
             timeline,
             f"{where} to spin_once() too rarely",
             "callbacks run only inside spin(), and spin_once() returns after the first one",
             cure or SPIN_ALWAYS,
         )
+        return replace(told, place=loop or told.place)
 
 
 def _taken_or_late(what: str, cure: str, place: CodeLocation) -> tuple[str, str, CodeLocation]:
