@@ -122,7 +122,7 @@ class RunShutdown:
         """Exit once the program has ended; it may have failed after a request to end."""
         cause = Cause(outcome.sentence, outcome.failed, outcome.error, outcome.failure)
         if not self.conclude(cause) and outcome.failed:
-            self._tell(Severity.ERROR, outcome.sentence)
+            self._tell(Severity.ERROR, outcome.sentence, NoticeKind.RAISED_AT_END)
         finish_lines()
         self.leave()
 

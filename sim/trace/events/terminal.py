@@ -114,6 +114,8 @@ class NoticeKind(StrEnum):
     """A program records events that only the run may record."""
     COROUTINE_DIED = "coroutine died"
     """An exception ended a coroutine that was given to a thread's loop, and nobody asks for its result."""
+    RAISED_AT_END = "raised at end"
+    """A program ended by an exception once the run was over, as in a ``finally`` after Ctrl-C."""
 
 
 class Notice(TraceEvent, frozen=True, tag="notice"):

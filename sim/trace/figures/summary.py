@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from itertools import groupby, pairwise
 
 from sim.trace.descriptions import node_name, silent_topics, why_waiting
-from sim.trace.events import EntityId, RobotMoved, VelocityCommanded
+from sim.trace.events import EntityId, NoticeKind, RobotMoved, VelocityCommanded
 from sim.trace.figures.concurrency import threads_at_once
 from sim.trace.figures.statistics import pending_age
 from sim.trace.figures.waiting import waited_by
@@ -93,6 +93,8 @@ class Summary:
     """The topics of subscriptions on which nothing came."""
     is_short: bool
     """Whether the time was up before the program had made a node."""
+    raised_at_end: tuple[str, ...]
+    """How programs failed once they were told to end: file and line, and the exception."""
 
 
 def summarise(timeline: Timeline) -> Summary:
@@ -111,6 +113,7 @@ def summarise(timeline: Timeline) -> Summary:
         services=tuple(_services(timeline.calls)),
         robot=run_to_end(robot_incrementally(timeline, whole)),
         silent=silent_topics(timeline),
+        raised_at_end=tuple(each.text for each in timeline.notices if each.kind is NoticeKind.RAISED_AT_END),
         is_short=not timeline.nodes and timeline.ended is not None and timeline.ended.time_was_up,
     )
 

@@ -100,6 +100,8 @@ def _rest(summary: Summary) -> Iterator[str]:
     for service in summary.services:
         yield f"{label:<7}  {service_line(service)}"
         label = ""
+    for told in summary.raised_at_end:
+        yield f"its end  {told}"
     if summary.is_short:
         yield "nodes    none was made by then: let it run for longer, if it makes some"
     if silent := nothing_came(summary.silent):

@@ -18,6 +18,8 @@ from sim.engine.commands import Stop
 from sim.engine.programs.ending import GRACE
 from sim.probes.own_code import place_of
 from sim.trace.events import AnyEvent, Notice, Printed, RunEnded
+from sim.trace.figures.summary import summarise
+from sim.trace.figures.summary_text import plain_text
 from tests.support.daily import first_daily, first_row_daily
 from tests.support.engine_runs import Run, program_setup, run_program, run_to_end
 
@@ -314,10 +316,10 @@ def test_a_last_message_fails_as_under_rclpy_once_ctrl_c_has_ended_the_context(
     assert [text for _, text in run.logs()] == ["last line"]
     assert "published" not in printed(run)
     (notice,) = (event.text for event in run.events if isinstance(event, Notice))
-    assert notice.startswith(
-        "node.py:13: the program raised RCLError: Failed to publish: publisher's context is"
-    )
+    said = "node.py:13: the program raised RCLError: Failed to publish: publisher's context is"
+    assert notice.startswith(said)
     assert notice.endswith("call rclpy.init(signal_handler_options=SignalHandlerOptions.NO)")
+    assert f"its end  {said}" in plain_text(summarise(run.timeline))
 
 
 @pytest.mark.usefixtures("patient_engines")
