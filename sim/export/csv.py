@@ -52,7 +52,7 @@ class CallTable:
             ev.ThreadAppeared: self._participants.add_thread,
             ev.GroupAppeared: self._participants.add_group,
             ev.EntityAppeared: self._participants.add_entity,
-            ev.EntityReady: self._waits.arrive,
+            ev.EntityReady: self._entity_ready,
             ev.MessageDropped: self._waits.lose,
             ev.WaitStarted: self._waits.start,
             ev.WaitEnded: self._waits.end,
@@ -79,6 +79,10 @@ class CallTable:
         handlers = self._handlers
         for event in events:
             handlers[event.__class__](event)
+
+    def _entity_ready(self, event: ev.EntityReady) -> None:
+        self._reordered.forget(event)
+        self._waits.arrive(event)
 
     def _callback_started(self, event: ev.CallbackStarted) -> None:
         for segment in self._open_calls.ended_unseen(event.thread):
