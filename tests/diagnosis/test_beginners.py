@@ -34,7 +34,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "call_in_service",
             "self-made-deadlock",
             "self.adder.call(",
-            "await the future in an async def cook",
+            "await the future of call_async() in an async def cook",
         ),
         ("spin_once", "nested-spin", "rclpy.spin_once(self)", "return from go, and go on in on_open"),
         ("asyncio_starved", "asyncio-starved", "while rclpy.ok():", "await asyncio.sleep(0)"),

@@ -100,7 +100,8 @@ class SelfMadeDeadlock(Rule):
                 cure = f"let go of the lock before the await, and {apart}"
         cure = apart if len(both) > 1 else cure
         if not cure and answers:
-            cure = f"after call_async() {awaiting(subject)}; to wait inside it, {apart}"
+            later = awaiting(subject).replace("the future", "the future of call_async()", 1)
+            cure = f"{apart} and let it wait as it does, or {later}"
         if not cure:
             # Where in a busy loop a thread was seen, in a call or between, is chance.
             computes = bool(stands) and not stands[-1].call and not stands[-1].loop[0]
