@@ -66,6 +66,8 @@ def test_the_manual_has_every_command(capsys: pytest.CaptureFixture[str]) -> Non
     [
         (["opne"], "cbtui: there is no command 'opne'; did you mean open?"),
         (["rnu"], "did you mean run?"),
+        (["help"], "cbtui: there is no command 'help'; did you mean --help?"),
+        (["record"], "there is no command 'record'; did you mean run FILE.py --record FILE.mcap?"),
         (["completion"], "the following arguments are required: bash|zsh|fish"),
         (["my_node.py"], "my_node.py is not a command; cbtui open my_node.py opens it"),
         (["split-groups", "--threads", "2"], "cbtui run split-groups runs it"),
@@ -74,6 +76,8 @@ def test_the_manual_has_every_command(capsys: pytest.CaptureFixture[str]) -> Non
             "cbtui run: unrecognized arguments: --sede; did you mean --seed?",
         ),
         (["run", "single-thread", "--seconds", "6"], "did you mean --for SECONDS?"),
+        (["run", "single-thread", "--duration", "6"], "did you mean --for?"),
+        (["check", "shared-group", "--until=6"], "unrecognized arguments: --until=6 (see cbtui check"),
         (["run", "single-thread", "--clock", "vitual"], "did you mean virtual?"),
         (
             ["run", "single-thread", "--frobnicate"],

@@ -7,6 +7,17 @@ from typing import Any, NoReturn
 from cbtui.commands.options.targets import is_file_name
 from cbtui.text.output import say, shown
 
+_COMMANDS_BY_OTHER_NAMES = {
+    "help": "--help",
+    "version": "--version",
+    "record": "run FILE.py --record FILE.mcap",
+    "play": "replay",
+    "diff": "compare",
+    "launch": "run",
+    "lint": "lint-lesson",
+}
+_OPTIONS_BY_OTHER_NAMES = {"--duration": "--for", "--until": "--for"}
+
 
 class CommandParser(argparse.ArgumentParser):
     """A parser whose error messages are one line, with the nearest valid word."""
@@ -32,7 +43,8 @@ class CommandParser(argparse.ArgumentParser):
             for each in reversed(self._actions)
             if each.option_strings and isinstance(each.metavar, str)
         }
-        return named | {name: name for name in self._option_string_actions}
+        own = {name: name for name in self._option_string_actions}
+        return named | own | {word: name for word, name in _OPTIONS_BY_OTHER_NAMES.items() if name in own}
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         try:
@@ -42,9 +54,11 @@ class CommandParser(argparse.ArgumentParser):
                 ways = f"cbtui open {value} opens it, cbtui run {value} runs it"
                 shown_how = f"{value} is not a command; {ways}"
                 raise argparse.ArgumentError(None, shown_how) from None
-            near = _nearest(str(value), {str(each): str(each) for each in action.choices or ()})
+            known = {str(each): str(each) for each in action.choices or ()}
             if isinstance(action, argparse._SubParsersAction):
+                near = _nearest(str(value), _COMMANDS_BY_OTHER_NAMES | known)
                 raise argparse.ArgumentError(None, f"there is no command {value!r}{near}") from None
+            near = _nearest(str(value), known)
             if not near:
                 raise
             raise argparse.ArgumentError(action, f"invalid choice: {value!r}{near}") from None
