@@ -126,6 +126,12 @@ class UsageWarnings:
             "until it is destroyed; make what the node needs once, in __init__"
         )
 
+    def parameters_unused(self, source: str, asked: Sequence[str], nodes: Sequence[str]) -> None:
+        """Warn that a file, or an argument, has parameters for nodes of other names than there are."""
+        if asked:
+            there = f"; there is {', '.join(nodes)}" if nodes else ""
+            self._warn(f"{source} sets nothing: no node is called {' or '.join(asked)} so far{there}")
+
     def _caller(self) -> tuple[int, int, int]:
         return threading.get_ident(), self._here.entity, self._here.begun
 

@@ -4,7 +4,7 @@ Source of the grammar: the ROS 2 design article "ROS command line arguments", an
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from sim.ros.exceptions import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
@@ -42,6 +42,8 @@ class Arguments:
 
     remap_rules: list[RemapRule] = field(default_factory=list)
     parameters: NodeParameters = field(default_factory=dict)
+    parameter_sources: dict[str, list[str]] = field(default_factory=dict)
+    """The full names of nodes, or patterns of them, by the file or argument that has values for them."""
     log_levels: dict[str, LoggingSeverity] = field(default_factory=dict)
     """Levels by logger; the empty name is the default level."""
     log_outputs: dict[str, bool] = field(default_factory=dict)
@@ -121,13 +123,23 @@ def parameters_for(full_name: str, sources: Iterable[Arguments]) -> dict[str, Pl
     by_node: NodeParameters = {}
     for source in sources:
         for name, values in source.parameters.items():
-            by_node.setdefault(f"/{name.lstrip('/')}", {}).update(values)
+            by_node.setdefault(_full(name), {}).update(values)
     own = by_node.pop(full_name, {})
     chosen: dict[str, PlainValue] = {}
     for pattern, values in by_node.items():
         if _matches(pattern, full_name):
             chosen.update(values)
     return chosen | own
+
+
+def is_for_any(patterns: Iterable[str], full_names: Collection[str]) -> bool:
+    """Whether one of the full names of nodes, or patterns of them, is for one of the nodes."""
+    return any(pattern == name or _matches(pattern, name) for pattern in patterns for name in full_names)
+
+
+def _full(name: str) -> str:
+    """A node's name, or a pattern of such, with its first slash, which may be left out."""
+    return f"/{name.lstrip('/')}"
 
 
 def _matches(pattern: str, full_name: str) -> bool:
@@ -178,11 +190,14 @@ def _read_parameter(value: str, found: Arguments) -> None:
         raise ArgumentsError("a parameter is written as name:=value or node:name:=value")
     node, name, text = form.groups()
     found.parameters.setdefault(node or _EVERY_NODE, {})[name] = read_value(text)
+    found.parameter_sources[f"-p {value}"] = [_full(node or _EVERY_NODE)]
 
 
 def _read_parameter_file(value: str, found: Arguments) -> None:
-    for node, values in read_file(value).items():
+    read = read_file(value)
+    for node, values in read.items():
         found.parameters.setdefault(node, {}).update(values)
+    found.parameter_sources[value] = list(map(_full, read))
 
 
 def _read_log_level(value: str, found: Arguments) -> None:

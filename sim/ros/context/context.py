@@ -11,7 +11,7 @@ from weakref import WeakMethod, ref
 
 from sim.probes.own_code import place_of_caller
 from sim.probes.probe import Probe
-from sim.ros.context.arguments import Arguments, arguments_of_program
+from sim.ros.context.arguments import Arguments, arguments_of_program, is_for_any
 from sim.ros.exceptions import RCLError
 from sim.ros.handle import Handle
 from sim.ros.middleware.domain import DOMAIN_VARIABLE, domain_of
@@ -136,6 +136,16 @@ class Context:
             callbacks = self._end()
         for each in callbacks:
             _call(each)
+
+    def warn_of_unused_parameters(self) -> None:
+        """Warn once of arguments with parameters for no node that there is; call it when nodes are spun."""
+        sources, self.arguments.parameter_sources = self.arguments.parameter_sources, {}
+        if sources:
+            nodes = [each for each in self._network.nodes() if each.context is self]
+            names = [each.get_fully_qualified_name() for each in nodes]
+            for source, asked in sources.items():
+                if not is_for_any(asked, names):
+                    self.probe.usage.parameters_unused(source, asked, names)
 
     def _end(self) -> list[_EndCallback]:
         """End the context, and return the callbacks to call. Called with the host's lock held."""

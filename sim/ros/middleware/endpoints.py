@@ -91,3 +91,6 @@ class NetworkNode(Protocol):
 
     def get_name(self) -> str:
         """The node's name without namespace."""
+
+    def get_fully_qualified_name(self) -> str:
+        """The node's namespace and name."""

@@ -191,6 +191,7 @@ class Executor:
                 if refused:
                     raise RuntimeError(self.already_spinning)
             self._spinning = True
+            self._context.warn_of_unused_parameters()
         try:
             with self._context.process.spin():
                 yield

@@ -18,6 +18,8 @@ from sim.ros.exceptions import (
 )
 from sim.ros.logging.logger import LoggingSeverity, get_logger
 from sim.ros.node.node import Node
+from sim.ros.scheduling.executors import SingleThreadedExecutor
+from sim.trace.events import Notice
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")
@@ -146,6 +148,32 @@ def test_parameter_files_reach_the_nodes_they_name(tmp_path: Path) -> None:
         assert root.get_parameter("b").value == 1
 
     in_a_program(check)
+
+
+@pytest.mark.parametrize(
+    ("file", "arguments", "told"),
+    [
+        ("other: {ros__parameters: {a: 1}}", [], ["no node is called /other so far; there is /n"]),
+        ("", ["-p", "/other:a:=1"], ["-p /other:a:=1 sets nothing: no node is called /other so far"]),
+        ("n: {ros__parameters: {a: 1}}\nother: {ros__parameters: {a: 1}}", ["-p", "a:=1"], []),
+        ("/**: {ros__parameters: {a: 1}}", ["-p", "n:a:=1"], []),
+    ],
+)
+def test_parameters_for_no_node_of_the_program_are_told_once_it_spins(
+    file: str, arguments: list[str], told: list[str], tmp_path: Path
+) -> None:
+    path = tmp_path / "p.yaml"
+    path.write_text(file)
+
+    def check(simulation: Simulation) -> None:
+        node = Node("n", context=context_with("--params-file", str(path), *arguments))
+        simulation.outside_node("other")
+        for _ in range(2):
+            rclpy.spin_once(node, executor=SingleThreadedExecutor(context=node.context), timeout_sec=0.1)
+
+    notices = [each.text for each in simulate(check).events if isinstance(each, Notice)]
+    assert len(notices) == len(told)
+    assert all(sentence in notice for sentence, notice in zip(told, notices, strict=True))
 
 
 def test_patterns_stand_for_one_or_any_number_of_names() -> None:
