@@ -51,6 +51,7 @@ def check(options: argparse.Namespace) -> int:
     file = _file(lesson, options.file)
     from cbtui.runs.judged.check_text import checked_text
     from cbtui.runs.judged.checking import check as run_and_judge
+    from cbtui.runs.judged.schedule_text import unplayed_text
     from cbtui.terminal.progress_line import ProgressLine
     from lessons.judge import Judge
     from sim.quantities.nanoseconds import SECOND
@@ -66,8 +67,9 @@ def check(options: argparse.Namespace) -> int:
             lesson, Judge(lesson), file, options.limit, seed=options.seed, real=real, take=tell
         )
     say(checked_text(checked))
-    if checked.run.trouble is not None:
-        complain(checked.run.trouble)
+    for trouble in (checked.run.trouble, unplayed_text(options.seed, checked.run.timeline.choices)):
+        if trouble:
+            complain(trouble)
     if checked.good:
         _note(lesson)
     return 0 if checked.good else 1

@@ -308,6 +308,22 @@ def test_moves_are_played_again(file: Path, capsys: pytest.CaptureFixture[str]) 
     assert cli.main(["run", str(file), "--for", "2", "--seed", "moves:1=1"]) == 1
     assert "AssertionError: 1" in "".join(capsys.readouterr())
     assert cli.main(["run", str(file), "--for", "2", "--seed", "moves:"]) == 0
+    assert not capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("seed", "why"),
+    [
+        ("moves:1=9", "moves:1=9 was not played: choice 1 was among 2 threads, counted from 0"),
+        ("moves:0=0,99=1", "moves:99=1 was not played: there were 2 choices, counted from 0"),
+    ],
+)
+def test_moves_that_a_run_does_not_come_to_are_told(
+    seed: str, why: str, file: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file.write_text(LOST_UPDATE)
+    assert cli.main(["run", str(file), "--for", "2", "--seed", seed]) == 0
+    assert capsys.readouterr().err == f"cbtui: {why}\n"
 
 
 class _Interrupted(_Results):

@@ -12,6 +12,7 @@ from cbtui.engines.session import PROGRAM_EXIT_TIMEOUT
 from cbtui.runs.headless.deadlock_news import DeadlockNews
 from cbtui.runs.headless.program_log import ProgramLog
 from cbtui.runs.headless.standard_input import StandardInput
+from cbtui.runs.judged.schedule_text import unplayed_text
 from cbtui.runs.live.disk_space import DiskSpaceWatch
 from cbtui.runs.setup.unmet_changes import UnmetChanges
 from cbtui.terminal.interrupts import deferred_interrupt, ending_signals
@@ -129,6 +130,8 @@ class _Headless:
         if self._setup.seed and any(notice.unrepeatable for notice in self._timeline.notices):
             seed = self._setup.seed
             complain(f"this program is not repeatable: seed {seed} orders its threads, and nothing else")
+        if unplayed := unplayed_text(self._setup.seed, self._timeline.choices):
+            complain(unplayed)
         return self._verdict(loss) if self._signal is None else 128 + self._signal
 
     def save_summary(self, path: Path) -> int:
@@ -182,7 +185,7 @@ class _Headless:
             unmet = UnmetChanges(self._setup).now(self._timeline)
             if any(each.is_wrong for each in unmet):
                 self._run.session.send(Stop())
-            else:
+            elif self._setup.clock == "real":  # else the end, where the engine tells, is near
                 for each in unmet:
                     complain(each.sentence())
 

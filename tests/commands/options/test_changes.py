@@ -124,6 +124,12 @@ def test_a_run_ends_as_soon_as_a_change_proves_to_be_for_no_callback(
     assert time.monotonic() - begun < 50
 
 
+def test_a_callback_that_is_no_timer_is_told_once() -> None:
+    done = cbtui("run", "single-thread", "--for", "1", "--period", "odom_callback=1")
+    told = [line for line in done.stderr.splitlines() if line.startswith("cbtui: ")]
+    assert told == ["cbtui: no timer callback is named odom_callback; there is timer_callback"]
+
+
 def test_a_callback_that_the_program_makes_later_is_waited_for(tmp_path: Path) -> None:
     written = tmp_path / "later.py"
     written.write_text(LATER)
