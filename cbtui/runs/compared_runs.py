@@ -121,13 +121,13 @@ class RunPair:
     window: Window
 
 
-def compared_side(run: ShownRun, changes: Changes, saved: str = "") -> ComparedSide:
+def compared_side(run: ShownRun, changes: Changes, edit: str = "") -> ComparedSide:
     """Return a run on screen as a side, named by its ``changes``, in which the two runs differ.
 
-    ``saved`` tells which side of a save of the file it is on, if one came between the runs.
+    ``edit`` tells which side of an edit of a file it is on, if one came between the runs.
     """
     service = run.setup.service
-    words = ", ".join(filter(None, (changes.words, saved))) or "as written"
+    words = ", ".join(filter(None, (changes.words, edit))) or "as written"
     return ComparedSide(
         f"{run.setup.title}, {words}",
         run.timeline,

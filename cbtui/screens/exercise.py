@@ -252,8 +252,9 @@ class ExerciseScreen(RunScreen[LiveRun]):
 
     @on(FileRead)
     async def _take_saved(self, message: FileRead) -> None:
-        if self._judging.is_changed_by(message.content):
-            await self.restarts.action_run_again()
+        if self._judging.is_changed_by(message.content) and message.content is not None:
+            edit = self._judging.edit_to(message.content)
+            await self.restarts.again(self.restarts.changes, edit=edit)
         else:
             self.redraw()
 

@@ -328,3 +328,17 @@ def test_a_trial_goes_on_when_its_window_is_left_and_tells_its_progress_to_the_n
     trial = trials.begin()
     trials.leave()
     assert trial.given_up.is_set()
+
+
+async def test_a_comparison_with_an_edit_tells_which_line_it_changed(tmp_path: Path) -> None:
+    file, edits = tmp_path / "node.py", list[str]()
+    file.write_text("a = 1\nb = 2\n")
+
+    async def again(_: Changes, _inputs: object, edit: str) -> None:
+        edits.append(edit)
+
+    restarts: Any = SimpleNamespace(changes=Changes(), again=again)
+    trials = CureTrials(cast("Any", None), restarts, cast("ShownProgram", None), lambda: None)
+    trials._anew = lambda: SimpleNamespace(inputs=())  # type: ignore[method-assign,assignment,return-value]
+    await trials.run(Cure(Changes(texts={str(file): "a = 1\nb = 3\n"}), "make b 3"))
+    assert edits == ["line 2 changed"]

@@ -5,6 +5,7 @@ from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import chain, islice, takewhile
+from pathlib import Path
 from threading import Event, Lock
 
 from cbtui.engines.follow import GivenUpError
@@ -29,6 +30,7 @@ from cbtui.runs.setup.equivalent_code import code_of_cure
 from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
+from cbtui.text.changed_lines import changed_lines
 from sim.engine.inputs import UnknownInputError, inputs_of, stops
 from sim.engine.setup import TimedInput
 from sim.quantities.nanoseconds import SECOND
@@ -81,7 +83,12 @@ class CureTrials:
     async def run(self, cure: Cure) -> None:
         """Run again with a cure and the same inputs, and compare with the run before."""
         self.leave()
-        await self.restarts.again(cure.changes, self._anew().inputs)
+        texts = self.restarts.changes.texts
+        edits = (
+            changed_lines(texts.get(file) or text_of(Path(file)), text)
+            for file, text in cure.changes.texts.items()
+        )
+        await self.restarts.again(cure.changes, self._anew().inputs, ", ".join(filter(None, edits)))
         self.compare()
 
 

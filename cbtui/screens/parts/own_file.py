@@ -16,6 +16,7 @@ from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
+from cbtui.text.changed_lines import changed_lines
 from cbtui.widgets.guide import Guide
 
 
@@ -98,9 +99,10 @@ class OwnFile(ScreenPart):
     async def take(self, content: bytes | None) -> None:
         """Run the file again if its content is new."""
         if content is not None and content != self.content:
-            await self.run_anew(self.file.name)
+            before, after = ((each or b"").decode(errors="replace") for each in (self.content, content))
+            await self.run_anew(self.file.name, changed_lines(before, after))
 
-    async def run_anew(self, saved: str) -> None:
+    async def run_anew(self, saved: str, edit: str = "") -> None:
         """Run the file again after one of the program's files was saved; replaces an edited copy."""
         self.host.tell(f"{saved} was saved: it runs again.")
-        await self.restarts.again(replace(self.restarts.changes, texts={}), saved=saved)
+        await self.restarts.again(replace(self.restarts.changes, texts={}), edit=edit or f"{saved} was saved")

@@ -51,8 +51,8 @@ class Restarts(ScreenPart):
     """The previous run."""
     inputs: tuple[TimedInput, ...] = ()
     """The inputs of the run on screen."""
-    _saved: str = ""
-    """The program's file that was saved before the run on screen began; "" if none was."""
+    _edit: str = ""
+    """Which edit of a file came before the run on screen, such as ``line 3 changed``; "" for none."""
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer ``run_again`` at any time if the run has no robot to reset; ``start_over`` always works."""
@@ -66,19 +66,19 @@ class Restarts(ScreenPart):
         setup = self.changes.applied(subject.set_up(self.changes.threads, speed))
         return msgspec.structs.replace(setup, keyboard=Keyboard.LIVE, inputs=self.inputs)
 
-    async def again(self, changes: Changes, inputs: tuple[TimedInput, ...] = (), saved: str = "") -> None:
-        """Run again with these changes, the inputs of an earlier run, and a file that was ``saved``."""
-        await self.start(changes, self.speed(), inputs, saved)
+    async def again(self, changes: Changes, inputs: tuple[TimedInput, ...] = (), edit: str = "") -> None:
+        """Run again with these changes, the inputs of an earlier run, and an ``edit`` of a file."""
+        await self.start(changes, self.speed(), inputs, edit)
 
     async def start(
-        self, changes: Changes, speed: float | None, inputs: tuple[TimedInput, ...] = (), saved: str = ""
+        self, changes: Changes, speed: float | None, inputs: tuple[TimedInput, ...] = (), edit: str = ""
     ) -> None:
         """Run again with these changes, at a speed; of several at once only the last one does."""
         before = self.runs.run
         if before.timeline.end > 0:
-            self.before = compared_side(before, self.changes, saved and f"before {saved} was saved").ended()
-            self._saved = ""
-        self._saved = saved or self._saved
+            self.before = compared_side(before, self.changes, edit and f"before {edit}").ended()
+            self._edit = ""
+        self._edit = edit or self._edit
         self.changes, self.inputs = changes, inputs
         self.runs.begin(speed)
         self.began()
@@ -98,7 +98,7 @@ class Restarts(ScreenPart):
     @property
     def both(self) -> tuple[ComparedSide, ComparedSide] | None:
         """The previous run and this one; None if this is the first."""
-        after = self._saved and f"after {self._saved} was saved"
+        after = self._edit and f"after {self._edit}"
         return (
             None if self.before is None else (self.before, compared_side(self.runs.run, self.changes, after))
         )

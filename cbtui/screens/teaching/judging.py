@@ -8,6 +8,7 @@ from cbtui.runs.judged.checking import LIMIT, CheckedFile, ObservedRun, real_lim
 from cbtui.runs.judged.run_budget import RunBudget
 from cbtui.runs.live.file_watch import content_of
 from cbtui.runs.live.live_run import LiveRun
+from cbtui.text.changed_lines import changed_lines
 from cbtui.widgets.checks import ChecksSheet, CheckStatus
 from cbtui.widgets.checks.exercise_sheet import ExerciseKeys, ExerciseTexts
 from lessons.judge import Judge
@@ -45,6 +46,10 @@ class Judging:
         """Note the file's content (None: it is missing); returns whether it must be run."""
         self.is_gone = content is None
         return content is not None and content != self._content
+
+    def edit_to(self, content: bytes) -> str:
+        """Say which lines of the file that the run was made from are others now; "" if none is."""
+        return changed_lines(*((each or b"").decode(errors="replace") for each in (self._content, content)))
 
     def spent(self, run: LiveRun) -> str | None:
         """Update the budget; returns a sentence if the run exceeds it, else None."""

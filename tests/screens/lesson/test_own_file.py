@@ -145,7 +145,7 @@ async def test_a_file_is_run_again_when_it_is_saved_and_only_then(tmp_path: Path
         await until(pilot, lambda: "after = 2" in text_of(app))
         assert engines.sessions[0].stopped
         await pilot.press("C")
-        names = ("my_node.py, before my_node.py was saved", "my_node.py, after my_node.py was saved")
+        names = ("my_node.py, before line 1 changed", "my_node.py, after line 1 changed")
         await until(pilot, lambda: all(name in text_of(app) for name in names))
 
 
