@@ -215,6 +215,13 @@ def test_lines_that_go_and_come_are_coloured_apart() -> None:
     assert cure_details(APART, Charset.BRAILLE).plain == "Spin with two threads."
 
 
+def test_an_edited_line_that_is_too_long_goes_on_in_a_line_with_a_sign() -> None:
+    diff = "--- a.py\n+++ a.py, the copy\n@@ -1,1 +1,1 @@\n-sleep(9)\n+    sleep(1)  # one second only"
+    told = cure_details(replace(EDIT, diff=diff), Charset.BRAILLE, 20).plain.splitlines()
+    assert told[-3:] == ["-sleep(9)", "+    sleep(1)  # ", "…one second only"]
+    assert cure_details(replace(EDIT, diff=diff), Charset.BRAILLE, 40).plain.splitlines()[-1].endswith("only")
+
+
 def test_a_cure_that_edits_nothing_tells_what_to_write() -> None:
     cure = replace(APART, code=("executor = MultiThreadedExecutor(num_threads=2)", "executor.spin()"))
     assert cure_details(cure, Charset.BRAILLE).plain.splitlines() == [

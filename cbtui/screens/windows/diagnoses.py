@@ -303,7 +303,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         if chosen is None:
             return
         if chosen.cure is not None:
-            details = cure_details(chosen.cure, self._charset)
+            width = self.query_one(".told").content_size.width
+            details = cure_details(chosen.cure, self._charset, width)
         else:
             found, place = self._findings[chosen.place], chosen.place
             in_vain = self._untried[place] == 0 and {each.helps for each in self._of(place)} == {False}

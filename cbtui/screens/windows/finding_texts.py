@@ -1,10 +1,11 @@
 """The texts of the diagnosis window: the rows of its list, and the details of a finding or a cure."""
 
 from collections.abc import Sequence
+from textwrap import wrap
 
 from textual.content import Content
 
-from cbtui.looks.theme import Charset
+from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.judged.cures import Cure
 from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.text.cells import visible
@@ -62,8 +63,11 @@ def details_of(
 _DIFF_STYLES = {"+": "$text-success", "-": "$text-error", "@": "$text-muted"}
 
 
-def cure_details(cure: Cure, charset: Charset) -> Content:
-    """Return what a cure changes: in words, the lines that it edits, as far left as they can be, and code."""
+def cure_details(cure: Cure, charset: Charset, width: int = 0) -> Content:
+    """Return what a cure changes: in words, the lines that it edits, as far left as they can be, and code.
+
+    A line that is longer than the width, if there is one, goes on in a line that begins with an ellipsis.
+    """
     parts = [(visible(sentence(cure.words), charset), "bold")]
     if cure.diff:
         parts.append(("\nYour file stays as it is; a copy is run, with these lines:", ""))
@@ -72,9 +76,15 @@ def cure_details(cure: Cure, charset: Charset) -> Content:
     indent = min((len(text) - len(text.lstrip()) for text in code), default=0)
     for sign, text in edited:
         shown = visible(sign + (text if sign == "@" else text[indent:]), charset)
-        parts.append((f"\n{shown}", _DIFF_STYLES.get(sign, "")))
+        parts.append((_folded(shown, width, charset), _DIFF_STYLES.get(sign, "")))
     if cure.code:
         parts.append(("\nYour file stays as it is; to have this in it, write:", ""))
         lines = (line for each in cure.code for line in each.splitlines())
-        parts += [(f"\n{visible(each, charset)}", "$text-success") for each in lines]
+        parts += [(_folded(visible(each, charset), width, charset), "$text-success") for each in lines]
     return Content.assemble(*parts)
+
+
+def _folded(line: str, width: int, charset: Charset) -> str:
+    """Return a line of code with line breaks where it is too long, and one before it."""
+    pieces = wrap(line, width - 1, drop_whitespace=False, replace_whitespace=False) if width > 1 else [line]
+    return "\n" + f"\n{GLYPHS[charset].ellipsis}".join(pieces)
