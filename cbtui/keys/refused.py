@@ -42,6 +42,7 @@ NOT_ALWAYS = {
 }
 """Actions that make no sense for some of what a run's screen shows, such as a recording."""
 _BEGINNING, _END = "This is the beginning of the runs.", "This is the end of the runs."
+_ALL_SHOWN = "There are no more rows to scroll to."
 NOT_IN_COMPARISON = {
     "select": "Code is shown beside a run: a comparison has only lanes and figures.",
     "diagnoses": "Diagnoses are listed in a run; what is gone or new is told at the top.",
@@ -55,5 +56,18 @@ NOT_IN_COMPARISON = {
     "step": _END,
     "zoom_in": "This is the shortest stretch.",
     "zoom_out": "This is the longest stretch.",
+    "scroll_table_up": _ALL_SHOWN,
+    "scroll_table_down": _ALL_SHOWN,
+    "page_up": _ALL_SHOWN,
+    "page_down": _ALL_SHOWN,
 }
 """Why an action leads nowhere in a comparison, which says of other actions that only a run has them."""
+NOT_IN_DIAGNOSES = {
+    "previous": "there is only one row",
+    "next": "there is only one row",
+    "go": "this is about no moment and no line",
+    "try_cure": "no cure of this has proved to help so far",
+    "page_up": "all of the text is on screen",
+    "page_down": "all of the text is on screen",
+}
+"""Why an action of the window of diagnoses does nothing."""

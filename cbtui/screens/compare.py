@@ -18,6 +18,7 @@ from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.compared_runs import ComparedSide
 from cbtui.runs.judged.compared_problems import ComparedProblems
 from cbtui.runs.live.playhead import SPANS, Playhead
+from cbtui.screens.compare_scrolling import TableScrolling
 from cbtui.screens.compare_words import about, shorter, why_nothing
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.bars import BarSelection
@@ -62,7 +63,6 @@ _YIELD_TIME = 0.002
 """Least seconds for other tasks."""
 _PROGRESS_AFTER = 0.5
 """Seconds after which progress is shown."""
-_ROWS_A_KEY = 3
 
 
 class CompareScreen(SizedScreen[None]):
@@ -102,6 +102,7 @@ class CompareScreen(SizedScreen[None]):
             MomentKey(self, self.navigation),
             self.bars,
             Jumps(self, self),
+            TableScrolling(lambda: self.query_one(ComparisonTable)),
         )
         self._drawn: tuple[object, ...] = ()
         self._compared: tuple[object, ...] | None = None
@@ -207,6 +208,7 @@ class CompareScreen(SizedScreen[None]):
                 self._title(found[0])
                 self.query_one(ComparisonTable).show(found[1])
                 self._show_first_difference()
+                self.call_after_refresh(self.query_one(KeyBar).changed)
                 self._comparing = False
                 self._rest_until = monotonic() + _REST_FACTOR * worked
                 return
@@ -355,22 +357,6 @@ class CompareScreen(SizedScreen[None]):
         self._whole = not self._whole
         self._forget_comparison()
         self.draw()
-
-    def action_scroll_table_up(self) -> None:
-        """Scroll the table up."""
-        self.query_one(ComparisonTable).scroll_relative(y=-_ROWS_A_KEY, animate=False)
-
-    def action_scroll_table_down(self) -> None:
-        """Scroll the table down."""
-        self.query_one(ComparisonTable).scroll_relative(y=_ROWS_A_KEY, animate=False)
-
-    def action_page_up(self) -> None:
-        """Scroll the table up by a page."""
-        self.query_one(ComparisonTable).scroll_page_up(animate=False)
-
-    def action_page_down(self) -> None:
-        """Scroll the table down by a page."""
-        self.query_one(ComparisonTable).scroll_page_down(animate=False)
 
     def action_maximise(self) -> None:
         """Let the table fill the screen, or undo that."""

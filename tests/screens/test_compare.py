@@ -434,6 +434,14 @@ async def test_a_wide_screen_has_room_for_everything() -> None:
             assert word in picture
 
 
+@pytest.mark.parametrize("key", ["up", "down", "pageup", "pagedown"])
+async def test_a_table_that_is_whole_on_screen_says_so_instead_of_scrolling(key: str) -> None:
+    async with compared(*sides((9.4, 9.4))) as (app, pilot):
+        await until(pilot, lambda: "scroll" not in lines_of(app)[-1])
+        await pilot.press(key)
+        await until(pilot, lambda: "There are no more rows to scroll to." in lines_of(app)[0])
+
+
 async def test_what_is_asked_for_is_what_the_table_and_the_lanes_begin_with() -> None:
     async with compared(*sides(), bounds=Window(ns(2.0), ns(5.0))) as (app, _):
         assert "As asked, 2 to 5 s; run A is 14 s long; run B is 9.4 s long" in title(app)

@@ -144,6 +144,20 @@ async def test_a_run_without_problems_says_so_and_offers_no_way() -> None:
         assert "go there" not in text_of(app)
 
 
+async def test_a_key_that_does_nothing_in_the_window_says_why_until_another_row_is_chosen() -> None:
+    async with console(seconds=3.0) as (app, pilot):
+        await press(pilot, "d", "enter")
+        assert "the list is empty" in text_of(app)
+    async with console() as (app, pilot):
+        await press(pilot, "d")
+        chosen = app.screen.query_one(OptionList).highlighted
+        await press(pilot, "down", "t")
+        assert chosen != app.screen.query_one(OptionList).highlighted
+        assert "no cure of this has proved to help so far" in text_of(app)
+        await press(pilot, "up")
+        assert "has proved" not in text_of(app)
+
+
 @pytest.mark.slow
 async def test_what_is_true_of_the_whole_run_offers_no_way_to_go() -> None:
     async with console("split-groups", 3.0) as (app, pilot):

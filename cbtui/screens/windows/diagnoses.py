@@ -13,11 +13,13 @@ from textual.app import ComposeResult
 from textual.await_complete import AwaitComplete
 from textual.containers import VerticalScroll
 from textual.content import Content
+from textual.events import Key
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from cbtui.keys.action import Scope
-from cbtui.keys.keymap import Keymap
+from cbtui.keys.keymap import Keymap, canonical, keymap_of
+from cbtui.keys.refused import NOT_IN_DIAGNOSES
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.judged.cures import Cure, Verdict, tried_in_vain
 from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
@@ -165,6 +167,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         listed, details = self.query_one(OptionList), self.query_one(VerticalScroll)
         listed.display = details.display = some
         self._tell_beside()
+        self.query_one(".window").border_subtitle = ""
         listed.highlighted = 0 if some else None
         self._tell_highlighted()
         self._widen()
@@ -341,8 +344,16 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
     @on(OptionList.OptionHighlighted)
     def _tell(self) -> None:
         self._tell_highlighted()
+        self.query_one(".window").border_subtitle = ""
         self.query_one(VerticalScroll).scroll_home(animate=False)
         self.call_after_refresh(self.query_one(KeyBar).changed)
+
+    def on_key(self, event: Key) -> None:
+        """Say why a key of the window does nothing now."""
+        meant = keymap_of(self.app).on(event.key, self.SCOPE)
+        if meant and canonical(event.key) not in self.query_one(KeyBar).in_force():
+            why = NOT_IN_DIAGNOSES[meant[0].id] if self._findings else "the list is empty"
+            self.query_one(".window").border_subtitle = why
 
     def action_go(self) -> None:
         """Go where the highlighted row leads."""
