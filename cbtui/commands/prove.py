@@ -109,9 +109,11 @@ def _told(pair: "RunPair", found: "list[Difference]") -> str:
         for side in (pair.first, pair.second)
     ]
     counts = f"{counted(calls[0], 'call')} on {pair.first.name}, {calls[1]} on {pair.second.name}"
-    seconds = f"{(pair.window.end - pair.window.start) / 1e9:.3g} s"
+    seconds = f"{round((pair.window.end - pair.window.start) / 1e9, 6):.3g} s"
     if not found:
-        return f"✓ the same on both for {seconds}: {counts}\n"
+        ended = pair.first.timeline.ended
+        failed = f"; it failed: {ended.reason}" if ended is not None and ended.failed else ""
+        return f"✓ the same on both for {seconds}: {counts}{failed}\n"
     lines = [f"✗ not the same on both in {seconds}: {counts}"]
     for each in found[:_MOST]:
         at = f"  {timestamp(each.at):>9}  "

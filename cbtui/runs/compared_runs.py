@@ -90,7 +90,11 @@ class ComparedSide:
     def failure(self) -> str | None:
         """A sentence on how the run failed; None if it did not."""
         ended = self.timeline.ended
-        return f"{self.name}: {ended.reason}" if ended is not None and ended.failed else None
+        if ended is None or not ended.failed:
+            return None
+        return (
+            ended.reason if ended.reason.startswith(Path(self.name).name) else f"{self.name}: {ended.reason}"
+        )
 
 
 @dataclass(frozen=True)
@@ -187,7 +191,11 @@ def load_runs(
     )
     end = min(until, covered(one.timeline), covered(other.timeline))
     if end <= nearest_ns(terms.start):
-        raise CannotCompareError(f"nothing is left to compare: a run ended at {end / SECOND:g} s")
+        side = min(one, other, key=lambda each: covered(each.timeline))
+        why = "" if side.timeline.ended is None else f": {side.timeline.ended.reason}"
+        raise CannotCompareError(
+            f"nothing is left to compare, {side.name} ended at {covered(side.timeline) / SECOND:g} s{why}"
+        )
     return RunPair(one, other, Window(nearest_ns(terms.start), end))
 
 

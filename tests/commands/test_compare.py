@@ -218,3 +218,29 @@ def test_what_cannot_be_compared_is_refused_in_one_sentence(
     assert (code, told.out) == (2, "")
     assert sentence in told.err
     assert len(told.err.splitlines()) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "code", "told"),
+    [
+        ("def (:\n", 1, "\ncbtui: it.py:1: invalid syntax\n"),
+        (
+            "import rclpy\nrclpy.init()\nrclpy.create_node('n')\n",
+            2,
+            "cbtui: nothing is left to compare, it.py ended at 0 s: the program returned\n",
+        ),
+    ],
+)
+def test_a_run_that_ends_at_once_is_named_with_its_reason_once(
+    text: str,
+    code: int,
+    told: str,
+    node: str,
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("it.py").write_text(text)
+    assert cli.main(["compare", "--text", node, "it.py", "--for", "1"]) == code
+    assert capsys.readouterr().err.endswith(told)
