@@ -93,7 +93,10 @@ class CompareScreen(SizedScreen[None]):
         if bounds is not None:
             self.navigation.playhead = _at_the_end_of(bounds, self._end)
         self.bars = BarSelection(
-            lambda: list(self.query(Lanes)), self.navigation, lambda: self.query_one(KeyBar).changed()
+            lambda: list(self.query(Lanes)),
+            self.navigation,
+            lambda: self.query_one(KeyBar).changed(),
+            lambda sentence: self.notify(sentence, markup=False),
         )
         self._parts = ScreenParts(
             self,

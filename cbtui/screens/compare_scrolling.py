@@ -17,7 +17,7 @@ class TableScrolling(ScreenPart):
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer it where rows are out of sight."""
-        return self.table().max_scroll_y > 0
+        return self.table().display and self.table().max_scroll_y > 0
 
     def action_scroll_table_up(self) -> None:
         """Scroll the table up."""

@@ -110,7 +110,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self.panes = PaneLayout(self, self, self.PANES_HERE, self.FIRST_PANE, lambda: self.changes.words)
         self._narration = Narration(self, runs, self.navigation, self.panes)
         self._sizes = SizeKeys(self, self.panes, self.tell)
-        self.bars = BarSelection(lambda: [self.query_one(Lanes)], self.navigation, self.redraw)
+        self.bars = BarSelection(lambda: [self.query_one(Lanes)], self.navigation, self.redraw, self.tell)
         selected = (self.navigation, self.bars, self.panes, subject)
         self.selection = LaneSelection(self, self, runs, *selected)
         self._exports = Exports(self, runs, self.navigation, self.finisher)

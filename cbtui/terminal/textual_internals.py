@@ -17,6 +17,7 @@ from textual.geometry import Region, Size
 from textual.screen import Screen
 from textual.widget import Widget
 from textual.widgets import OptionList
+from textual.widgets._toast import ToastHolder, ToastRack
 
 if TYPE_CHECKING:
     from textual.worker import Worker
@@ -53,6 +54,7 @@ def clear_hints(app: App[Any]) -> None:
     """Take away the sentences that lie over the screen, unless one of them warns."""
     if all(each.severity == "information" for each in app._notifications):
         app.clear_notifications()
+    _remove_holders(app)
 
 
 def take_back(app: App[Any], sentence: str) -> None:
@@ -60,6 +62,7 @@ def take_back(app: App[Any], sentence: str) -> None:
     for each in list(app._notifications):
         if each.message == sentence:
             app._unnotify(each)
+    _remove_holders(app)
 
 
 def make_room_for(app: App[Any], sentence: str) -> None:
@@ -69,6 +72,15 @@ def make_room_for(app: App[Any], sentence: str) -> None:
     for each in list(app._notifications):
         if each not in others or each in informing[:-1]:
             app._unnotify(each)
+    _remove_holders(app)
+
+
+def _remove_holders(app: App[Any]) -> None:
+    """Remove the holders of notifications that are gone: Textual leaves them, each a row high."""
+    kept = {ToastRack._toast_id(each) for each in app._notifications}
+    for holder in app.screen.query(ToastHolder):
+        if holder.id not in kept:
+            holder.remove()
 
 
 def paint_now(widget: Widget) -> None:

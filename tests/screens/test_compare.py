@@ -7,6 +7,7 @@ from contextlib import asynccontextmanager
 import pytest
 from textual.pilot import Pilot
 from textual.widgets import Static
+from textual.widgets._toast import Toast
 
 from cbtui.app import CbtuiApp
 from cbtui.keys.action import Scope
@@ -219,6 +220,9 @@ async def test_a_key_that_does_nothing_says_why_at_the_top_and_covers_no_figure(
     key: str, sentence: str
 ) -> None:
     async with compared(*sides(), size=NARROW) as (app, pilot):
+        for other in ("s", "x"):
+            await pilot.press(other)
+            await until(pilot, lambda: bool(app.screen.query(Toast)))
         await pilot.press(key)
         await until(pilot, lambda: sentence in lines_of(app)[0])
         assert "run A  shared-group" in text_of(app)

@@ -22,7 +22,7 @@ from textual.message_pump import MessagePump
 from textual.screen import Screen
 from textual.widget import Widget
 from textual.widgets import OptionList
-from textual.widgets._toast import Toast
+from textual.widgets._toast import Toast, ToastRack
 
 import cbtui.app
 import cbtui.screens.exercise
@@ -88,6 +88,10 @@ WORKAROUNDS: dict[str, tuple[str, list[Callable[..., Any]]]] = {
     "textual_internals.take_back": ("0ca739607455", [App._unnotify]),
     "textual_internals.make_room_for": ("6aeb8eba3002", [App._unnotify, Toast._on_mount, Toast._expire]),
     "textual_internals.clear_hints": ("68eb0959a230", [App.clear_notifications]),
+    "textual_internals._remove_holders: toasts go without what holds them": (
+        "764c33fbdc91",
+        [ToastRack.show],
+    ),
     "textual_internals.is_being_removed": ("be1dc93ca461", [App._prune]),
     "textual_internals.forget_drawn_styles": ("d2509f3e7966", [StylesCache.get_inner_outer.__wrapped__]),
     "widgets.options: paging fails where no line is visible": ("85f7f3300576", [OptionList._move_page]),

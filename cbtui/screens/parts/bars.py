@@ -10,11 +10,15 @@ from cbtui.widgets.lanes import Lanes, Selection, start_of
 
 @dataclass
 class BarSelection(ScreenPart):
-    """Selects one bar or lane on the screen's lanes; ``changed`` is called for a new selection."""
+    """Selects one bar or lane on the screen's lanes; ``changed`` is called for a new selection.
+
+    ``tell`` shows a sentence.
+    """
 
     lanes: Callable[[], Sequence[Lanes]]
     navigation: TimeNavigation
     changed: Callable[[], object]
+    tell: Callable[[str], object]
 
     @property
     def selection(self) -> Selection | None:
@@ -60,3 +64,5 @@ class BarSelection(ScreenPart):
         if found is not None and found.bar is not None:
             self.select(found, lanes)
             self.navigation.seek(start_of(found.bar))
+        else:
+            self.tell(f"There is no {'earlier' if step < 0 else 'later'} bar here.")

@@ -152,6 +152,21 @@ async def test_a_key_that_leads_no_further_says_so(keys: list[str], said: str) -
         assert [note.message for note in app._notifications][-1] == said
 
 
+@pytest.mark.parametrize(
+    ("key", "which"), [("left_curly_bracket", "earlier"), ("right_curly_bracket", "later")]
+)
+async def test_where_no_lane_has_a_bar_the_way_to_one_says_so(key: str, which: str) -> None:
+    run = Run()
+    run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.log("later", 3.0)
+    app = RecordedConsole("shared-group", run.events, 3.0)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        app.lesson_screen.navigation.seek(ns(1.0))
+        await press(pilot, key)
+        assert [note.message for note in app._notifications] == [f"There is no {which} bar here."]
+
+
 async def test_why_a_key_does_nothing_is_said_no_longer_than_it_is_so() -> None:
     async with console() as (app, pilot):
         await press(pilot, "u", "0")
