@@ -16,7 +16,7 @@ from cbtui.widgets.code.marks import marks_at
 from cbtui.widgets.code.source_files import SourceFiles
 from cbtui.widgets.diagnosis import DiagnosisLevel, diagnosis_at
 from cbtui.widgets.factory.scene import FactoryScene, scene_of
-from cbtui.widgets.factory.texts import headlines, wait_texts
+from cbtui.widgets.factory.texts import belt_details, headlines, wait_texts
 from cbtui.widgets.lanes.details import details_of
 from cbtui.widgets.lanes.painter import LanePainter
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, all_lanes
@@ -45,6 +45,7 @@ from sim.trace.figures.summary import summarise
 from sim.trace.figures.waiting import (
     WORTH_TELLING,
     had_other_reasons,
+    wait_told,
     waited_so_far,
     waits_at,
     waits_for_others,
@@ -177,6 +178,20 @@ def test_a_reason_is_blamed_for_no_more_than_the_time_since_it_began() -> None:
         assert "store has waited since 1.500 s, 1 queued, now: " in narration(timeline, at)[-1]
 
 
+def test_a_timer_that_is_free_to_run_is_told_everywhere_before_the_executor_lets_it_in() -> None:
+    run = Run()
+    group, thread = run.exclusive(run.node("/n")), run.thread("MainThread")
+    tick, pack = run.timer(group, "tick", 0.25), run.timer(group, "pack", 5.0)
+    run.callback(tick, thread, 1.0, 0.0)
+    run.wait(tick, 1.25, None, Reason.GROUP_HELD, pack)
+    run.callback(pack, thread, 1.25, 1.9)
+    timeline = told(run)
+    assert narration(timeline, ns(3.15))[1] == "tick is ready for 1.9 s: it is free to run"
+    assert_panes_agree(timeline, ns(3.15), FILES)
+    belts = {belt.entity.id: belt for belt in scene_of(timeline, ns(3.15), ns(0.1)).areas[0].belts}
+    assert ("is due", False) in belt_details(belts[tick], ns(3.15))
+
+
 def test_between_two_calls_a_queue_is_not_told_as_nothing_that_waits() -> None:
     run = Run()
     scan = run.subscription(run.exclusive(run.node("/n")), "/scan", "scan_callback", depth=100)
@@ -194,6 +209,27 @@ def test_between_two_calls_a_queue_is_not_told_as_nothing_that_waits() -> None:
         "2.000 s: scan_callback returns after 1.0 s, group A is free",
         "scan_callback has 8 queued, the next for 900 ms: it is free to run",
     )
+
+
+@pytest.mark.parametrize("number", range(2))
+@pytest.mark.parametrize("is_live", [True, False], ids=["live", "looking back"])
+def test_a_wait_counts_in_every_pane_from_the_moment_at_which_it_begins(number: int, is_live: bool) -> None:
+    events, timeline = _RUNS[number]().events, Timeline()
+    begun = {each.t for each in events if isinstance(each, WaitStarted)}
+    if not is_live:
+        timeline.extend(events)
+    counted = 0
+    for at in sorted({each.t for each in events}):
+        if is_live:
+            timeline.extend(each for each in events if each.t == at)
+        if at in begun:
+            assert_panes_agree(timeline, at, FILES)
+            moment = timeline.moment(at)
+            waits = list(waits_at(moment, timeline))
+            lasting = [each for each in waits if each.end is None or each.end >= at + WORTH_TELLING]
+            assert all(wait_told(each.entity, moment, timeline) == each for each in lasting)
+            counted += len(lasting)
+    assert counted
 
 
 def assert_panes_agree(timeline: Timeline, at: int, files: SourceFiles) -> None:
@@ -284,6 +320,8 @@ def assert_turns_agree(scene: FactoryScene, files: SourceFiles) -> None:
         texts = [wait_texts(belt, timeline, at)[:1] for belt in of_it]
         if narrated.endswith(": it is free to run"):
             assert () in texts
+            ticks = [belt.tick for belt in of_it if belt.tick is not None and belt.wait is None]
+            assert all(tick.due is not None and tick.due <= at for tick in ticks) or len(of_it) > 1
             ids = {belt.entity.id for belt in of_it}
             marks = (mark for line in marks_at(timeline, at, files).values() for mark in line)
             assert len(of_it) > 1 or not any("waits" in mark.texts[0] for mark in marks if mark.entity in ids)
@@ -296,12 +334,16 @@ def assert_turns_agree(scene: FactoryScene, files: SourceFiles) -> None:
 
 
 def assert_short_waits_count_nowhere(timeline: Timeline, at: int, files: SourceFiles) -> None:
-    """What has only just become ready waits in no pane, as the diagnosis line does not count it."""
-    moment = timeline.moment(at)
+    """A wait that is over at once counts in no pane, as the diagnosis line does not count it."""
+    moment, whole = timeline.moment(at), Window(0, timeline.end + 1)
+    last = {
+        (each, wait.since): wait.end for each in moment.waiting for wait in timeline.waits_of(each, whole)
+    }
     short = {
         each.entity: each
         for each in moment.waiting.values()
-        if at - waits_since(each, moment.queues[each.entity], timeline) < WORTH_TELLING
+        if (end := last[each.entity, each.since]) is not None
+        if max(at, end) - waits_since(each, moment.queues[each.entity], timeline) < WORTH_TELLING
     }
     in_code = [mark for marks in marks_at(timeline, at, files).values() for mark in marks]
     assert not any("waits" in mark.texts[0] for mark in in_code if mark.entity in short)

@@ -110,7 +110,12 @@ def test_where_a_callback_and_its_lane_have_names_unlike_each_other_the_line_tel
 
 
 def test_a_hand_over_is_neither_a_wait_nor_nothing_that_waits() -> None:
-    told = said(shared_group_run(), 4.005)
+    run = Run(clock="real")
+    group, thread = run.exclusive(run.node("/n")), run.thread("MainThread")
+    tick, odom = run.timer(group, "tick", 1.0), run.timer(group, "odom_callback", 1.0)
+    run.callback(tick, thread, 4.0, 0.008)
+    run.wait(odom, 4.003, 4.008, Reason.GROUP_HELD, tick)
+    told = said(run, 4.005)
     assert told.text == "odom_callback is ready; one thread does all the work"
     assert told.level is DiagnosisLevel.PENDING
     assert diagnosis_row(told, (), "", 80)[0].text.startswith(" · ")

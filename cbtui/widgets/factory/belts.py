@@ -147,7 +147,7 @@ class BeltPainter:
         if belt.wait is not None:
             self._canvas.put(self._door - 1, line, self._glyphs.tick, box)
         elif belt.tick.due is not None and belt.entity.period > 0:
-            left = min(1.0, (belt.tick.due - self._scene.now) / belt.entity.period)
+            left = min(1.0, max(0, belt.tick.due - self._scene.now) / belt.entity.period)
             self._canvas.put(self._door - 1 - int(left * way), line, self._glyphs.tick, box)
 
     def _draw_door(self, belt: Belt, line: int, box: Ink) -> None:

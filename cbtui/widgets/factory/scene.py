@@ -75,7 +75,10 @@ class FactoryWorker:
 
 @dataclass(frozen=True, slots=True)
 class TimerTick:
-    """A timer's time: its next due time (None if unknown), and the lateness of its last call."""
+    """A timer's time: its next due time, or since when it is due, and the lateness of its last call.
+
+    ``due`` is None if it is unknown.
+    """
 
     due: Nanoseconds | None
     late: Nanoseconds
@@ -308,6 +311,8 @@ class _SceneBuilder:
 
     def _tick(self, timer: EntityInfo) -> TimerTick:
         """Compute a timer's next due time from its last call, as rcl does: missed ticks are dropped."""
+        if waits := self._moment.waiting.get(timer.id):
+            return TimerTick(waits.since, 0)
         period = timer.period
         spans = self._timeline.spans_of(timer.id, Window(self._now - 2 * period, self._now + 1))
         if not spans or period <= 0:

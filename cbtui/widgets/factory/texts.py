@@ -169,7 +169,8 @@ def belt_details(belt: Belt, now: Nanoseconds) -> list[tuple[str, bool]]:
         if belt.tick.late >= max(belt.entity.period // 10, _LATE_AT_LEAST):
             found.append((f"was {duration(belt.tick.late)} late", True))
         if belt.tick.due is not None:
-            found.append((f"next in {duration(belt.tick.due - now)}", False))
+            is_due = belt.tick.due <= now
+            found.append(("is due" if is_due else f"next in {duration(belt.tick.due - now)}", False))
     return found
 
 

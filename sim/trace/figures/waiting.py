@@ -131,10 +131,12 @@ def _beginning(entity: EntityId, moment: Moment, timeline: Timeline) -> Wait | N
     is_queue = timeline.entities[entity].kind in _QUEUES
     if arrived is None or not is_queue or not is_held_by_own_call(entity, moment, timeline):
         return None
-    begun = max((span.start for span in moment.running.values() if span.entity == entity), default=arrived)
+    calls = [span for span in moment.running.values() if span.entity == entity]
+    begun = max((span.start for span in calls), default=arrived)
+    end = next((span.end for span in calls), None)
     reason = Reason.EVENT_QUEUE if kinds == {"EventsExecutor"} else Reason.GROUP_HELD
     since = max(arrived, begun)
-    return Wait(since, None, since, entity, reason, entity, workers_busy=False)
+    return Wait(since, end, since, entity, reason, entity, workers_busy=False)
 
 
 def waits_for_others(moment: Moment, timeline: Timeline) -> list[Wait]:
@@ -150,9 +152,20 @@ def waits_for_others(moment: Moment, timeline: Timeline) -> list[Wait]:
 def wait_told(entity: EntityId, moment: Moment, timeline: Timeline) -> Wait | None:
     """Return the wait of a callback at a moment, its own last call's included, if it is worth telling."""
     wait = _wait_at(entity, moment, timeline)
-    if wait is None or moment.at - waits_since(wait, moment.queues[entity], timeline) < WORTH_TELLING:
-        return None
-    return wait
+    return wait if wait is not None and _is_worth_telling(wait, moment, timeline) else None
+
+
+def _is_worth_telling(wait: Wait, moment: Moment, timeline: Timeline) -> bool:
+    """Whether a wait is longer than a hand-over, or turns out so: then it is told from its first moment.
+
+    What lasts at the end of virtual time is told, too: time goes on only for what really waits.
+    """
+    since = waits_since(wait, moment.queues[wait.entity], timeline)
+    if moment.at - since >= WORTH_TELLING:
+        return True
+    then = timeline.waits_of(wait.entity, Window(moment.at, max(moment.at, since + WORTH_TELLING) + 1))
+    end = next((each.end for each in reversed(then) if each.since == wait.since), wait.end)
+    return not timeline.is_real if end is None else end - since >= WORTH_TELLING
 
 
 def next_in_turn(moment: Moment, timeline: Timeline) -> dict[EntityId, Nanoseconds]:

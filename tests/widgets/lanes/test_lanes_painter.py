@@ -428,7 +428,7 @@ def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
     assert near == drawn(
         """
         |MainThread  │A timer_callback █████████████████████████████████│ 100% busy      |
-        |A exclusive │── held by timer_callback on MainThread ──────────│ held           |
+        |A exclusive │── held by timer_callback on MainThread ──────────│ held, 1 waits  |
         |  odom      │                         ╱╱ A held by timer ╱╱╱╱╱╱│ queue 1/10     |
         |  scan      │                                                 ┊│ queue 0/10     |
         |  timer     │── runs 3.5 ms of 10.0 s on MainThread ───────────│ on time        |
