@@ -120,16 +120,19 @@ def choose_lanes(
 
     The selected lane and its neighbours stay, so that moving through the lanes scrolls the view. The
     callbacks ``kept`` come next, by rank, then lanes with work or long waits; idle ones are dropped first,
-    and threads beyond half of the room before callbacks that are called: one thread works like another. The
-    cursor's moment does not count: the choice would flicker.
+    and threads beyond half of the room before callbacks that are called: one thread works like another, but
+    the busiest stays. The cursor's moment does not count: the choice would flicker.
     """
     if len(lanes) <= room:
         return lanes
     worth = _LanePriority(timeline, window, kept)
     value = [worth.of(lane) for lane in lanes]
     threads = [place for place, lane in enumerate(lanes) if isinstance(lane, ThreadLane)]
-    for place in sorted(threads, key=lambda place: -value[place])[room // 2 :]:
+    threads.sort(key=lambda place: -value[place])
+    for place in threads[room // 2 :]:
         value[place] = min(value[place], _SPARE)
+    for place in threads[:1]:
+        value[place] = _BUSIEST
     middle = lanes.index(selected) if selected in lanes else -_FAR
     places = sorted(
         range(len(lanes)), key=lambda place: (min(abs(place - middle), _FAR), -value[place], place)
@@ -140,6 +143,8 @@ def choose_lanes(
 _SPARE = 4
 """The priority of a thread beyond half of the room, or whose calls take no time, and the highest of a client,
 which only takes replies."""
+_BUSIEST = 9
+"""The priority of the busiest thread, and of any that is busy for most of the time: more than of a group."""
 _KEPT = 10
 """The least priority of a callback that the picture is about: higher than any other."""
 _FAR = 2
@@ -176,7 +181,7 @@ class _LanePriority:
         busy = self.timeline.busy(thread.id, self.window)
         if busy == 0:
             return _SPARE if self.timeline.spans_on(thread.id, self.window) else 2
-        return 9 if busy >= 0.5 else 7
+        return _BUSIEST if busy >= 0.5 else 7
 
     def _group_waits(self, group: GroupId) -> bool:
         return any(self._waits_long(member.id) for member in self.timeline.group_members(group)[:MOST_LANES])

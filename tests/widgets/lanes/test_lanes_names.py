@@ -2,7 +2,7 @@ import pytest
 
 from cbtui.widgets.lanes.names import group_name, more_lanes, service_name, shortened, thread_name, told_apart
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ThreadLane, all_lanes, choose_lanes
-from sim.trace.events import EntityAppeared, EntityKind, GroupKind
+from sim.trace.events import EntityAppeared, EntityKind, GroupKind, Reason
 from sim.trace.model import GroupInfo, ThreadInfo, Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -129,6 +129,18 @@ def test_a_thread_whose_callbacks_take_no_time_stays_before_a_service_that_nobod
         run.callback(run.timer(group, name, 1.0), thread, 1.0, 0.0)
     timeline = run_timeline(run)
     lanes = choose_lanes(all_lanes(timeline, "/call"), 4, timeline, Window(0, ns(2.0)))
+    assert [type(lane) for lane in lanes] == [ThreadLane, GroupLane, MemberLane, MemberLane]
+
+
+def test_where_lanes_are_few_one_thread_stays_though_its_callbacks_take_no_time_and_others_wait() -> None:
+    run = Run()
+    thread, group = run.thread("MainThread"), run.exclusive(run.node("/n"))
+    callbacks = [run.timer(group, f"ask_{number}", 1.0) for number in range(6)]
+    for number, callback in enumerate(callbacks):
+        run.wait(callback, 1.0, 1.1 + number, Reason.GROUP_HELD, callbacks[0])
+        run.callback(callback, thread, 1.1 + number, 0.0)
+    timeline = run_timeline(run)
+    lanes = choose_lanes(all_lanes(timeline, ""), 4, timeline, Window(0, ns(5.0)), kept={callbacks[5]: 0})
     assert [type(lane) for lane in lanes] == [ThreadLane, GroupLane, MemberLane, MemberLane]
 
 
