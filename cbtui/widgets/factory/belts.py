@@ -30,17 +30,19 @@ class BeltPainter:
         self._level = max((len(_widest_level(belt)) for belt in every if belt.tick is None), default=0)
 
     def draw(self, belt: Belt, area: Area, line: int, rows: int) -> None:
-        """Draw a belt in one row; in more, the reason of its wait stands in the second one."""
+        """Draw a belt in one row, where a timer's rate gives way to the reason of its wait, or in two."""
         why = wait_texts(belt, self._scene.timeline, self._scene.now)
         at = self._head(belt, line)
         room = self._door - at
         boxes = self._boxes(belt)
         if rows == 1:
-            text = (
-                first_fitting(why[:-2], room - min(boxes, _LEAST_BOXES) - 1)
-                or first_fitting(why[:-2], room)
-                or first_fitting(why, room)
-            )
+            in_full, beside_boxes = why[:-3], room - min(boxes, _LEAST_BOXES) - 1
+            text = first_fitting(in_full, beside_boxes) or first_fitting(in_full, room)
+            rate_at = self._name + 2
+            brief = "" if text or belt.tick is None else first_fitting(why[:-2], self._door - rate_at)
+            if brief:
+                text, at = brief.ljust(at - 1 - rate_at), rate_at
+            text = text or first_fitting(why, room)
             at = self._say(text, line, at, _ink_of(belt))
             at, _ = self._details(belt, line, at, boxes)
         else:

@@ -111,7 +111,7 @@ def wait_texts(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, .
     """Return how long a callback has waited and why, from the longest text to the shortest; () if it does not
     wait.
 
-    The last two do not say why.
+    The last but two only says why, the last two only how long.
     """
     wait = belt.wait
     if wait is None:
@@ -121,7 +121,8 @@ def wait_texts(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, .
     verb = "late" if belt.entity.kind is EntityKind.TIMER else "waits"
     full = [f"{verb} {before}: {why}" for why in _why(belt, timeline)]
     brief = [f"{before}: {why}" for why in _why(belt, timeline)]
-    return (*full[:-1], *brief[:-1], full[-1], brief[-1], f"{verb} {took}", took)
+    bare = _why(belt, timeline)[-1]
+    return (*full[:-1], *brief[:-1], full[-1], brief[-1], bare, f"{verb} {took}", took)
 
 
 def _why(belt: Belt, timeline: Timeline) -> tuple[str, ...]:

@@ -117,7 +117,7 @@ def test_three_areas_fit_a_narrow_pane() -> None:
         | 4 workers, 3 areas                   |
         | belts              areas             |
         |                  ╔═ A one seat ══╗   |
-        | timer ○ 500 ms ♦✗║▐☻ timer▌ 5.4 s║   |
+        | timer own call ♦✗║▐☻ timer▌ 5.4 s║   |
         |                  ╠═ B one seat ══╣   |
         | odom  0/10 ·····►║▐ ▌ odom ran   ║☺► |
         |                  ╠═ C one seat ══╣   |
@@ -126,6 +126,20 @@ def test_three_areas_fit_a_narrow_pane() -> None:
         | ···☺ 1 busy, 2 idle, 1 unused        |
         """
     )
+
+
+def test_in_a_narrow_pane_the_reason_of_a_wait_stays_before_a_rate_and_how_long_it_lasts() -> None:
+    assert factory(SHARED, 9.412, 44, 6) == drawn(
+        """
+        | 1 worker, 1 seat    ┏━ A one seat ━━━━━┓   |
+        | odom  10/10 ! taken✗┃▐☻ timer▌ 5.4 s   ┃   |
+        | scan  10/10 ! taken✗┃   MainThread     ┃   |
+        | timer own call ───◆✗┃                  ┃   |
+        |                     ┗━━━━━━━━━━━━━━━━━━┛   |
+        | · MainThread works in A                    |
+        """
+    )
+    assert "timer 4.9 s: own call ✗┃" in factory(SPLIT, 9.412, 50, 8)
 
 
 def test_a_wide_pane_has_large_figures_and_a_yard() -> None:
@@ -341,7 +355,7 @@ def test_the_most_telling_areas_come_first_in_a_short_pane() -> None:
         | topic0 0/10    ─────□□□□□□□□□□▸┃A▐ ▌ free                ┃     |
         | topic1 0/10    ─────□□□□□□□□□□▸┃B▐ ▌ free                ┃     |
         | topic3 0/10    ─────□□□□□□□□□□▸┃D▐☻ topic3▌ 1.0 s        ┃     |
-        | topic6 1/10    waits 1.0 s □□■✗┃G▐ ▌ free                ┃     |
+        | topic6 1/10    no worker □□□□■✗┃G▐ ▌ free                ┃     |
         | · MainThread works in D  ☺ worker 2 never needed               |
         """
     )
