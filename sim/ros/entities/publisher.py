@@ -76,7 +76,6 @@ class Publisher:
             self.lease = lease_of(qos_profile, self._host.clock.now())
             self._timing = publisher_timing(qos_profile, self.lease, self._watch(group, event_callbacks))
             self.node.context.network.join_publisher(self)
-            self._reached = self._host.in_delivery_order(self._reached)
 
     def _watch(self, group: CallbackGroup, wanted: EventCallbacks | None) -> DeadlineHandler | None:
         """Add handlers for the callbacks on liveliness and deadlines; return the handler of deadlines."""

@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from itertools import count
-from typing import TypeVar
 from weakref import WeakMethod
 
 from sim.clock import PacedClock, RunClock
@@ -20,7 +19,6 @@ from sim.ros.middleware.domain import domain_of_machine
 from sim.ros.middleware.host_lock import lock_on
 from sim.ros.middleware.network import Network
 
-SubscriptionT = TypeVar("SubscriptionT")
 # Kept from before sim.clock.stdlib puts the virtual one in its place.
 _RLock = threading.RLock
 
@@ -58,21 +56,11 @@ class Host:
     def network_of(self, domain: int) -> Network:
         """The network of a domain."""
         with self.lock:
-            return self._networks.setdefault(domain, Network())
+            return self._networks.setdefault(domain, Network(self.clock))
 
     def new_gid(self) -> bytes:
         """16 bytes that identify a publisher, subscription or client; the same in every run."""
         return next(self._gids).to_bytes(16, "little")
-
-    def in_delivery_order(self, subscriptions: tuple[SubscriptionT, ...]) -> tuple[SubscriptionT, ...]:
-        """Subscriptions older than their publisher, in the order in which it delivers each message.
-
-        Fast DDS keeps one of its own for each publisher; where threads race, the schedule chooses it.
-        """
-        if not self.clock.races():
-            return subscriptions
-        rest = list(subscriptions)
-        return tuple(rest.pop(self.clock.choose(len(rest))) for _ in subscriptions)
 
     def explain_waits(self) -> int | None:
         """Record which callbacks wait now, and why; call this before time passes.

@@ -4,10 +4,12 @@ Delivery takes no time. Everything here is called with the host's lock held.
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from typing import TypeVar
 
 import msgspec
 
+from sim.clock import RunClock
 from sim.interfaces import copy_message
 from sim.ros.middleware.delivery import Request
 from sim.ros.middleware.endpoints import (
@@ -19,11 +21,14 @@ from sim.ros.middleware.endpoints import (
 )
 from sim.ros.qos.qos import mismatches
 
+ReaderT = TypeVar("ReaderT")
+
 
 class Network:
     """The nodes, publishers, subscriptions and services of one domain, by full name."""
 
-    def __init__(self) -> None:
+    def __init__(self, clock: RunClock) -> None:
+        self._clock = clock
         self._nodes: list[NetworkNode] = []
         self._publishers: defaultdict[str, list[PublisherEndpoint]] = defaultdict(list)
         self._subscriptions: defaultdict[str, list[TopicEndpoint]] = defaultdict(list)
@@ -75,7 +80,7 @@ class Network:
         """Add a publisher, and match it with the subscriptions."""
         self.announce_use(publisher.topic_name, publishes=True)
         self._publishers[publisher.topic_name].append(publisher)
-        for subscription in self._subscriptions.get(publisher.topic_name, ()):
+        for subscription in self._in_delivery_order(self._subscriptions.get(publisher.topic_name, ())):
             self._match(publisher, subscription)
 
     def join_subscription(self, subscription: TopicEndpoint) -> None:
@@ -87,8 +92,9 @@ class Network:
                 publisher.catch_up(subscription)
 
     def join_service(self, service: ServiceEndpoint) -> None:
-        """Add a service."""
+        """Add a service, and order the clients that its replies will reach."""
         self._services[service.name].append(service)
+        self._clients[service.name] = self._in_delivery_order(self._clients.get(service.name, ()))
 
     def join_client(self, client: ClientEndpoint) -> None:
         """Add a client."""
@@ -121,12 +127,20 @@ class Network:
         return bool(servers)
 
     def send_reply(self, name: str, srv_type: type, receiver: bytes, deliver: Callable[[], None]) -> None:
-        """Deliver a reply to a client of a service, and have the others overhear it, oldest client first."""
+        """Deliver a reply to a client of a service, and have the others overhear it."""
         for client in self._clients.get(name, ()):
             if client.gid == receiver:
                 deliver()
             elif client.srv_type is srv_type:
                 client.overhear()
+
+    def _in_delivery_order(self, readers: Sequence[ReaderT]) -> list[ReaderT]:
+        """Readers that were there before their writer, in the order in which each of its messages arrives.
+
+        Fast DDS keeps one of its own for each writer; where threads race, the schedule chooses it.
+        """
+        rest = list(readers)
+        return [rest.pop(self._clock.choose(len(rest))) for _ in readers] if self._clock.races() else rest
 
     def _servers(self, name: str, srv_type: type) -> list[ServiceEndpoint]:
         self.announce_use(name)
