@@ -19,7 +19,7 @@ from sim.releases.profile import Profile
 from sim.ros.scheduling.callback_groups import CallbackGroup
 from sim.ros.scheduling.entity import Entity, OwnerNode
 from sim.ros.scheduling.pool import Pool
-from sim.ros.scheduling.task import Task
+from sim.ros.scheduling.task import Task, task_numbers
 from sim.ros.scheduling.wait_set import in_order_of_readiness, snapshot
 
 Work: TypeAlias = "Entity | Task[Any]"
@@ -211,6 +211,7 @@ class Cycle:
             return None
         entity = self._snapshot.popleft()
         entity.handed_out = self._yielded = True
+        entity.task_number = next(task_numbers)
         return entity
 
     def _holds(self, now: int) -> bool:

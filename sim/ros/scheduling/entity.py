@@ -97,6 +97,9 @@ class Entity:
     due = NEVER
     """When the entity becomes ready by time alone, in nanoseconds of the run's clock."""
 
+    task_number = 0
+    """The number of the task that calls it: rclpy makes it where an executor yields the entity."""
+
     reset_unheard = False
     """Whether a timer was reset when no EventsExecutor heard of it; the one that adds it will."""
 

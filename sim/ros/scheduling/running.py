@@ -147,6 +147,7 @@ class CallbackRunner:
 
     def _task_of(self, entity: Entity, coroutine: Coroutine[Any, Any, Any]) -> Task[Any]:
         task: Task[Any] = Task(coroutine, executor=self.executor)
+        task.number = entity.task_number or task.number
         self._coroutines[task] = entity
         return task
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from sim.ros.scheduling.executors import Executor
 
 T = TypeVar("T")
-_numbers = count(1)
+task_numbers = count(1)
 _allocate_lock = threading.Lock
 
 
@@ -172,7 +172,7 @@ class Task(Future[T]):
         executor: Executor | None = None,
     ) -> None:
         super().__init__(executor=executor)
-        self.number = next(_numbers)
+        self.number = next(task_numbers)
         """The number of the task in the order of creation."""
         arguments, named = args or (), kwargs or {}
         if makes_coroutines(handler):

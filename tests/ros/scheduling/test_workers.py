@@ -9,6 +9,7 @@ import pytest
 import sim.ros.rclpy as rclpy
 from sim.clock import PacedClock
 from sim.interfaces import message, service
+from sim.ros.entities.publisher import Publisher
 from sim.ros.middleware.host_lock import HostLock
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
@@ -184,3 +185,43 @@ def test_the_hosts_lock_lets_one_thread_in_at_a_time_and_itself_again() -> None:
 
 def _calling(function: Callable[[str], None], name: str) -> Callable[[], None]:
     return lambda: function(name)
+
+
+@pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
+def test_a_callback_that_awaits_is_as_old_as_its_handing_over_to_a_pool_that_asks_the_newest_first() -> None:
+    # Jazzy, 8 runs of 8: the task that calls the second one is there before the first one makes its own.
+    said: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        group = ReentrantCallbackGroup()
+        executor = MultiThreadedExecutor(1)
+        executor.add_node(node)
+        future: Future[None] = Future()
+
+        async def wait(name: str) -> None:
+            await future
+            said.append(name)
+
+        async def hear(_message: Any) -> None:
+            await wait("callback")
+
+        def listen(topic: str, callback: Callable[[Any], Any]) -> Publisher:
+            node.create_subscription(Int32, topic, callback, 10, callback_group=group)
+            return node.create_publisher(Int32, topic, 10)
+
+        first = listen("first", lambda _: executor.create_task(wait, "task"))
+        second = listen("second", hear)
+
+        def begin(_message: Any) -> None:
+            first.publish(Int32())
+            second.publish(Int32())
+
+        begins = listen("begins", begin)
+        simulation.at(0.1, lambda: begins.publish(Int32()))
+        simulation.at(0.5, lambda: future.set_result(None))
+        simulation.at(0.6, lambda: node.create_timer(1.0, lambda: None))
+        executor.spin()
+
+    simulate(program, until=1.0, distro="jazzy@7.1.5")
+    assert said == ["task", "callback"]
