@@ -229,7 +229,7 @@ FULL = listening((1.2, 3.0), (1.3, 4.0), depth=1)
         (
             never_waits_longer_than("/scan", 0.1),
             SEES,
-            listening((1.2, 1.3), (2.2, 3.2), waits=0.5),
+            listening((0.8, 1.3), (2.7, 3.2), waits=0.5),
             "a wait of 0.5 s, no free worker",
             0.8,
         ),
