@@ -78,9 +78,10 @@ def make_room_for(app: App[Any], sentence: str) -> None:
 def _remove_holders(app: App[Any]) -> None:
     """Remove the holders of notifications that are gone: Textual leaves them, each a row high."""
     kept = {ToastRack._toast_id(each) for each in app._notifications}
-    for holder in app.screen.query(ToastHolder):
-        if holder.id not in kept:
-            holder.remove()
+    for screen in app.screen_stack[-1:]:  # there is none as an app ends
+        for holder in screen.query(ToastHolder):
+            if holder.id not in kept:
+                holder.remove()
 
 
 def paint_now(widget: Widget) -> None:
