@@ -190,6 +190,9 @@ def test_a_timer_that_is_free_to_run_is_told_everywhere_before_the_executor_lets
     assert_panes_agree(timeline, ns(3.15), FILES)
     belts = {belt.entity.id: belt for belt in scene_of(timeline, ns(3.15), ns(0.1)).areas[0].belts}
     assert ("is due", False) in belt_details(belts[tick], ns(3.15))
+    first = scene_of(timeline, ns(1.25), ns(0.1)).areas[0].belts
+    belt = next(belt for belt in first if belt.entity.id == tick)
+    assert wait_texts(belt, timeline, ns(1.25))[0].startswith("is due: "), "and not late 0 s"
 
 
 def test_between_two_calls_a_queue_is_not_told_as_nothing_that_waits() -> None:

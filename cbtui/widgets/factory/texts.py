@@ -116,13 +116,15 @@ def wait_texts(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, .
     wait = belt.wait
     if wait is None:
         return ()
-    took = duration(max(0, now - waits_since(wait, belt.queue, timeline)))
-    before = waited_so_far(wait, timeline.moment(now), timeline)
+    lasted = max(0, now - waits_since(wait, belt.queue, timeline))
+    took, before = duration(lasted), waited_so_far(wait, timeline.moment(now), timeline)
     verb = "late" if belt.entity.kind is EntityKind.TIMER else "waits"
-    full = [f"{verb} {before}: {why}" for why in _why(belt, timeline)]
-    brief = [f"{before}: {why}" for why in _why(belt, timeline)]
-    bare = _why(belt, timeline)[-1]
-    return (*full[:-1], *brief[:-1], full[-1], brief[-1], bare, f"{verb} {took}", took)
+    told = (f"{verb} {before}", before, f"{verb} {took}", took)
+    if verb == "late" and not lasted:
+        told = ("is due", "due", "is due", "due")
+    full = [f"{told[0]}: {why}" for why in _why(belt, timeline)]
+    brief = [f"{told[1]}: {why}" for why in _why(belt, timeline)]
+    return (*full[:-1], *brief[:-1], full[-1], brief[-1], _why(belt, timeline)[-1], *told[2:])
 
 
 def _why(belt: Belt, timeline: Timeline) -> tuple[str, ...]:

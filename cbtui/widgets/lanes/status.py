@@ -123,7 +123,8 @@ class LaneStatus:
     def _timer(self, timer: EntityInfo, latest: Span | None) -> TextRun:
         wait = wait_told(timer.id, self.moment, self.timeline)
         if wait is not None:
-            return TextRun(f"late {duration(self.moment.at - wait.since)}", WARN)
+            lasted = self.moment.at - wait.since
+            return TextRun(f"late {duration(lasted)}" if lasted else "is due", WARN)
         if latest is None:
             return TextRun("", PLAIN)
         if is_late(latest, timer):
