@@ -8,6 +8,7 @@ from pathlib import Path
 from time import monotonic
 
 import pytest
+from textual.events import Key
 from textual.pilot import Pilot
 from textual.widgets import OptionList, Static
 
@@ -154,8 +155,14 @@ async def test_a_key_that_does_nothing_in_the_window_says_why_until_another_row_
         await press(pilot, "down", "t")
         assert chosen != app.screen.query_one(OptionList).highlighted
         assert "no cure of this has proved to help so far" in text_of(app)
+        await until(pilot, lambda: "tried, it helps" in text_of(app))  # a cure of the row before
+        assert "no cure of this has proved to help so far" in text_of(app)
         await press(pilot, "up")
         assert "has proved" not in text_of(app)
+        for key in ("down", "t"):  # faster than the list tells of the row that it has gone to
+            app.post_message(Key(key, key if len(key) == 1 else None))
+        await settle(pilot)
+        assert "no cure of this has proved to help so far" in text_of(app)
 
 
 @pytest.mark.slow

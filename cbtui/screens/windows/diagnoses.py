@@ -121,6 +121,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         self._as_of = as_of
         self._beside = beside
         self._outdated = Event()
+        self._refused_in: _Row | None = None
+        """The row in which a key did nothing, while the window says why."""
         self._list(findings)
 
     def _list(self, findings: Sequence[ExplainedFinding]) -> None:
@@ -167,7 +169,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         listed, details = self.query_one(OptionList), self.query_one(VerticalScroll)
         listed.display = details.display = some
         self._tell_beside()
-        self.query_one(".window").border_subtitle = ""
+        self._explain_refused("")
         listed.highlighted = 0 if some else None
         self._tell_highlighted()
         self._widen()
@@ -258,6 +260,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         self._verdicts.append((place, cure, verdict))
         if verdict.helps:
             self._helpful.append((place, verdict.both or cure))
+            if chosen is not None and chosen.place == place:
+                self._explain_refused("")
         self._rows = tuple(self._list_rows())
         self._show_options().highlighted = 0 if chosen is None else self._rows.index(chosen)
         self._tell_highlighted()
@@ -344,7 +348,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
     @on(OptionList.OptionHighlighted)
     def _tell(self) -> None:
         self._tell_highlighted()
-        self.query_one(".window").border_subtitle = ""
+        if self._chosen != self._refused_in:  # the same row is told again when a cure gets a row before it
+            self._explain_refused("")
         self.query_one(VerticalScroll).scroll_home(animate=False)
         self.call_after_refresh(self.query_one(KeyBar).changed)
 
@@ -352,8 +357,12 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         """Say why a key of the window does nothing now."""
         meant = keymap_of(self.app).on(event.key, self.SCOPE)
         if meant and canonical(event.key) not in self.query_one(KeyBar).in_force():
-            why = NOT_IN_DIAGNOSES[meant[0].id] if self._findings else "the list is empty"
-            self.query_one(".window").border_subtitle = why
+            self._explain_refused(NOT_IN_DIAGNOSES[meant[0].id] if self._findings else "the list is empty")
+
+    def _explain_refused(self, why: str) -> None:
+        """Say in the frame why a key did nothing in the highlighted row; "" says nothing."""
+        self.query_one(".window").border_subtitle = why
+        self._refused_in = self._chosen if why else None
 
     def action_go(self) -> None:
         """Go where the highlighted row leads."""
