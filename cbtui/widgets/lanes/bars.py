@@ -143,10 +143,8 @@ class BarPainter:
 
     def _stand_out(self, row: CellRow, start: Nanoseconds, end: Nanoseconds, scale: TimeScale) -> None:
         first = max(0, scale.column_of(start))
-        last = scale.column_of(max(start, end - 1))
-        row.inks[first : last + 1] = [
-            ink._replace(selected=True) for ink in row.inks[first : max(first, last + 1)]
-        ]
+        after = max(first, scale.column_of(max(start, end - 1)) + 1)
+        row.inks[first:after] = [ink._replace(selected=True) for ink in row.inks[first:after]]
 
     def group(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], group: GroupInfo) -> None:
         """Draw the callback that holds a group: a line, or a point for an instant."""

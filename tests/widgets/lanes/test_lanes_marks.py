@@ -1,6 +1,7 @@
 """What lanes mark: calls that stand still, lost messages, groups, keys, the cursor and what is selected."""
 
 import pytest
+from rich.cells import cell_len
 
 from cbtui.looks.theme import Charset
 from cbtui.text.cells import CellRow
@@ -8,6 +9,7 @@ from cbtui.widgets.diagnosis import call_note
 from cbtui.widgets.lanes import LanePainter, Selection
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ThreadLane, all_lanes
 from cbtui.widgets.lanes.scale import TimeScale
+from cbtui.widgets.lanes.selection import bars_in
 from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls
 from sim.trace.events import CallbackAt, Doing, MessageDropped, ProgramAt
 from sim.trace.figures.chains import ChainStep, StepKind
@@ -233,6 +235,18 @@ def test_the_selected_lane_is_pointed_at_and_its_bar_stands_out() -> None:
     selected = "".join(run.text for run in picture.rows[0] if run.ink.selected)
     assert selected.startswith("A timer_callback ███")
     assert not any(run.ink.selected for row in picture.rows[1:] for run in row)
+
+
+@pytest.mark.parametrize("window", [Window(ns(0), ns(1)), Window(ns(6), ns(16)), Window(ns(12.4), ns(12.9))])
+def test_rows_are_as_wide_as_the_picture_wherever_the_selected_bar_lies(window: Window) -> None:
+    timeline = told(shared_group_run(), until=12.9)
+    path = [ChainStep(StepKind.WAITS, "a", ns(2), ns(3), entity=1)]
+    for lane in all_lanes(timeline, "/motor_power"):
+        for bar in bars_in(timeline, lane, Window(0, timeline.end))[::40]:
+            picture = LanePainter().paint(
+                timeline, window, timeline.end, 80, 8, Selection(lane, bar), path=path
+            )
+            assert {sum(cell_len(run.text) for run in row) for row in picture.rows} == {80}
 
 
 def test_the_steps_of_a_chain_stand_out_on_the_lanes_of_their_callbacks() -> None:
