@@ -145,8 +145,10 @@ class WorldKeys(ScreenPart):
         self.action_no_call_service()
 
     def action_reset_world(self) -> None:
-        """Put the robot back to its start."""
+        """Put the robot back to its start, which waits for a paused run to go on."""
         self.runs.run.reset_world()
+        if self.runs.run.state is RunState.PAUSED:
+            self.host.tell(f"The robot is back at its start when the run goes on: {self.host.key('resume')}.")
 
 
 @dataclass

@@ -109,7 +109,7 @@ class FrameSchedule:
 class FrameLoop:
     """Draws the frames of a screen that shows ``runs``: ``draw`` draws a frame.
 
-    While something ``holds`` the picture, no frame comes by itself.
+    While something ``holds`` the picture, or another screen covers all of it, no frame comes by itself.
     """
 
     def __init__(
@@ -158,7 +158,7 @@ class FrameLoop:
         self.draw(FrameContent.TEXTS)
 
     def _draw_if_due(self) -> None:
-        if self._holds():
+        if self._holds() or not self._screen.is_current:
             return
         if self._runs.findings.update_when_due():
             self.redraw()

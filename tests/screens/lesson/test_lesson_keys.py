@@ -7,6 +7,7 @@ from contextlib import asynccontextmanager
 
 import pytest
 from textual.pilot import Pilot
+from textual.screen import Screen
 from textual.widget import Widget
 from textual.widgets import Static
 
@@ -125,9 +126,12 @@ async def test_space_goes_on_after_a_pause() -> None:
         await press(pilot, "space")
         assert "‖ PAUSED" in status(app)
         assert "space" in text_of(app) or "␣ go on" in text_of(app)
+        await press(pilot, "r")
+        [told] = [each.message for each in app._notifications]
+        assert told == "The robot is back at its start when the run goes on: ␣."
         await press(pilot, "space")
         assert "● LIVE" in status(app)
-        assert app.engines.latest.commands == [Pause(), Resume()]
+        assert app.engines.latest.commands == [Pause(), ResetWorld(), Resume()]
 
 
 @pytest.mark.slow
@@ -570,6 +574,11 @@ async def test_nothing_is_drawn_while_nothing_happens(monkeypatch: pytest.Monkey
         monkeypatch.setattr(FrameLoop, "draw", draw)
         await pilot.pause(0.2)
         assert drawn == []
+        app.push_screen(Screen[None]())
+        app.engines.latest.play(ns(13.9))
+        await pilot.pause(0.2)
+        assert drawn == [], "it is covered"
+        app.pop_screen()
         app.engines.latest.play(ns(14.0))
         app.engines.latest.play(ns(14.1))
         while not drawn:
