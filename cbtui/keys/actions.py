@@ -92,7 +92,10 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("look_there", "enter", "go there", "Go to the moment that the check is about"),
     ),
     Scope.CHOICE: (
-        *((f"choose({number})", str(number), "", _OPTION_NUMBER, _OPTION_NUMBER) for number in range(1, 10)),
+        *(
+            (f"choose({number})", str(number), "choose", _OPTION_NUMBER, _OPTION_NUMBER)
+            for number in range(1, 10)
+        ),
         ("cursor_up", "up", "who", "Highlight the thread above", _OPTION),
         ("cursor_down", "down", "who", "Highlight the thread below", _OPTION),
         ("take", "enter", "choose", "Let the highlighted thread go on"),
