@@ -305,15 +305,18 @@ class CodeView(InkedView):
         if number >= len(self._file.lines):
             return Strip.blank(width, self.in_class(""))
         marked = self._marked_at(number + 1)
-        code = self._code(number)
+        code, here = self._code(number), self._here.get(number + 1)
         left = self.scroll_offset.x
+        if here is not None and here.texts and left == 0:  # code gives way to them: first its indentation
+            room = width - _GUTTER - 1
+            room -= len(text_beside(here.texts, room - code.cell_length))
+            left = max(0, min(code.cell_length - room, len(code.text) - len(code.text.lstrip())))
         code_line = Strip([*self._gutter(number + 1, marked), *self.cut(code, left, width - _GUTTER)])
         if marked is None or marked.first_line != number + 1 or marked.doing is CallbackActivity.IDLE:
             line = code_line.adjust_cell_length(width, self.in_class(""))
         else:
             ink = Ink(_INKS[marked.doing], marked.number)
             line = self._with_text(code_line, marked.texts, ink, width)
-        here = self._here.get(number + 1)
         if here is not None and here.texts:
             line = self._with_text(code_line, here.texts, _ink_of(here), width)
         return line if here is None and self.picked != number + 1 else self.set_off(line, _CURSOR)

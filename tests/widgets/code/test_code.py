@@ -305,6 +305,16 @@ def test_code_gives_way_to_no_mark_that_goes_at_once() -> None:
     assert text_beside(("▶ computes", "▶"), 5) == " ▶ "
 
 
+async def test_a_line_that_is_too_long_for_the_mark_of_a_thread_moves_to_the_left(path: Path) -> None:
+    call = "reply = self.gripper.call(request)"
+    path.write_text("\n".join(" " * 8 + call if line == 36 else "" for line in range(40)))
+    app = CodeOnly(path)
+    async with app.run_test(size=(51, 42)) as pilot:
+        app.view.show(several_calls(str(path), 37), ns(3.0))
+        await pilot.pause()
+        assert lines_of(app)[36] == f"  37 ▶ {call}  ▶ 1.5 s "
+
+
 @pytest.mark.parametrize(("columns", "beside"), [(30, " ▶ 1.5 s "), (39, "… ▶ 1.5 s "), (53, "… ▶ 1.5 s ")])
 async def test_long_code_gives_way_to_how_long_a_thread_has_been_at_its_line(
     path: Path, columns: int, beside: str
