@@ -7,7 +7,7 @@ from queue import SimpleQueue
 from typing import TypeAlias
 
 from sim.recording.recorder import APPEARING, RecordingWriter
-from sim.trace.events import AnyEvent, MessageSent, Notice, Severity, TimePassed
+from sim.trace.events import AnyEvent, MessageSent, Notice, Severity
 
 _ROOM = 64_000_000
 """Bytes, estimated, that may wait to be recorded."""
@@ -27,8 +27,6 @@ class BackgroundRecorder:
 
     def __init__(self, recorder: RecordingWriter, room: int = _ROOM) -> None:
         self.path = recorder.path
-        self.count = 0
-        """How many events are recorded, or will be."""
         self.lost = 0
         """How many events were dropped."""
         self._recorder = recorder
@@ -42,6 +40,11 @@ class BackgroundRecorder:
         self._worker = threading.Thread(target=self._write_for_ever, name="recording", daemon=True)
         self._worker.start()
         atexit.register(self.close)
+
+    @property
+    def count(self) -> int:
+        """How many events are recorded so far."""
+        return self._recorder.count
 
     @property
     def failure(self) -> str | None:
@@ -69,7 +72,6 @@ class BackgroundRecorder:
             events = [_gap_notice(events[0].t, self._gap), *events]
             self._gap = 0
         if events:
-            self.count += sum(not isinstance(event, TimePassed) for event in events)
             self._taken += _size(events)
             self._waiting.put(events)
 

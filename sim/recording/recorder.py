@@ -82,6 +82,8 @@ class RecordingWriter:
         texts: Mapping[str, str] = MappingProxyType({}),
     ) -> None:
         self.path = path
+        self.count = 0
+        """How many events were recorded, without messages, which are their topics'."""
         self.failure: str | None = None
         self._epoch = 0
         self._batches = 0
@@ -172,6 +174,7 @@ class RecordingWriter:
         else:
             self._latest = max(self._latest, events[-1].t)
             self._batches += 1
+            self.count += len(events)
             self._add(EVENTS_CHANNEL, self._epoch + events[0].t, packed, self._batches)
 
     def _add(self, channel: int, time: int, data: bytes, number: int) -> None:
