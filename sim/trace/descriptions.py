@@ -5,7 +5,7 @@ from itertools import islice
 
 from sim.quantities.durations import duration
 from sim.trace.events import Doing, EntityId, EntityKind, NodeId, Reason
-from sim.trace.model import AWAIT, Position, Wait, Window
+from sim.trace.model import AWAIT, Call, Position, Wait, Window
 from sim.trace.participants import Participants
 from sim.trace.timeline import Timeline
 
@@ -40,6 +40,11 @@ def name_of(entity: EntityId, timeline: Timeline | Participants) -> str:
     """The name of an entity in a sentence."""
     known = timeline.entities.get(entity)
     return "another callback" if known is None else known.spoken_name
+
+
+def called_by(call: Call, timeline: Timeline) -> str:
+    """Who called a service: ``called by timer_callback``."""
+    return f"called by {name_of(call.caller, timeline)}" if call.caller else "called from outside"
 
 
 def node_name(node: NodeId, timeline: Timeline) -> str:

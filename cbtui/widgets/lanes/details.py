@@ -10,7 +10,7 @@ from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLan
 from cbtui.widgets.lanes.selection import Bar, Selection
 from sim.diagnosis.words import awaited_lock
 from sim.quantities.durations import duration, timestamp
-from sim.trace.descriptions import doing_of, name_of, why_waiting
+from sim.trace.descriptions import called_by, doing_of, name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind, Reason
 from sim.trace.figures.waiting import WORTH_TELLING, wait_judged, waited_by, waits_since
 from sim.trace.model import Call, EntityInfo, Nanoseconds, Position, Span, Wait, Window
@@ -149,7 +149,7 @@ def _cause(timeline: Timeline, span: Span, entity: EntityInfo) -> Iterator[str]:
             if call is None:
                 yield f"request {duration(span.age)} old"
             else:
-                yield f"request {duration(span.start - call.sent)} old, {_caller(timeline, call)}"
+                yield f"request {duration(span.start - call.sent)} old, {called_by(call, timeline)}"
 
 
 def _lateness(age: Nanoseconds) -> str:
@@ -225,7 +225,7 @@ def _of_wait(timeline: Timeline, wait: Wait, now: Nanoseconds) -> Iterator[str]:
 
 
 def _of_call(timeline: Timeline, call: Call, now: Nanoseconds) -> Iterator[str]:
-    yield f"{_caller(timeline, call)} at {timestamp(call.sent)}"
+    yield f"{called_by(call, timeline)} at {timestamp(call.sent)}"
     yield call.request
     if call.replied is not None and call.replied <= now:
         yield f"replied after {duration(call.replied - call.sent)}: {call.response}"
@@ -239,10 +239,6 @@ def _call(timeline: Timeline, span: Span) -> Call | None:
     """Return the call that a service's callback answers, by the number of its request."""
     out = timeline.calls_within(Window(max(0, span.start - 1), span.start + 1))
     return next((call for call in out if call.id == span.message), None)
-
-
-def _caller(timeline: Timeline, call: Call) -> str:
-    return f"called by {name_of(call.caller, timeline)}" if call.caller else "called from outside"
 
 
 # words
