@@ -188,7 +188,12 @@ def _call(timeline: Timeline, call: Call) -> tuple[object, ...]:
 def _findings(timeline: Timeline) -> Iterator[_Json]:
     for found in diagnose(timeline):
         told = found.explained(timeline)
-        yield {"what": told.what, "why": told.why, "cure": told.cure, "at": _micro(found.at) or None}
+        yield {
+            "what": told.what,
+            "why": told.why,
+            "cure": told.cure,
+            "at": _micro(found.at) if found.at or found.stuck else None,
+        }
 
 
 def _poses(timeline: Timeline) -> Iterator[tuple[float, ...]]:

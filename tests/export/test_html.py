@@ -14,6 +14,7 @@ from sim.trace.events import Logged, Printed, RobotMoved, RunEnded, RunStarted
 from sim.trace.timeline import Timeline
 from tests.export.examples import NASTY, small_run, timeline_of
 from tests.support.builder import ns
+from tests.support.engine_runs import run_lesson
 from tests.support.lesson_runs import shared_group_run
 from tests.support.runs import Run
 from tests.web.chromium import PROGRAM
@@ -203,3 +204,18 @@ def test_the_robot_is_drawn_from_the_first_moment_on(tmp_path: Path) -> None:
     text = page(timeline_of([*first]))
     dom = shown_by_browser(text.replace("</body>", f"<script>{spy}</script></body>"), "0", tmp_path)
     assert "<title>2 circles</title>" in dom
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(PROGRAM is None, reason="there is no Chromium")
+def test_a_run_in_which_nothing_is_found_says_so(tmp_path: Path) -> None:
+    run = Run("quiet")
+    run.over(1.0)
+    assert "No problems found." in re.sub(
+        "<script.*", "", shown_by_browser(page(timeline_of(run.events)), "0", tmp_path)
+    )
+
+
+def test_what_is_true_of_a_whole_run_has_no_moment() -> None:
+    found = data(page(timeline_of(run_lesson("split-groups", 3.0).events)))["findings"]
+    assert [each["at"] for each in found] == [None]  # type: ignore[attr-defined]
