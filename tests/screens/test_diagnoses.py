@@ -8,6 +8,7 @@ from pathlib import Path
 from time import monotonic
 
 import pytest
+from msgspec import structs
 from textual.events import Key
 from textual.pilot import Pilot
 from textual.widgets import OptionList, Static
@@ -32,7 +33,7 @@ from cbtui.widgets.lanes.rows import MemberLane
 from sim.diagnosis import Diagnoses, Finding
 from sim.engine.commands import Pause
 from sim.recording import RecordingMetadata, read
-from sim.trace.events import AnyEvent
+from sim.trace.events import AnyEvent, RunStarted
 from sim.trace.timeline import Timeline
 from tests.recording.files import write
 from tests.support.builder import ns
@@ -228,14 +229,11 @@ async def test_the_rules_look_at_most_twice_a_second_whatever_is_drawn(
         assert looks <= 2 * (monotonic() - began) + 1
 
 
-@pytest.mark.slow
-async def test_a_recording_has_its_diagnoses_too(tmp_path: Path) -> None:
-    path = tmp_path / "run.mcap"
-    write(
-        path,
-        run_lesson("shared-group", TURNED).events,
-        RecordingMetadata(title="shared-group", clock="virtual"),
-    )
+@asynccontextmanager
+async def recording(events: Sequence[AnyEvent], folder: Path) -> AsyncIterator[tuple[CbtuiApp, Pilot[None]]]:
+    """A recording of a run of shared-group on screen, read to its end."""
+    path = folder / "run.mcap"
+    write(path, events, RecordingMetadata(title="shared-group", clock="virtual"))
     app = CbtuiApp(start_recording=read(path))
     app.animation_level = "none"
     async with app.run_test(size=WIDE) as pilot:
@@ -245,11 +243,30 @@ async def test_a_recording_has_its_diagnoses_too(tmp_path: Path) -> None:
         while not screen.runs.run.is_read:
             await pilot.pause(0.01)
         await settle(pilot)
+        yield app, pilot
+
+
+@pytest.mark.slow
+async def test_a_recording_has_its_diagnoses_too(tmp_path: Path) -> None:
+    async with recording(run_lesson("shared-group", TURNED).events, tmp_path) as (app, pilot):
         assert "1 problem · d" in lines_of(app)[-2]
         await press(pilot, "d", "enter")
         assert "t 4.003 s" in status(app)
         assert "▸ A odom_callback is ready" in text_of(app)
-        assert screen.query_one(CodeView).picked == 94
+        assert app.screen.query_one(CodeView).picked == 94
+
+
+@pytest.mark.slow
+async def test_what_was_found_before_a_recording_begins_is_said_to_be(tmp_path: Path) -> None:
+    begun = [
+        structs.replace(each, known_from=ns(6.0)) if isinstance(each, RunStarted) else each
+        for each in run_lesson("shared-group", TURNED).events
+    ]
+    async with recording(begun, tmp_path) as (app, pilot):
+        await press(pilot, "d", "enter")
+        assert "t 6.000 s" in status(app)
+        said = [notification.message for notification in app._notifications]
+        assert said == ["4.003 s is before this recording begins, at 6.000 s"]
 
 
 def test_a_finding_is_a_line_and_a_paragraph() -> None:

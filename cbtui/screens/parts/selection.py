@@ -22,6 +22,7 @@ from cbtui.widgets.lanes.rows import all_lanes
 from cbtui.widgets.lanes.selection import neighbouring_bar
 from lessons.catalogue import lesson_on
 from lessons.lesson import Lesson
+from sim.quantities.durations import timestamp
 from sim.trace.descriptions import nothing_came, silent_topics
 from sim.trace.events import EntityId
 from sim.trace.model import Nanoseconds, Span
@@ -157,7 +158,12 @@ class LaneSelection(ScreenPart):
     def _go_to_finding(self, found: ExplainedFinding) -> None:
         """Go to a finding's moment and code, and select its callback's lane."""
         if found.at is not None:
+            begun = self.runs.timeline.begun
             self.navigation.seek(found.at)
+            if found.at < begun:
+                self.host.tell(
+                    f"{timestamp(found.at)} is before this recording begins, at {timestamp(begun)}"
+                )
         self.bars.select(self._last_of(found.finding.subject))
         place = found.explanation.place
         if place is not None:

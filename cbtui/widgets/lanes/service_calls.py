@@ -22,6 +22,7 @@ class LatestCalls:
     """The latest calls of a run, the newest first."""
 
     def __init__(self, timeline: Timeline) -> None:
+        self._none = "none recorded" if timeline.begun else "not called"
         self.latest = list(islice(reversed(timeline.calls), _LATEST))
         self._by_service: dict[str, list[Call]] = {}
         for call in self.latest:
@@ -32,13 +33,13 @@ class LatestCalls:
         return self._by_service.get(service, ())
 
     def summary(self, service: str, now: Nanoseconds) -> str:
-        """Return how many calls were sent by ``now`` and the duration of the last one.
+        """Return how many calls were sent by ``now``, as far as is known, and the duration of the last one.
 
         While that one has no reply: how long the oldest such call has had none.
         """
         sent = [call for call in self.of(service) if call.sent <= now]
         if not sent:
-            return "not called"
+            return self._none
         count = counted(len(sent), "call")
         last = sent[0]
         if last.replied is not None and last.replied <= now:

@@ -1,6 +1,7 @@
 """What lanes mark: calls that stand still, lost messages, groups, keys, the cursor and what is selected."""
 
 import pytest
+from msgspec.structs import replace
 from rich.cells import cell_len
 
 from cbtui.looks.theme import Charset
@@ -11,7 +12,7 @@ from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ThreadLane, all_lane
 from cbtui.widgets.lanes.scale import TimeScale
 from cbtui.widgets.lanes.selection import bars_in
 from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls
-from sim.trace.events import CallbackAt, Doing, MessageDropped, ProgramAt
+from sim.trace.events import CallbackAt, Doing, MessageDropped, ProgramAt, RunStarted
 from sim.trace.figures.chains import ChainStep, StepKind
 from sim.trace.model import Call, Window
 from sim.trace.timeline import Timeline
@@ -50,6 +51,15 @@ def test_calls_inside_the_call_of_a_bar_are_marked_on_it() -> None:
     run.stop(10.0)
     rows = plain(LanePainter().paint(told(run), *last(10, 10.0), 80, 8).rows).splitlines()
     assert rows[0].startswith("MainThread  │     A tick_callback █████████▪▪█████████████ ")
+
+
+def test_before_a_recording_that_begins_late_a_service_may_have_been_called() -> None:
+    events = small_run()[0].events
+    late = [replace(each, known_from=1) if isinstance(each, RunStarted) else each for each in events]
+    for run, told_first in ((events, "not called"), (late, "none recorded")):
+        timeline = Timeline()
+        timeline.extend(run)
+        assert LatestCalls(timeline).summary("/x", ns(5.0)) == told_first
 
 
 def test_of_several_calls_without_a_reply_the_lane_and_the_line_at_the_bottom_tell_the_oldest() -> None:
