@@ -243,6 +243,11 @@ def test_what_asyncio_misses_in_a_callback_is_told_with_what_to_await_instead(th
             "give the attribute another name, such as my_timers",
         ),
         (
+            "AttributeError: handle cannot be modified after node creation",
+            "every node of rclpy has a property handle, and nothing can be assigned to it",
+            "give the attribute another name, such as my_handle",
+        ),
+        (
             "AttributeError: 'NoneType' object has no attribute 'successful'",
             "the callback of add_on_set_parameters_callback() returned nothing; rclpy needs its answer",
             "end that callback with: return SetParametersResult(successful=True)",

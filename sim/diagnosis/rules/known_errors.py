@@ -15,8 +15,10 @@ NO_FLOAT = re.compile(r"AssertionError: The '(\w+)' field must be of type 'float
 """The error of a whole number in a field of type float; the group is the field."""
 
 _NODE_PROPERTIES = (
-    "clients|context|default_callback_group|guards|handle|publishers|services|subscriptions|timers|waitables"
+    "clients|context|default_callback_group|guards|publishers|services|subscriptions|timers|waitables"
 )
+_OF_NODES = r"every node of rclpy has a property \1, and nothing can be assigned to it"
+_OTHER_NAME = r"give the attribute another name, such as my_\1"
 _OTHER_TYPE = r"InvalidParameterTypeException: Trying to set parameter '([^']+)' to '(.*)'"
 _OVERRIDDEN = r"the node declares \1 with a value of another type, and no type turns into another by itself"
 _WHERE = "where the value comes from: the command line, the launch file or the file of parameters"
@@ -47,8 +49,13 @@ _KNOWN = tuple(
         (
             rf"AttributeError: (?:property|can't set attribute) '({_NODE_PROPERTIES})'"
             r"(?: of '\w+' object has no setter)?",
-            r"every node of rclpy has a property \1, and nothing can be assigned to it",
-            r"give the attribute another name, such as my_\1",
+            _OF_NODES,
+            _OTHER_NAME,
+        ),
+        (
+            r"AttributeError: (handle) cannot be modified after node creation",
+            _OF_NODES,
+            _OTHER_NAME,
         ),
         (
             r"AttributeError: 'NoneType' object has no attribute 'successful'",

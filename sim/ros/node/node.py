@@ -203,6 +203,10 @@ class Node:
         """A handle that keeps the node alive while it is used."""
         return Handle(self)
 
+    @handle.setter
+    def handle(self, _value: object) -> None:
+        raise AttributeError("handle cannot be modified after node creation")
+
     def destroy(self) -> None:
         """Destroy the node, as ``destroy_node``."""
         self.destroy_node()

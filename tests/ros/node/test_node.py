@@ -30,7 +30,7 @@ def test_a_nodes_clock_and_logger_are_its_own() -> None:
         assert node.get_clock().clock_type is ClockType.ROS_TIME
         assert node.get_logger().name == "ns.n"
         with pytest.raises(AttributeError):
-            node.handle = "garbage"  # type: ignore[assignment, misc]
+            node.handle = "garbage"
 
     with_node(check)
 
