@@ -7,7 +7,8 @@ from functools import cached_property
 from itertools import groupby
 from operator import attrgetter
 
-from sim.trace.events import EntityId, EntityKind, NodeId, ProcessId, Reason, ThreadId
+from sim.quantities.nanoseconds import SECOND
+from sim.trace.events import EntityId, EntityKind, NodeId, NoticeKind, ProcessId, Reason, ThreadId
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Blocked, Call, EntityInfo, Moment, Nanoseconds, Position, Span, Wait, Window
 from sim.trace.timeline import Timeline
@@ -147,16 +148,25 @@ class TimelineView:
     @cached_property
     def unspun(self) -> Mapping[NodeId, LongWait]:
         """The longest wait of each node of a running program for which nobody spins it any more, or yet."""
+        raised = self._raised_though_threads_go_on
         longest: dict[NodeId, LongWait] = {}
         for entity in self.entities():
             wait = next(reversed(self.waits(entity.id)), None)
             if wait is None or not wait.is_open or wait.parts[-1].reason is not Reason.NOBODY_SPINS:
                 continue
+            if raised is not None and raised - wait.parts[-1].start < SECOND:
+                continue  # nobody spins because of what was raised
             known = longest.get(entity.node)
             is_longer = known is None or wait.parts[-1].start < known.parts[-1].start
             if is_longer and self.end_of_program(entity) is None:
                 longest[entity.node] = wait
         return longest
+
+    @property
+    def _raised_though_threads_go_on(self) -> Nanoseconds | None:
+        """When an exception ended the main thread of the only program, whose other threads go on."""
+        raised = (each.t for each in self.timeline.notices if each.kind is NoticeKind.PROGRAM_RAISED)
+        return None if self.timeline.processes_ended else next(raised, None)
 
     def stood_in_call(self, entity: EntityId, start: Nanoseconds, end: Nanoseconds) -> bool:
         """Whether a callback was blocked in a call between two times."""

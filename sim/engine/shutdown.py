@@ -121,7 +121,7 @@ class RunShutdown:
     def finish(self, outcome: ProgramOutcome) -> NoReturn:
         """Exit once the program has ended; it may have failed after a request to end."""
         cause = Cause(outcome.sentence, outcome.failed, outcome.error, outcome.failure)
-        if not self.conclude(cause) and outcome.failed:
+        if not self.conclude(cause) and outcome.failed and outcome not in self._programs.failures:
             self._tell(Severity.ERROR, outcome.sentence, NoticeKind.RAISED_AT_END)
         finish_lines()
         self.leave()

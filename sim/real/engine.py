@@ -28,11 +28,11 @@ from sim.probes.on_path.cbtui_probe import FOLDER
 from sim.real.companions import RunRobot, ServiceCaller
 from sim.real.keyboard import RealKeyboard
 from sim.real.launched import LaunchedPrograms
-from sim.real.programs import STOPPED, OnExit, claimed_domain, environment, unbootstrapped
+from sim.real.programs import STOPPED, OnExit, claimed_domain, environment, raised_by, unbootstrapped
 from sim.real.ros2_lines import Ros2Lines
 from sim.real.translation import HOLD, Translation
 from sim.real.watched import WatchedProcesses
-from sim.real.wire import OF_THE_RUN, Hello, ProbeLine
+from sim.real.wire import OF_THE_RUN, Hello, ProbeLine, Uncaught
 from sim.trace.events import (
     AnyEvent,
     CommandGiven,
@@ -275,6 +275,8 @@ class RealEngine:
     def _take(self, lines: list[ProbeLine], process: int = 0) -> None:
         if any(isinstance(line, Hello) for line in lines):
             self._rclpy_is_awaited = False
+        raised = (each for each in lines if isinstance(each, Uncaught) and each.goes_on)
+        self._translation.take(map(raised_by, raised))
         self._hold_for(lines)
         self._caller.hear(lines)
         self._lines.hear(lines)

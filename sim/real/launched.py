@@ -279,7 +279,7 @@ class LaunchedPrograms:
     @property
     def has_failed(self) -> bool:
         """Whether one of them has failed so far."""
-        return self._failure is not None
+        return self._failure is not None or any(each.link.uncaught for each in self._running)
 
     @property
     def any_run(self) -> bool:

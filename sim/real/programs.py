@@ -28,6 +28,7 @@ from sim.probes.on_path.cbtui_probe import CHANGES, FOLDER, PORT, TOKEN
 from sim.real.printed_traceback import PrintedTraceback
 from sim.real.probe_link import LineReader, ProbeLink
 from sim.real.wire import Uncaught
+from sim.trace.events import Notice, NoticeKind, Severity
 
 ON_PATH = Path(__file__).parents[1] / "probes" / "on_path"
 """The folder that a probed program has on its path."""
@@ -265,6 +266,22 @@ def ended_by(uncaught: Uncaught, name: str, advice: str = "") -> Cause:
         uncaught.exception,
     )
     return Cause(failure.sentence, True, uncaught.error, failure)
+
+
+def raised_by(uncaught: Uncaught) -> Notice:
+    """What is told of a program that an exception ends once its other threads have ended."""
+    cause = ended_by(uncaught, "the program")
+    assert cause.failure is not None
+    return Notice(
+        uncaught.t,
+        Severity.ERROR,
+        cause.reason,
+        kind=NoticeKind.PROGRAM_RAISED,
+        problem=cause.failure.what,
+        advice=cause.failure.advice,
+        place=(cause.failure.file, cause.failure.line),
+        error=cause.error,
+    )
 
 
 def _own_terminal() -> None:

@@ -116,7 +116,7 @@ class Replied(msgspec.Struct, frozen=True, array_like=True, tag="replied"):
 
 
 class Uncaught(msgspec.Struct, frozen=True, array_like=True, tag="uncaught"):
-    """An exception ended the program."""
+    """An exception ended the program's main thread, and soon the program."""
 
     t: int
     error: str
@@ -128,6 +128,8 @@ class Uncaught(msgspec.Struct, frozen=True, array_like=True, tag="uncaught"):
     """Its class."""
     advice: str = ""
     """What to do about it; "" if the probe does not know."""
+    goes_on: bool = False
+    """Whether there are other threads for which Python waits."""
 
 
 class Left(msgspec.Struct, frozen=True, array_like=True, tag="left"):

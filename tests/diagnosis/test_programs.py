@@ -3,11 +3,13 @@
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from cbtui.runs.headless.headless import run_headless
 from sim.diagnosis import diagnose
-from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
+from sim.engine.setup import ProgramSetup, RealRos, RobotUse, RunSetup
 from sim.trace.timeline import Timeline
+from tests.real.programs import needs_ros
 from tests.support.engine_runs import SECOND, Run, program_setup, run_program, run_to_end
 
 TALKER = """
@@ -147,3 +149,52 @@ def test_a_run_without_the_console_lists_its_findings_after_the_summary(
     summary, _, listing = capsys.readouterr().out.partition("\nDiagnosis\n")
     assert summary.startswith("node.py, 3.0 s of virtual time")
     assert (["Diagnosis", *listing.splitlines()] if listing else []) == told
+
+
+RAISES_BESIDE_WORK = """
+import time
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from rclpy.task import Future
+
+class Worker(Node):
+    def __init__(self):
+        super().__init__("worker")
+        self.create_timer(0.2, self.work, MutuallyExclusiveCallbackGroup())
+        self.create_timer(0.5, self.tick)
+
+    def work(self):
+        time.sleep(6.0)
+
+    def tick(self):
+        future = Future(executor=self.executor)
+        future.add_done_callback(self.keep)
+        future.set_result("handle")
+
+    def keep(self, future):
+        self.handle = future.result()
+
+rclpy.init()
+executor = MultiThreadedExecutor(2)
+executor.add_node(Worker())
+executor.spin()
+"""
+
+
+@pytest.mark.parametrize("real", [None, pytest.param(RealRos(), marks=[needs_ros, pytest.mark.slow])])
+def test_what_ends_main_is_told_when_it_is_raised_and_alone_though_a_worker_goes_on(
+    real: RealRos | None, tmp_path: Path
+) -> None:
+    (tmp_path / "node.py").write_text(RAISES_BESIDE_WORK)
+    setup = program_setup(tmp_path / "node.py", 3.0, "virtual" if real is None else "real")
+    run = run_to_end(replace(setup, real=real))
+    [found] = diagnose(run.timeline)
+    assert found.rule.id == "program-raised"
+    assert SECOND // 2 <= found.at < 2 * SECOND
+    told = found.explained(run.timeline)
+    assert told.what == "the program raised AttributeError: handle cannot be modified after node creation"
+    assert told.cure == "give the attribute another name, such as my_handle"
+    assert run.ending.failed
+    assert run.ending.time_was_up

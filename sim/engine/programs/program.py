@@ -77,8 +77,10 @@ class ProgramOutcome:
     failure: Failure | None = None
 
 
-def run_program(program: ProgramSpec) -> ProgramOutcome:
-    """Run a program in this thread, and wait for the threads that it leaves.
+def run_program(
+    program: ProgramSpec, on_raised: Callable[[ProgramOutcome], None] = lambda _outcome: None
+) -> ProgramOutcome:
+    """Run a program in this thread, and wait for the threads that it leaves; ``on_raised`` before that.
 
     If a file only defines ``main``, as a module with an entry point may, ``main`` is called.
     """
@@ -86,6 +88,8 @@ def run_program(program: ProgramSpec) -> ProgramOutcome:
     if program.folder not in sys.path:
         sys.path.insert(0, program.folder)
     outcome = _outcome_of(program)
+    if outcome.failure is not None:
+        on_raised(outcome)
     if outcome.status == _INTERRUPTED:
         deliver_sigint(current_process())  # ends spins on other threads
     for _ in range(2):  # Ctrl-C while main waits for its threads does not end these

@@ -15,7 +15,13 @@ from types import FrameType
 from sim.clock import AutoResetEvent
 from sim.engine.programs.ending import flush_files
 from sim.engine.programs.exit_functions import run_exit_functions
-from sim.engine.programs.program import ProgramOutcome, ProgramSpec, run_program
+from sim.engine.programs.program import (
+    ProgramOutcome,
+    ProgramSpec,
+    pooled_threads,
+    run_program,
+    threads_left_by,
+)
 from sim.engine.stdio.output import finish_lines
 from sim.ros.context.context import end_contexts_by_signal
 from sim.ros.context.signals import deliver_sigint, deliver_sigterm
@@ -73,6 +79,7 @@ class ProgramSupervisor:
     _only: list[Process] = field(default_factory=list)
     _numbers: "count[int]" = field(default_factory=lambda: count(1))
     _held: int = 0
+    _ending: bool = False
     _waiters: list[AutoResetEvent] = field(default_factory=list)
 
     def run_only(self, program: ProgramSpec) -> ProgramOutcome:
@@ -82,7 +89,17 @@ class ProgramSupervisor:
         self._only.append(process)
         _set_handler(signal.SIGINT, partial(_at_ctrl_c, process))
         _set_handler(signal.SIGTERM, partial(_at_sigterm, process))
-        return run_program(program)
+        return run_program(program, partial(self._tell_if_others_go_on, process))
+
+    def _tell_if_others_go_on(self, process: Process, raised: ProgramOutcome) -> None:
+        """Tell at once what the only program has raised if threads go on for which Python waits."""
+        pooled = pooled_threads()
+        waits_for_threads = any(each.ident not in pooled for each in threads_left_by(process))
+        if self._ending or not (waits_for_threads or (process.finish_pools and self.host.probe.running())):
+            return
+        with self.host.lock:
+            self.failures.append(raised)
+            self.record(_notice(self.host.clock.now(), raised.sentence, raised))
 
     def start(
         self,
@@ -207,6 +224,7 @@ class ProgramSupervisor:
 
         Several programs are interrupted one by one, each in its main thread.
         """
+        self._ending = True
         for process in self._only:
             process.finish_pools.clear()  # the run is over, whatever their workers do
             deliver_sigint(process)

@@ -97,7 +97,7 @@ class NoticeKind(StrEnum):
     PUBLISHERS_KEPT = "publishers kept"
     """Callbacks have made several publishers at one line, and destroyed none."""
     PROGRAM_RAISED = "program raised"
-    """One of several programs ended by an exception; the others go on."""
+    """A program ended by an exception; others, or threads of its own, go on."""
     REJECTION_OVERLOOKED = "rejection overlooked"
     """A program asks for the result of a goal that the server has rejected."""
     LATE_BOUND = "late bound"
@@ -137,7 +137,7 @@ class Notice(TraceEvent, frozen=True, tag="notice"):
     place: WireOnly[SourcePlace] = ("", 0)
     """The program's own line that it is about, if it is about one."""
     error: WireOnly[str] = ""
-    """The exception that ended a thread or a program of several, as ``ValueError: no scan``."""
+    """The exception that ended a thread or a program, as ``ValueError: no scan``."""
     thread: WireOnly[ThreadId] = 0
     """The thread of the call that makes no progress; 0 if it is not known."""
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+import threading
 from pathlib import Path
 from typing import Any
 
@@ -59,7 +60,7 @@ def install(folder: str) -> None:
     watch_services(recorder, rclpy.service.Service, rclpy_implementation)
     _watch_log(recorder, rclpy_implementation)
     _watch_tasks(rclpy.task.Task)
-    _watch_end(recorder)
+    _watch_end(recorder, executors)
 
 
 def _watch_log(recorder: Recorder, rclpy_implementation: Any) -> None:
@@ -86,7 +87,16 @@ def _watch_tasks(task_class: Any) -> None:
     task_class._complete_task = complete_and_keep
 
 
-def _watch_end(recorder: Recorder) -> None:
+def _others_go_on(recorder: Recorder, executors: Executors) -> bool:
+    """Whether Python waits at its end for another thread: idle workers of pools end by themselves."""
+    pools = sys.modules.get("concurrent.futures.thread")
+    busy = {recorder.idents[each] for spinner in executors.all() for each in spinner.busy.copy()}
+    idle = {each for each in getattr(pools, "_threads_queues", ()) if each.ident not in busy}
+    others = (each for each in threading.enumerate() if each is not threading.main_thread())
+    return any(not each.daemon and each not in idle for each in others)
+
+
+def _watch_end(recorder: Recorder, executors: Executors) -> None:
     report = sys.excepthook
 
     def report_known(kind: Any, error: Any, _trace: Any) -> None:
@@ -99,7 +109,8 @@ def _watch_end(recorder: Recorder) -> None:
             if isinstance(error, SyntaxError) and Path(error.filename or "").is_file():
                 text, place = f"{type(error).__name__}: {error.msg}", [error.filename, error.lineno or 0]
             *place, advice = culprit_of(error, is_own) or (*place, "")
-            recorder.put("uncaught", now(), text, *place, type(error).__name__, advice)
+            goes_on = _others_go_on(recorder, executors)
+            recorder.put("uncaught", now(), text, *place, type(error).__name__, advice, goes_on)
         report(kind, error, error.__traceback__)
 
     sys.excepthook = report_known
