@@ -92,10 +92,11 @@ class ProgramSupervisor:
         return run_program(program, partial(self._tell_if_others_go_on, process))
 
     def _tell_if_others_go_on(self, process: Process, raised: ProgramOutcome) -> None:
-        """Tell at once what the only program has raised if threads go on for which Python waits."""
+        """Tell at once what ended the spins of the only program if threads go on for which Python waits."""
         pooled = pooled_threads()
         waits_for_threads = any(each.ident not in pooled for each in threads_left_by(process))
-        if self._ending or not (waits_for_threads or (process.finish_pools and self.host.probe.running())):
+        works_on = waits_for_threads or (process.finish_pools and self.host.probe.running())
+        if self._ending or not process.spins or not works_on:
             return
         with self.host.lock:
             self.failures.append(raised)
