@@ -47,6 +47,16 @@ def test_to_end_an_exception_helps_whatever_the_program_does_wrong_then() -> Non
     assert not judged(crash, before, replace(after, is_whole=False, end=1)).helps
 
 
+def test_to_end_a_problem_helps_though_a_callback_that_now_runs_has_one_of_its_own() -> None:
+    silent, slow = ("qos-mismatch", "hear", "hear"), ("group-starvation", "tick", "hear")
+    before = TriedRun({silent: False}, calls={"hear": 0, "tick": 20})
+    after = TriedRun({slow: False}, names={slow: "group starvation"}, calls={"hear": 9, "tick": 20})
+    assert judged(silent, before, after) == Verdict(True, "group starvation")
+    had_run = replace(before, calls={"hear": 1, "tick": 20})
+    assert not judged(silent, had_run, after).helps
+    assert not judged(silent, before, replace(after, problems={slow: True})).helps, "that lasts for ever"
+
+
 @pytest.mark.parametrize(
     ("now", "again", "instead"),
     [

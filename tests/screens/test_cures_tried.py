@@ -144,7 +144,7 @@ async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.M
         ),
         (
             Verdict(True, "deadlock"),
-            "A cure was tried: with it this problem is gone, and another one comes: deadlock.",
+            "A cure was tried, and helps against this; then another one comes: deadlock.",
         ),
         (
             Verdict(None),

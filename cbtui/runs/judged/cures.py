@@ -211,9 +211,9 @@ def judged(problem: Problem, before: TriedRun, after: TriedRun, *, again: bool =
     """Tell whether a cure ends a problem of the run ``before`` without a worse one in its place.
 
     An effect of the problem before does not count if it remains as a problem of its own. After an exception
-    that ended the run, whatever else the program does wrong has its turn. A problem does not end if its
-    callbacks are merely called less often, or, if the cure leaves their work to further calls ``again``, get
-    none.
+    that ended the run, whatever else the program does wrong has its turn, and so has what a callback does
+    that had never run, unless that lasts for ever. A problem does not end if its callbacks are merely called
+    less often, or, if the cure leaves their work to further calls ``again``, get none.
     """
     if problem not in before.problems:
         return Verdict(None)
@@ -234,8 +234,14 @@ def judged(problem: Problem, before: TriedRun, after: TriedRun, *, again: bool =
         return Verdict(True, instead)
     goes_on = after.is_whole or after.is_cut
     idle = _called_less(problem, before, after, again)
-    helps = goes_on and not idle and replace(after, problems=left).badness < before.badness
-    return Verdict(helps, idle or instead)
+    comes_to_light = new and all(not left[each] and _runs_only(each, before, after) for each in new)
+    is_better = comes_to_light or replace(after, problems=left).badness < before.badness
+    return Verdict(bool(goes_on and not idle and is_better), idle or instead)
+
+
+def _runs_only(problem: Problem, before: TriedRun, after: TriedRun) -> bool:
+    """Return whether one of a problem's callbacks ran in the run ``after`` alone."""
+    return any(before.calls.get(name, 0) == 0 < after.calls.get(name, 0) for name in problem[1:])
 
 
 def _called_less(problem: Problem, before: TriedRun, after: TriedRun, again: bool) -> str:

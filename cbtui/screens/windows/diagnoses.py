@@ -338,7 +338,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             return tried_in_vain(tried)
         helpful = [verdict for verdict in self._of(place) if verdict.helps]
         if helpful and helpful[0].instead:
-            return f"A cure was tried: {helpful[0].exchange}."
+            return f"A cure was tried, and helps against this; then another one comes: {helpful[0].instead}."
         found = self._findings[place]
         if cures or self._trial is None or not found.is_problem:
             return ""
