@@ -3,13 +3,26 @@
 from pathlib import Path
 
 import pytest
+from msgspec.structs import replace
 
 from lessons.checks import never_stuck
 from sim.diagnosis import Finding, Weight, diagnose
+from sim.engine.setup import RealRos
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import Printed, ProgramAt, SpinClashed
+from sim.trace.events import (
+    AnyEvent,
+    Doing,
+    Printed,
+    ProgramAt,
+    ServiceCalled,
+    ServiceReplied,
+    SpinClashed,
+    TimePassed,
+)
+from sim.trace.timeline import Timeline
+from tests.real.programs import needs_ros
 from tests.support.daily import first_row_daily
-from tests.support.engine_runs import Run, run_program
+from tests.support.engine_runs import Run, program_setup, run_program, run_to_end
 
 PROGRAM = """
 import threading
@@ -407,3 +420,71 @@ printing = SingleThreadedExecutor()
 printing.add_node(paper)
 threading.Thread(target=printing.spin, daemon=True).start()
 """
+
+
+def spun_twice(end: float, *more: AnyEvent) -> Timeline:
+    """A program that calls a service at 1 s, and from 2 s on spins what another thread spins."""
+    function, line = "spin_until_future_complete", 17
+    timeline = Timeline()
+    timeline.extend([ServiceCalled(SECOND, 1, "/home", 0, "")])
+    timeline.extend([SpinClashed(2 * SECOND, 0, 0, function, "node.py", line, endless=True, refused=False)])
+    timeline.extend([ProgramAt(2 * SECOND, Doing.CALLS_ROS, function, (("node.py", "main", line),))])
+    timeline.extend([*more, TimePassed(round(end * SECOND))])
+    return timeline
+
+
+WAITS_ON = (
+    "the program waits in spin_until_future_complete() for 1.5 s, though its call of /home was answered"
+)
+REPLY = ServiceReplied(2 * SECOND, 1, "/home", "")
+
+
+@pytest.mark.parametrize(
+    ("end", "more", "weight"),
+    [
+        (3.5, [REPLY], Weight.PROBLEM),
+        (3.5, [], Weight.REMARK),
+        (2.5, [REPLY], Weight.REMARK),
+        (3.5, [REPLY, ProgramAt(2 * SECOND, Doing.COMPUTES, "", ())], Weight.REMARK),
+    ],
+    ids=["waits on", "without reply", "not for long", "goes on"],
+)
+def test_two_threads_that_spin_one_executor_are_a_problem_once_one_waits_on_after_the_reply(
+    end: float, more: list[AnyEvent], weight: Weight
+) -> None:
+    timeline = spun_twice(end, *more)
+    (found,) = diagnose(timeline)
+    told = found.explained(timeline)
+    assert found.weight_in(timeline) is weight
+    assert (told.what == WAITS_ON) is (weight is Weight.PROBLEM)
+    assert ("cbtui explore" in told.why) is (weight is Weight.REMARK)
+
+
+TWO_THREADS = """
+import threading
+import rclpy
+from std_srvs.srv import Trigger
+
+rclpy.init()
+node = rclpy.create_node("caller")
+node.create_service(Trigger, "home", lambda request, response: response)
+client = node.create_client(Trigger, "home")
+threading.Thread(target=rclpy.spin, args=(node,), daemon=True).start()
+for _ in range(5000):
+    future = client.call_async(Trigger.Request())
+    rclpy.spin_until_future_complete(node, future)
+"""
+
+
+@needs_ros
+@pytest.mark.slow
+def test_on_real_ros_a_spin_that_another_thread_leaves_waiting_is_told_with_the_call(tmp_path: Path) -> None:
+    (tmp_path / "node.py").write_text(TWO_THREADS)
+    setup = program_setup(tmp_path / "node.py", 6.0, "real")
+    timeline = run_to_end(replace(setup, real=RealRos())).timeline
+    (found,) = diagnose(timeline)
+    assert found.rule.id == "nested-spin"
+    told = found.explained(timeline)
+    assert told.what.startswith("the program waits in spin_until_future_complete() for")
+    assert told.what.endswith("though its call of /home was answered")
+    assert str(told.place) == "node.py:13"

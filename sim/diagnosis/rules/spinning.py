@@ -13,7 +13,16 @@ from sim.diagnosis.edits.spins import (
     spin_past,
     starving_loop,
 )
-from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, by_edit, is_models, line_location
+from sim.diagnosis.rule import (
+    CodeLocation,
+    Explanation,
+    Finding,
+    Rule,
+    Weight,
+    by_edit,
+    is_models,
+    line_location,
+)
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning, not_reached
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.wait_for_graph import SETTLES
@@ -28,9 +37,10 @@ from sim.diagnosis.words import (
     who,
     with_threads,
 )
+from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import Doing, EntityKind, GroupKind, ProgramAt, SpinClashed
-from sim.trace.model import EntityInfo, Nanoseconds, Position, Window
+from sim.trace.events import Doing, EntityId, EntityKind, GroupKind, ProgramAt, SpinClashed
+from sim.trace.model import Call, EntityInfo, Nanoseconds, Position, Window
 from sim.trace.timeline import Timeline
 
 
@@ -51,13 +61,16 @@ class NestedSpin(Rule):
         spinning = {each.entity for each in view.positions if _SPIN in each.call and _lasts(each, view)}
         latest = {each.entity: each for each in view.timeline.spin_clashes}
         for clash in reversed(view.timeline.spin_clashes):
-            held = _held_up(clash, view) if latest[clash.entity] is clash else ""
+            is_latest = latest[clash.entity] is clash
+            held = _held_up(clash, view) if is_latest else ""
+            waited = _program_waits(clash, view.timeline, view.end) if is_latest else 0
+            stuck, until = frozenset[EntityId](), clash.t
+            ring: tuple[str, ...] = ()
             if held and clash.entity in spinning:
-                stuck, until = frozenset([clash.entity]), view.end
-                ring = _ring(clash, view.timeline)
-            elif clash.t > view.window.start:
-                stuck, until, ring = frozenset(), clash.t, ()
-            else:
+                stuck, ring, until = frozenset([clash.entity]), _ring(clash, view.timeline), view.end
+            elif waited >= SECOND:
+                until = view.end
+            elif clash.t <= view.window.start:
                 continue
             yield Finding(
                 self,
@@ -66,6 +79,7 @@ class NestedSpin(Rule):
                 clash.entity,
                 clash.entity,
                 about=clash.function,
+                size=waited,
                 event=clash,
                 detail=held,
                 stuck=stuck,
@@ -95,6 +109,14 @@ class NestedSpin(Rule):
             why = "an executor is spun once at a time; rclpy before Jazzy 7.1.9 tells nobody, and may hang"
             if clash.refused:
                 what += ": RuntimeError: Executor is already spinning"
+            elif self.weigh(found, timeline) is Weight.REMARK:
+                why += "; cbtui explore looks for an order of threads in which it goes wrong"
+        count = found.count
+        if (waited := _program_waits(clash, timeline, found.until)) >= SECOND:
+            call = _last_call(clash, timeline)
+            answered = f", though its call of {call.service} was answered" if call else ""
+            what, count = f"the program waits in {clash.function}() for {duration(waited)}{answered}", 1
+            why = f"it spins {runner}, which may take what is to wake it: {why}"
         for_ever = bool(found.ring) and found.until >= timeline.end
         if for_ever:
             what = (
@@ -104,9 +126,18 @@ class NestedSpin(Rule):
             why = "it comes back when a callback of this group has run, and the group lets none in meanwhile"
         place = line_location(clash.file, clash.line)
         cure, remedies = _cure(clash, subject, timeline), _remedies(clash, place, timeline)
-        return Explanation(
-            f"{what}{often(found.count)}", why, cure, place, for_ever=for_ever, remedies=remedies
-        )
+        what += often(count)
+        return Explanation(what, why, cure, place, for_ever=for_ever, remedies=remedies)
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """A remark if nothing has come of it: two threads spin, no executor refused, and main has gone on."""
+        clash = found.event
+        assert isinstance(clash, SpinClashed)
+        ended = timeline.ended
+        is_harmful = clash.entity or clash.node or clash.refused or (ended is not None and ended.failed)
+        if is_harmful or _program_waits(clash, timeline, found.until) >= SECOND:
+            return Weight.PROBLEM
+        return Weight.REMARK
 
 
 class SpinInConstructor(Rule):
@@ -251,12 +282,29 @@ def _made_in(entities: Iterable[EntityInfo]) -> dict[str, set[int]]:
 
 
 _NEVER = "{0}() runs callbacks until the program ends; what is made after it never exists"
+_LOOKED_AT = 100
+"""Calls that are looked at for the program's last one."""
 _SPIN = "spin"
 """A part of the names of all functions that spin."""
 
 
 def _lasts(position: Position, view: TimelineView) -> bool:
     return position.doing is Doing.CALLS_ROS and view.end - position.start >= SETTLES
+
+
+def _program_waits(clash: SpinClashed, timeline: Timeline, at: Nanoseconds) -> Nanoseconds:
+    """Return how long a program has waited where it spins what another thread spins; 0 if for a reply."""
+    program = None if clash.entity or not clash.endless else timeline.program_at(at)
+    if program is None or (program.frames[-1][0], program.frames[-1][2]) != (clash.file, clash.line):
+        return 0
+    call = _last_call(clash, timeline)
+    return 0 if call and call.replied is None else at - max(program.t, clash.t)
+
+
+def _last_call(clash: SpinClashed, timeline: Timeline) -> Call | None:
+    """Return the last call that the program made before it spun, if it was one of the last of all."""
+    before = (each for each in reversed(timeline.calls[-_LOOKED_AT:]) if each.sent <= clash.t)
+    return next((each for each in before if not each.caller), None)
 
 
 def _held_up(clash: SpinClashed, view: TimelineView) -> str:

@@ -6,6 +6,7 @@ import sys
 import weakref
 from contextlib import suppress
 from functools import wraps
+from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
 from .callbacks import is_own, raised_at
@@ -37,6 +38,8 @@ class Spinner:
         """The entities whose callbacks run, by thread; both by their ids on the trace."""
         self.spins = 0
         """How many spinning calls have not returned."""
+        self.seconds: set[int] = set()
+        """Python's identifiers of threads that spin it while another one does."""
         self.spun_at = -_IDLE
         """When it was last spun."""
 
@@ -168,14 +171,19 @@ class Executors:
             spinner = self._spinners.get(executor) or self._know(executor, 1)
             here = self._recorder.here
             outer, here.spinner = here.spinner, spinner
-            if here.entity and outer is spinner and (call := _call_into_rclpy())[0]:
+            is_second = outer is not spinner and not here.entity and spinner.spins > 0
+            if (is_second or (here.entity and outer is spinner)) and (call := _call_into_rclpy())[0]:
                 self._recorder.put("spin_clash", now(), here.entity, 0, *call, False)
+            if is_second:
+                spinner.seconds.add(get_ident())
             spinner.spins += 1
             try:
                 with UNSEEN:
                     return spin(*args, **kwargs)
             finally:
                 spinner.spins -= 1
+                if is_second:
+                    spinner.seconds.discard(get_ident())
                 spinner.spun_at = now()
                 here.spinner = outer
 

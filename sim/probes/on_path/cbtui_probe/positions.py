@@ -36,7 +36,8 @@ _EVERY = 250_000_000
 class PositionSampler:
     """Samples the threads that run callbacks, and the main thread; reports where each is if that has changed.
 
-    The main thread is reported while nobody spins, and while it spins inside ``__init__``. For one thread.
+    The main thread is reported while nobody spins, and while it spins inside ``__init__`` or what another
+    thread spins. For one thread.
     """
 
     def __init__(self, recorder: Recorder, executors: Executors) -> None:
@@ -60,7 +61,7 @@ class PositionSampler:
         if position is None or _CALLBACKS in map(_module, stack):
             return
         lines, *rest = position
-        spins = any(each.is_spun() for each in self._executors.all())
+        spins = any(each.is_spun() and self._main not in each.seconds for each in self._executors.all())
         if spins and all(function != "__init__" for _, function, _ in lines):
             lines = []
         if lines != self._main_lines:
