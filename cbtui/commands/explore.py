@@ -12,7 +12,7 @@ from cbtui.terminal.interrupts import INTERRUPTED
 from cbtui.text.output import complain, say
 
 if TYPE_CHECKING:
-    from collections.abc import Generator, Mapping
+    from collections.abc import Generator
 
     from cbtui.runs.judged.exploration_text import ReplayCommand, Shrunk
     from cbtui.runs.judged.exploring import Exploration, ScheduleResult, SeedT
@@ -93,6 +93,8 @@ def explore(options: argparse.Namespace) -> int:
     """
     if options.merge is not None:
         return _merge(options)
+    from msgspec.structs import replace
+
     from cbtui.runs.judged.shards import BadShardError, Shard
 
     if options.target is None:
@@ -114,9 +116,10 @@ def explore(options: argparse.Namespace) -> int:
     )
     run = _sample if options.preemptions is None else _search
     shard, interrupted = run(shard, exploration, part, parts)
+    if options.preemptions is None and not interrupted:
+        shard = replace(shard, shrunk=_shrunk(exploration, shard, part, parts))
     if shard.results:
-        sampled = options.preemptions is None and parts == 1 and not interrupted
-        _tell(shard, f"part {part} of {parts}: " if parts > 1 else "", exploration if sampled else None)
+        _tell(shard, f"part {part} of {parts}: " if parts > 1 else "")
     if options.save is not None:
         try:
             shard.write_to(Path(options.save))
@@ -156,32 +159,30 @@ def _search(shard: "Shard", exploration: "Exploration", part: int, parts: int) -
     ), interrupted
 
 
-def _tell(shard: "Shard", whose: str = "", exploration: "Exploration | None" = None) -> None:
-    """Print the outcomes of the schedules; with an exploration, also the simplest failing schedule."""
+def _tell(shard: "Shard", whose: str = "") -> None:
+    """Print the outcomes of the schedules, and the simplest failing schedule."""
     from cbtui.runs.judged.exploration_text import exploration_text, proof_text
 
     found, proof = shard.ranked(), ""
     if shard.preemptions is not None:
         is_complete = bool(shard.done) if whose else not shard.missing
         proof = whose + proof_text(found, shard.preemptions, is_complete=is_complete)
-    shrunk = None if exploration is None else _shrunk(exploration, found, shard.schedules)
-    say(exploration_text(shard.program, found, shard.replays, proof, shrunk))
+    say(exploration_text(shard.program, found, shard.replays, proof, shard.shrunk))
 
 
-def _shrunk(
-    exploration: "Exploration", found: "Mapping[str, ScheduleResult]", schedules: int
-) -> "Shrunk | None":
+def _shrunk(exploration: "Exploration", shard: "Shard", part: int, parts: int) -> "Shrunk | None":
     """Search a simple schedule with the same failure; None if none failed, or failures are not repeatable."""
     from cbtui.runs.judged.exploration_text import Shrunk
     from cbtui.runs.judged.shrinking import Shrinking
 
-    failures = {failure for result in found.values() for failure in result.failures}
-    if not failures or not all(result.repeatable for result in found.values()):
+    found = shard.results.values()
+    failures = {failure for result in found for failure in result.failures}
+    if not failures or not all(result.repeatable for result in found):
         return None
-    shrinking = Shrinking(failures, max(schedules, SHRINKING))
+    shrinking = Shrinking(failures, max(len(found), SHRINKING), part, parts)
     tried: dict[str, ScheduleResult] = {}
     _interrupted(exploration.search(shrinking), tried, "further ")
-    return Shrunk(len(tried), shrinking.best, tried.get(shrinking.best))
+    return Shrunk(len(tried), shrinking.best, tried.get(shrinking.best), shrinking.preempted)
 
 
 def _interrupted(

@@ -22,7 +22,6 @@ from lessons.catalogue import find
 from sim.engine.setup import RunSetup
 from tests.commands.exploring_files import (
     AT_THE_OVEN,
-    CHECK_THEN_ACT,
     IN_ONE_GROUP,
     JUST_IN_TIME,
     LOCK_ORDER,
@@ -346,21 +345,21 @@ def test_what_was_tried_until_ctrl_c_is_told(
 
 
 def test_two_shards_and_their_merge_tell_what_one_exploration_does(
-    file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(command, "_shrunk", lambda *_: None)
-    file.write_text(CHECK_THEN_ACT)
-    words = ["explore", str(file), "--schedules", "6", "--for", "0.3"]
+    file.write_text(LOST_UPDATE)
+    words = ["explore", str(file), "--schedules", "2", "--seed", "4", "--for", "2"]
     parts = [str(tmp_path / name) for name in ("one.json", "two.json")]
     for number, part in enumerate(parts, start=1):
         cli.main([*words, "--shard", f"{number}/2", "--save", part])
-        assert "mine.py: 3 schedules" in capsys.readouterr().out
+        assert "mine.py: 1 schedule," in capsys.readouterr().out
     code = cli.main(words)
     whole = capsys.readouterr().out
+    assert "The simplest order found, run to prove it: seed moves:1=1\n" in whole
     assert cli.main(["explore", "--merge", *parts]) == code
     assert capsys.readouterr().out == whole
     assert cli.main(["explore", "--merge", parts[0]]) == 1
-    assert "3 of 6 schedules are in none of these files" in capsys.readouterr().err
+    assert "1 of 2 schedules are in none of these files" in capsys.readouterr().err
 
 
 def test_a_search_is_cut_in_two_and_only_both_parts_prove_it(

@@ -33,6 +33,12 @@ class Shrunk(NamedTuple):
     tried: int
     seed: str
     result: ScheduleResult | None
+    preempted: int = 0
+
+    @property
+    def rank(self) -> tuple[bool, int, int, int]:
+        """Of two outcomes, the simpler schedule has the lower one."""
+        return self.result is None, self.preempted, self.seed.count("="), len(self.seed)
 
 
 def exploration_text(

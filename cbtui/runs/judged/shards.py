@@ -1,12 +1,13 @@
 """Files with parts of an exploration, as from the machines of a CI matrix, which can be merged."""
 
 from collections.abc import Sequence
+from operator import attrgetter
 from pathlib import Path
 
 import msgspec
 
 from cbtui.runs.judged.bounded_search import Branch, of_all_parts
-from cbtui.runs.judged.exploration_text import ReplayCommand
+from cbtui.runs.judged.exploration_text import ReplayCommand, Shrunk
 from cbtui.runs.judged.exploring import ScheduleResult
 from sim.files.untrusted import read_bytes
 
@@ -22,7 +23,8 @@ class Shard(msgspec.Struct, frozen=True, kw_only=True):
 
     ``replays`` are the commands that repeat a schedule. A search with at most ``preemptions`` preemptions may
     have several ``parts``; the results are those of the parts that are ``done``. Of each seed, ``preempted``
-    has the number of preemptions, and ``branches`` where the search could continue from it.
+    has the number of preemptions, and ``branches`` where the search could continue from it. ``shrunk`` is the
+    simplest failing schedule found.
     """
 
     program: str
@@ -36,6 +38,7 @@ class Shard(msgspec.Struct, frozen=True, kw_only=True):
     done: tuple[int, ...] = ()
     preempted: dict[str, int] = {}
     branches: dict[str, tuple[Branch, ...]] = {}
+    shrunk: Shrunk | None = None
 
     @property
     def missing(self) -> str:
@@ -88,6 +91,7 @@ def merged(paths: Sequence[Path]) -> Shard:
             done=(*whole.done, *other.done),
             preempted={**whole.preempted, **other.preempted},
             branches={**whole.branches, **other.branches},
+            shrunk=_simpler(whole.shrunk, other.shrunk),
         )
     if whole.preemptions is None or whole.missing:
         return whole
@@ -95,9 +99,15 @@ def merged(paths: Sequence[Path]) -> Shard:
     return msgspec.structs.replace(whole, results={seed: whole.results[seed] for seed in seeds})
 
 
+def _simpler(one: Shrunk | None, other: Shrunk | None) -> Shrunk | None:
+    if one is None or other is None:
+        return one or other
+    return min(one, other, key=attrgetter("rank"))._replace(tried=one.tried + other.tried)
+
+
 def _common_fields(shard: Shard) -> Shard:
     """The fields that are equal in all parts of an exploration."""
-    return msgspec.structs.replace(shard, results={}, done=(), preempted={}, branches={})
+    return msgspec.structs.replace(shard, results={}, done=(), preempted={}, branches={}, shrunk=None)
 
 
 def _read(path: Path) -> Shard:

@@ -13,13 +13,13 @@ class Shrinking:
 
     Random moves come first, until a run has one of ``failures``. Then moves are left out, many at a time at
     first, as long as the failure remains (delta debugging). There may be a next seed again after
-    StopIteration. At most ``limit`` seeds are returned.
+    StopIteration. At most ``limit`` seeds are returned. Each of several ``parts`` makes other random moves.
     """
 
-    def __init__(self, failures: Collection[Hashable], limit: int) -> None:
+    def __init__(self, failures: Collection[Hashable], limit: int, part: int = 1, parts: int = 1) -> None:
         self._failures = frozenset(failures)
         self._left = limit
-        self._walks = count(1)
+        self._walks = count(part, parts)
         self._rank: tuple[int, int, float] | None = None
         self._size = 0
         self._fewer: Iterator[str] = iter(())
@@ -37,6 +37,11 @@ class Shrinking:
         seed = f"walk:{next(self._walks)}" if self._rank is None else next(self._fewer)
         self._left -= 1
         return seed
+
+    @property
+    def preempted(self) -> int:
+        """The number of preemptions of the simplest."""
+        return 0 if self._rank is None else self._rank[0]
 
     def take(self, seed: str, failures: Collection[Hashable], choices: Sequence[ThreadChosen]) -> None:
         """Continue from a run if it has failed and is simpler than the simplest so far."""
