@@ -33,7 +33,7 @@ _NONE = ("", "", False, ("", 0))
 class Spans(Intervals):
     """The table of all spans; ``Span`` objects are made for answers."""
 
-    ENTITY, THREAD, MESSAGE, AGE, FAILURE, RESUMED = range(2, 8)
+    ENTITY, THREAD, MESSAGE, AGE, FAILURE, FIRST = range(2, 8)
 
     def __init__(self, spill: SpillFile) -> None:
         super().__init__(spill, more=6)
@@ -47,10 +47,11 @@ class Spans(Intervals):
         thread: ThreadId,
         message: MessageId,
         age: Nanoseconds,
-        resumed: int,
+        first: RowId | None,
     ) -> RowId:
-        """Begin a span."""
-        return self.table.append([at, OPEN, entity, thread, message, age, 0, resumed])
+        """Begin a span; ``first`` is that with which its call began, None for this one."""
+        own = len(self)
+        return self.table.append([at, OPEN, entity, thread, message, age, 0, own if first is None else first])
 
     def entity(self, row: RowId) -> EntityId:
         """The entity of a span."""
@@ -62,7 +63,11 @@ class Spans(Intervals):
 
     def was_resumed(self, row: RowId) -> bool:
         """Whether the span begins with a resumption."""
-        return bool(self.table.cell(row, self.RESUMED))
+        return self.first(row) != row
+
+    def first(self, row: RowId) -> RowId:
+        """The span with which the call of a span began, -1 if it is not known."""
+        return self.table.cell(row, self.FIRST)
 
     def fail(self, row: RowId, event: CallbackFailed) -> None:
         """Set the exception of a span."""
@@ -74,8 +79,9 @@ class Spans(Intervals):
 
     def span(self, row: RowId) -> Span:
         """One span, as a value."""
-        start, end, entity, thread, message, age, failure, _ = self.table.row(row)
-        return Span(start, end_or_none(end), entity, thread, message, age, *self._failures[failure], row)
+        start, end, entity, thread, message, age, failure, first = self.table.row(row)
+        failed = self._failures[failure]
+        return Span(start, end_or_none(end), entity, thread, message, age, *failed, row, first)
 
 
 class ThreadSpans(IntervalLane):
@@ -175,12 +181,14 @@ class Execution:
     def resume(self, event: CallbackResumed) -> None:
         """Resume a coroutine's call, with its message and age."""
         message = age = 0
+        first = -1
         if self._awaiting[event.entity]:
             gap, row = self._awaiting[event.entity].popleft()
             self._gaps.close(gap, event.t)
             message, age = self._spans.taken(row)
+            first = self._spans.first(row)
         self._resumed_at[event.entity].add([event.t])
-        row = self._begin(event.t, event.entity, event.thread, message, age, resumed=1)
+        row = self._begin(event.t, event.entity, event.thread, message, age, first)
         self._decisions.add(event.t, Deed.RESUMED, row)
 
     def fail(self, event: CallbackFailed) -> None:
@@ -293,13 +301,13 @@ class Execution:
         thread: ThreadId,
         message: MessageId,
         age: Nanoseconds,
-        resumed: int = 0,
+        first: RowId | None = None,
     ) -> RowId:
         self._newest_taken = max(self._newest_taken, message)
         lane = self._threads[thread]
         while lane.stack and lane.stack[-1] < self._uncertain_below:
             self._spans.close(lane.stack.pop(), at)
-        row = self._spans.begin(at, entity, thread, message, age, resumed)
+        row = self._spans.begin(at, entity, thread, message, age, first)
         lane.add(row)
         self._entities[entity].add(row)
         if entity in self._group_of:

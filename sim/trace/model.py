@@ -150,6 +150,8 @@ class Span(Lasting):
     """The innermost file and line of the program's own that raised it."""
     number: int = field(default=-1, compare=False)
     """Its place among the spans of the run, in the order in which they were begun."""
+    first: int = field(default=-1, compare=False)
+    """The number of the span with which its call began: its own, unless it was resumed; -1 if not known."""
 
 
 @dataclass(slots=True)

@@ -14,6 +14,7 @@ import rclpy
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup as Own, ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from rclpy.node import Node
+from rclpy.task import Future
 from std_msgs.msg import Int32
 from std_srvs.srv import SetBool
 
@@ -78,6 +79,26 @@ def look(message):
     y(message)
 one.create_subscription(Int32, "/x", look, 10)
 """
+AWAITED = SERVICE.replace("def look", "async def look").replace("find.call(", "await find.call_async(")
+REPLY = (
+    AWAITED.replace("callback_group=Own())", "callback_group=shared)", 1).replace(
+        "find =", "shared = Own()\nfind ="
+    )
+    + "one.create_timer(0.24, lambda: time.sleep(0.06), callback_group=shared)"
+)
+WOKEN = """
+executor = MultiThreadedExecutor(3)
+x, y = publisher("/x"), publisher("/y")
+one.create_timer(0.2, lambda: x(Int32()), callback_group=Own())
+one.create_timer(0.15, lambda: kept and kept[-1].set_result(None), callback_group=Own())
+async def look(message):
+    time.sleep(0.01)
+    kept.append(Future())
+    await kept[-1]
+    time.sleep(0.005)
+    y(message)
+one.create_subscription(Int32, "/x", look, 10)
+"""
 LOSSES = """
 executor = MultiThreadedExecutor(3)
 x, y = publisher("/x", 1), publisher("/y")
@@ -119,12 +140,31 @@ one.create_subscription(Int32, "/x", work, 10)
         # 10 before the call, 40 in the service, 5 behind it.
         (SERVICE, 1.1, "/x:/y", 5, [55] * 5, [55] * 5, [200, 75]),
         (SERVICE, 1.1, "/x:/find:/y", 5, [55] * 5, [55] * 5, [200, 75]),
+        # So it is if the call is awaited.
+        (AWAITED, 1.1, "/x:/y", 5, [55] * 5, [55] * 5, [200, 75]),
+        (AWAITED, 1.1, "/x:/find:/y", 5, [55] * 5, [55] * 5, [200, 75]),
+        # The reply of 250 waits until 300, when the timer of its group, which began at 240, is done.
+        (REPLY, 0.39, "/x:/y", 1, [105], [105], [50, 40, 15]),
+        # Those of 200 and 400 are awaited, from 210 and 410 until the timer comes at 300 and 450.
+        (WOKEN, 0.59, "/x:/y", 2, [105, 55], [105, 55], [130, 30]),
         # Sent every 50. Those of 50, 150, 300 and 400 are taken at 50, 180, 310 and 440, and run for 130.
         (LOSSES, 0.69, "/x:/y", 13, [130, 160, 140, 170], [130, 160, 140, 170], [4 * 130, 30 + 10 + 40]),
         # Three at once: one behind the other.
         (QUEUE, 0.95, "/x:/y", 3, [100, 200, 300], [100, 200, 300], [300, 300]),
     ),
-    ids=["timers", "group", "nodes", "service", "named service", "losses", "queue"],
+    ids=[
+        "timers",
+        "group",
+        "nodes",
+        "service",
+        "named service",
+        "awaited",
+        "awaited by name",
+        "reply",
+        "woken",
+        "losses",
+        "queue",
+    ],
 )
 def test_latencies_of_a_program(
     body: str,

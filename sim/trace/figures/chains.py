@@ -1,6 +1,6 @@
 """Chains of messages from a first topic to a last one: how long each took, and where the time went."""
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
 from collections import defaultdict, deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -22,11 +22,13 @@ class StepKind(StrEnum):
     """What a callback or its message did during a step of a chain."""
 
     WAITS = "waits"
-    """A message or request was in a queue, and its callback was not called yet."""
+    """A message or request was in a queue, and its callback was not called yet, or not resumed."""
     RUNS = "runs"
     """A callback ran until it sent the next message, or to its end."""
     CALLS = "calls"
-    """A callback was blocked in a service call."""
+    """A callback was blocked in a service call, or awaited its reply."""
+    AWAITS = "awaits"
+    """A callback awaited something else."""
     KEPT = "kept"
     """A callback had stored the message, until another one of its node used it."""
 
@@ -37,6 +39,7 @@ _WORDS = {
     StepKind.WAITS: "{} waits",
     StepKind.RUNS: "{} runs",
     StepKind.CALLS: "{} is called",
+    StepKind.AWAITS: "{} awaits",
     StepKind.KEPT: "kept until {} uses it",
 }
 
@@ -168,6 +171,10 @@ def _at(sending: Sending) -> Nanoseconds:
     return sending.at
 
 
+def _sent(call: Call) -> Nanoseconds:
+    return call.sent
+
+
 class _Tracer:
     """Follows messages of one timeline back to the messages that led to them."""
 
@@ -178,6 +185,9 @@ class _Tracer:
         self._calls: dict[int, Call] = {call.id: call for call in timeline.calls}
         self._taken = cache(self._taken_by)
         self._begun = cache(self._begun_by)
+        self._firsts = cache(self._firsts_of)
+        self._made = cache(self._made_by)
+        self._named = cache(self._named_by)
 
     def way(self, first: str, last: str) -> list[str]:
         """Return the names between two, and the last one.
@@ -282,10 +292,17 @@ class _Tracer:
     def _served(self, source: Sending, service: str) -> list[ChainStep]:
         """Return the steps of a request until its reply; one step if the run does not offer the service."""
         replied = self._calls[source.id].replied or source.at
-        for each in self._run.entities.values():
-            if each.name == service and each.kind is EntityKind.SERVICE and source.id in self._begun(each.id):
-                return self._handled(self._begun(each.id)[source.id], replied, source)
+        served = self._taker(service, EntityKind.SERVICE, source.id)
+        if served is not None:
+            return self._handled(served, replied, source)
         return [ChainStep(StepKind.CALLS, service, source.at, replied)]
+
+    def _taker(self, service: str, kind: EntityKind, call: int) -> Span | None:
+        """Return the first span of the callback that took a request, or its reply."""
+        for entity in self._named(service, kind):
+            if call in self._begun(entity):
+                return self._begun(entity)[call]
+        return None
 
     def _handled(self, call: Span, until: Nanoseconds, source: Sending) -> list[ChainStep]:
         """Return the wait of a message or reply for its callback, and the callback's run."""
@@ -293,33 +310,63 @@ class _Tracer:
         since = source.at
         if self._run.entities[call.entity].kind is EntityKind.CLIENT:
             since = self._calls[source.id].replied or source.at
-        waits = self._run.waits_of(call.entity, Window(since, began.start))
+        return [self._waited(began, since), *self._ran(call, began.start, until)]
+
+    def _waited(self, began: Span, since: Nanoseconds) -> ChainStep:
+        """Return the wait of a message or reply for its callback, with the reason that lasted longest."""
+        waits = self._run.waits_of(began.entity, Window(since, began.start))
         longest = max(
             waits, key=lambda wait: min(wait.end_at(self._run.end), began.start) - wait.start, default=None
         )
         why = "" if longest is None else why_waiting(longest, self._run)
-        who = name_of(call.entity, self._run)
-        wait = ChainStep(StepKind.WAITS, who, since, began.start, why, call.entity)
-        return [wait, *self._ran(call, began.start, until)]
+        who = name_of(began.entity, self._run)
+        return ChainStep(StepKind.WAITS, who, since, began.start, why, began.entity)
 
     def _ran(self, call: Span, start: Nanoseconds, end: Nanoseconds) -> list[ChainStep]:
-        """Return the run of a callback, with a step for each service call in which it was blocked."""
-        who = name_of(call.entity, self._run)
+        """Return the run of a callback, with steps for service calls, and for whatever else it awaited."""
+        began, who = self._began(call), name_of(call.entity, self._run)
         steps: list[ChainStep] = []
         at = start
-        for each in self._run.blocks_on(call.thread, Window(start, end)):
-            until = min(each.end_at(end), end)
-            if each.entity == call.entity and each.start >= at:
-                steps.append(ChainStep(StepKind.RUNS, who, at, each.start, entity=call.entity))
-                steps.append(
-                    ChainStep(StepKind.CALLS, each.service, each.start, until, f"in {who}", call.entity)
-                )
-                at = until
-        return [*steps, ChainStep(StepKind.RUNS, who, at, end, entity=call.entity)]
+
+        def add(kind: StepKind, until: Nanoseconds, what: str = who, why: str = "") -> None:
+            nonlocal at
+            steps.append(ChainStep(kind, what, at, until, why, call.entity))
+            at = until
+
+        for span in self._run.spans_of(call.entity, Window(start, end + 1)):
+            if self._began(span).number != began.number:
+                continue
+            if span.start > at:
+                asked = self._awaited(began, Window(at, span.start))
+                if asked is None:
+                    add(StepKind.AWAITS, span.start)
+                else:
+                    replied = asked.replied or at
+                    add(StepKind.CALLS, replied, asked.service, f"in {who}")
+                    taken = self._taker(asked.service, EntityKind.CLIENT, asked.id)
+                    if taken is not None and taken.start <= span.start:
+                        steps.append(self._waited(taken, replied))
+                        at = taken.start
+                    add(StepKind.WAITS, span.start)
+            for each in self._run.blocks_on(span.thread, Window(at, min(span.end_at(end), end))):
+                if each.entity == call.entity and each.start >= at:
+                    add(StepKind.RUNS, each.start)
+                    add(StepKind.CALLS, min(each.end_at(end), end), each.service, f"in {who}")
+            add(StepKind.RUNS, min(span.end_at(end), end))
+        if at < end:
+            add(StepKind.RUNS, end)
+        return steps
+
+    def _awaited(self, began: Span, gap: Window) -> Call | None:
+        """Return the service call that was answered last while the callback that made it was suspended."""
+        made = self._made(began.entity)
+        first, behind = bisect_left(made, began.start, key=_sent), bisect_right(made, gap.start, key=_sent)
+        answered = (each for each in made[first:behind] if gap.start <= (each.replied or 0) <= gap.end)
+        return max(answered, key=lambda each: each.replied or 0, default=None)
 
     def _began(self, call: Span) -> Span:
         """Return the first span of a call; a call that awaited something has several."""
-        return self._begun(call.entity).get(call.message, call) if call.message else call
+        return self._firsts(call.entity).get(call.first, call)
 
     def _sent(self, name: str) -> dict[int, Sending]:
         return {each.id: each for each in self._run.sent_on(name)}
@@ -327,6 +374,17 @@ class _Tracer:
     def _begun_by(self, entity: EntityId) -> dict[int, Span]:
         """Return the first span of each call of an entity by the message that it took."""
         return {span.message: span for span in self._run.calls_begun(entity, self._run_window)}
+
+    def _firsts_of(self, entity: EntityId) -> dict[int, Span]:
+        """Return the first span of each call of an entity by its number."""
+        return {span.number: span for span in self._run.calls_begun(entity, self._run_window)}
+
+    def _made_by(self, entity: EntityId) -> list[Call]:
+        """Return the service calls that an entity's callback made."""
+        return sorted((call for call in self._calls.values() if call.caller == entity), key=_sent)
+
+    def _named_by(self, name: str, kind: EntityKind) -> list[EntityId]:
+        return [each.id for each in self._run.entities.values() if (each.name, each.kind) == (name, kind)]
 
     def _taken_by(self, entity: EntityId) -> tuple[list[Span], list[tuple[Nanoseconds, int]]]:
         """Return the ended calls of a subscription in order of their ends, and these with call numbers."""
