@@ -5,7 +5,7 @@ from heapq import merge
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import Stretch, calls_of, entities_named, seconds, spans_of, whole_run
-from sim.quantities.nanoseconds import SECOND
+from sim.quantities.nanoseconds import SECOND, nearest_ns
 from sim.quantities.plural import counted
 from sim.trace.events import GroupKind
 from sim.trace.figures.concurrency import Concurrency
@@ -93,14 +93,15 @@ def exclusive_groups_hold() -> Check:
 
 def ticks_on_time(timer: str, within: float) -> Check:
     """No call of a timer's callback begins more than ``within`` seconds after it was due."""
-    expected = f"never more than {seconds(round(within * SECOND))} late"
+    most = nearest_ns(within)
+    expected = f"never more than {seconds(most)} late"
 
     def judge(run: Timeline) -> Verdict:
         calls = calls_of(run, timer)
         if not calls:
             return _missing(timer, expected)
         latest = max(calls, key=lambda span: span.age)
-        passed = latest.age <= within * SECOND
+        passed = latest.age <= most
         if not latest.age:
             return Verdict(True, expected, f"{counted(len(calls), 'call')}, none late")
         return Verdict(passed, expected, f"{seconds(latest.age, within)} late", latest.start)

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import seconds
-from sim.quantities.nanoseconds import SECOND
+from sim.quantities.nanoseconds import nearest_ns
 from sim.trace.figures.chains import Chain, ChainError, ChainRun, chain
 from sim.trace.timeline import Timeline
 
@@ -25,7 +25,8 @@ def chain_never_uses_older_than(names: Sequence[str], limit: float) -> Check:
 def _within(
     names: Sequence[str], limit: float, what: str, counts: Callable[[Chain], Sequence[ChainRun]]
 ) -> Check:
-    expected = f"at most {seconds(round(limit * SECOND))}"
+    most = nearest_ns(limit)
+    expected = f"at most {seconds(most)}"
 
     def judge(run: Timeline) -> Verdict:
         try:
@@ -37,6 +38,6 @@ def _within(
             return Verdict(False, expected, "no message that went through")
         longest = max(slowest.steps, key=lambda step: step.length)
         seen = f"{seconds(slowest.latency, limit)}, of which {seconds(longest.length)}: {longest.words}"
-        return Verdict(slowest.latency <= limit * SECOND, expected, seen, longest.start)
+        return Verdict(slowest.latency <= most, expected, seen, longest.start)
 
     return Check(f"{' to '.join(names)} never {what} too {'long' if what == 'takes' else 'old'}", judge)

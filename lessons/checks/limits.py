@@ -5,7 +5,7 @@ from operator import attrgetter
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import calls_of, entities_named, seconds, spans_of, whole_run
-from sim.quantities.nanoseconds import SECOND
+from sim.quantities.nanoseconds import nearest_ns
 from sim.quantities.plural import counted
 from sim.trace.descriptions import why_waiting
 from sim.trace.figures.waiting import waited_by
@@ -39,7 +39,8 @@ def is_called_often(callback: str, at_least: int) -> Check:
 
 def never_waits_longer_than(callback: str, limit: float) -> Check:
     """A callback that is ready is called within ``limit`` seconds; it is called at least once."""
-    expected = f"a wait of at most {seconds(round(limit * SECOND))}"
+    most = nearest_ns(limit)
+    expected = f"a wait of at most {seconds(most)}"
 
     def judge(run: Timeline) -> Verdict:
         if not calls_of(run, callback) and not any(_waits(run, callback)):
@@ -50,14 +51,15 @@ def never_waits_longer_than(callback: str, limit: float) -> Check:
         length = _length(run, longest[-1])
         why = why_waiting(max(longest, key=lambda wait: _end(run, wait) - wait.start), run)
         seen = f"a wait of {seconds(length, limit)}, {why}"
-        return Verdict(length <= limit * SECOND, expected, seen, _end(run, longest[-1]) - length)
+        return Verdict(length <= most, expected, seen, _end(run, longest[-1]) - length)
 
     return Check(f"{callback} never waits too long", judge)
 
 
 def never_runs_longer_than(callback: str, limit: float) -> Check:
     """No call of a callback takes more than ``limit`` seconds; it is called at least once."""
-    expected = f"calls of at most {seconds(round(limit * SECOND))}"
+    most = nearest_ns(limit)
+    expected = f"calls of at most {seconds(most)}"
 
     def judge(run: Timeline) -> Verdict:
         spans = spans_of(run, callback)
@@ -65,16 +67,15 @@ def never_runs_longer_than(callback: str, limit: float) -> Check:
             return Verdict(False, expected, f"no call of {callback}")
         longest = max(spans, key=lambda span: span.end_at(run.end) - span.start)
         length = longest.end_at(run.end) - longest.start
-        return Verdict(
-            length <= limit * SECOND, expected, f"a call of {seconds(length, limit)}", longest.start
-        )
+        return Verdict(length <= most, expected, f"a call of {seconds(length, limit)}", longest.start)
 
     return Check(f"{callback} never takes too long", judge)
 
 
 def never_takes_older_than(subscription: str, limit: float) -> Check:
     """A subscription's callback gets messages, and none that is older than ``limit`` seconds."""
-    expected = f"messages of at most {seconds(round(limit * SECOND))}"
+    most = nearest_ns(limit)
+    expected = f"messages of at most {seconds(most)}"
 
     def judge(run: Timeline) -> Verdict:
         calls = calls_of(run, subscription)
@@ -82,7 +83,7 @@ def never_takes_older_than(subscription: str, limit: float) -> Check:
             return Verdict(False, expected, f"no call of {subscription}")
         oldest = max(calls, key=lambda span: span.age)
         seen = f"a message {seconds(oldest.age, limit)} old"
-        return Verdict(oldest.age <= limit * SECOND, expected, seen, oldest.start)
+        return Verdict(oldest.age <= most, expected, seen, oldest.start)
 
     return Check(f"{subscription} never takes an old message", judge)
 

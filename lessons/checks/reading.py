@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from sim.quantities.nanoseconds import SECOND
+from sim.quantities.nanoseconds import SECOND, nearest_ns
 from sim.trace.events import EntityId
 from sim.trace.figures.summary import turns_among
 from sim.trace.model import Call, Nanoseconds, Span, Window
@@ -64,7 +64,7 @@ def runs_long(callback: str, seconds: float = 1.0) -> Stretch:
 
     def windows(run: Timeline) -> list[Window]:
         every = (Window(span.start, span.end_at(run.end)) for span in spans_of(run, callback))
-        return [window for window in every if window.length >= seconds * SECOND]
+        return [window for window in every if window.length >= nearest_ns(seconds)]
 
     return Stretch(f"{callback} runs", windows)
 
@@ -86,7 +86,7 @@ def seconds(length: Nanoseconds, unlike: float | None = None) -> str:
 
     It has as many digits as tell it from ``unlike``, a limit in seconds: ``0.1003 s`` for one of 0.1.
     """
-    limit = length if unlike is None else round(unlike * SECOND)
+    limit = length if unlike is None else nearest_ns(unlike)
     digits = 3
     while limit != length and _rounded(length, digits) == _rounded(limit, digits):
         digits += 1

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import calls_of, rotations, seconds, spans_of
-from sim.quantities.nanoseconds import SECOND
+from sim.quantities.nanoseconds import nearest_ns
 from sim.quantities.plural import counted
 from sim.trace.model import Nanoseconds, Span
 from sim.trace.timeline import Timeline
@@ -27,14 +27,15 @@ def data_never_older(subscription: str, timer: str, limit: float) -> Check:
 
     Calls before the first message do not count.
     """
-    expected = f"at most {seconds(round(limit * SECOND))} old"
+    most = nearest_ns(limit)
+    expected = f"at most {seconds(most)} old"
 
     def judge(run: Timeline) -> Verdict:
         ages = list(_ages(spans_of(run, subscription), calls_of(run, timer)))
         if not ages:
             return Verdict(False, expected, f"no call of {timer} after a message of {subscription}")
         age, at = max(ages)
-        return Verdict(age <= limit * SECOND, expected, f"{seconds(age, limit)} old", at)
+        return Verdict(age <= most, expected, f"{seconds(age, limit)} old", at)
 
     return Check(f"{subscription} data is fresh when {timer} decides", judge)
 

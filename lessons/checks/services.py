@@ -2,14 +2,15 @@
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import requests_of, seconds
-from sim.quantities.nanoseconds import SECOND
+from sim.quantities.nanoseconds import nearest_ns
 from sim.trace.events import EntityKind, Logged, Severity
 from sim.trace.timeline import Timeline
 
 
 def replies_within(service: str, limit: float) -> Check:
     """Every call of a service gets its answer within ``limit`` seconds."""
-    expected = f"an answer within {seconds(round(limit * SECOND))}"
+    most = nearest_ns(limit)
+    expected = f"an answer within {seconds(most)}"
 
     def judge(run: Timeline) -> Verdict:
         calls = requests_of(run, service)
@@ -25,9 +26,7 @@ def replies_within(service: str, limit: float) -> Check:
                 return Verdict(False, expected, waited, call.sent)
         slowest = max(calls, key=lambda call: (call.replied or 0) - call.sent)
         took = (slowest.replied or 0) - slowest.sent
-        return Verdict(
-            took <= limit * SECOND, expected, f"an answer after {seconds(took, limit)}", slowest.sent
-        )
+        return Verdict(took <= most, expected, f"an answer after {seconds(took, limit)}", slowest.sent)
 
     return Check(f"{service} answers in time", judge)
 

@@ -285,6 +285,15 @@ def test_a_check_tells_a_run_that_does_it_from_one_that_does_not(
     assert (failed.seen, failed.at) == (seen, None if at is None else ns(at))
 
 
+@pytest.mark.parametrize("length", [0.1, 4.1])
+def test_what_takes_just_as_long_as_it_may_passes(length: float) -> None:
+    heard = listening((1.0, 1.0 + length), waits=length)
+    assert never_waits_longer_than("/scan", length).judge(heard).passed
+    assert never_takes_older_than("/scan", length).judge(heard).passed
+    assert never_runs_longer_than("one", length).judge(side_by_side("exclusive", (1.0, length))).passed
+    assert replies_within("/stop", length).judge(called((1.0, 1.0 + length))).passed
+
+
 def test_where_a_line_is_missing_the_last_logged_error_is_told() -> None:
     run = Run()
     run.log("TICK", 1.0)
