@@ -13,7 +13,7 @@ from sim.files.untrusted import mode_of
 
 if TYPE_CHECKING:
     from cbtui.grading.grading import Grader, HandIn
-    from cbtui.grading.mark_sheet import MarkSheet
+    from cbtui.grading.mark_sheet import MarkSheet, SheetRow
 
 _STANDARD_OUTPUT = "-"
 SUSPICIOUS = 3
@@ -98,6 +98,7 @@ def grade(options: argparse.Namespace) -> int:
         complain(f"grading was cut short while {lesson} of {learner} ran, which now comes last")
     report = say_data if options.csv == _STANDARD_OUTPUT else _nothing
     out = SheetStream(sheet, report) if path is None else SheetFile(sheet, path)
+    is_changed = False
     try:
         out.begin()
         for each in handed_in.grades(out.begun(missing), options.limit, confinement, out.restored):
@@ -106,7 +107,7 @@ def grade(options: argparse.Namespace) -> int:
                 say(f"{line(each)}\n")
     except PackagesChangedError as error:
         complain(str(error))
-        return CHANGED
+        is_changed = True
     except UnwritableSheetError as error:
         complain(str(error))
         return 1
@@ -115,10 +116,14 @@ def grade(options: argparse.Namespace) -> int:
             out.end()
     if options.csv != _STANDARD_OUTPUT:
         say(missed_text(sheet.rows, handed_in.asked))
-    written = junit is None or _write(junit, junit_xml(sheet.rows, handed_in.asked))
-    if any(row["suspicious"] for row in sheet.rows):
+    is_written = junit is None or _write(junit, junit_xml(sheet.rows, handed_in.asked))
+    return CHANGED if is_changed else _exit_code(sheet.rows, is_written=is_written)
+
+
+def _exit_code(rows: "list[SheetRow]", *, is_written: bool) -> int:
+    if any(row["suspicious"] for row in rows):
         return SUSPICIOUS
-    return 0 if written and all(row["passed"] == row["total"] != "0" for row in sheet.rows) else 1
+    return 0 if is_written and all(row["passed"] == row["total"] != "0" for row in rows) else 1
 
 
 def _nothing(_text: str) -> None:

@@ -2,6 +2,7 @@
 
 import os
 import signal
+from xml.etree import ElementTree
 
 import pytest
 
@@ -71,8 +72,11 @@ def test_grading_stops_where_the_checks_are_changed_and_goes_on_when_they_are_wh
     checks = open_classroom.targets.checks
     whole = checks.read_text()
     open_classroom.hand_in("mallory", ENDING["appends to the checks"])
-    graded = open_classroom.grade()
+    junit = open_classroom.table.with_suffix(".xml")
+    graded = open_classroom.grade("--junit", str(junit))
     assert graded.code == 4
+    ((ann, mallory),) = ElementTree.parse(junit).getroot()
+    assert (len(ann), [each.tag for each in mallory]) == (0, ["error"])
     assert f"{checks} changed while blinking.py of mallory ran" in graded.err
     assert [*graded.rows] == ["ann", "mallory"]
     assert graded.rows["mallory"]["suspicious"] == f"{checks} was changed while it ran"
