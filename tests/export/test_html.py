@@ -219,3 +219,18 @@ def test_a_run_in_which_nothing_is_found_says_so(tmp_path: Path) -> None:
 def test_what_is_true_of_a_whole_run_has_no_moment() -> None:
     found = data(page(timeline_of(run_lesson("split-groups", 3.0).events)))["findings"]
     assert [each["at"] for each in found] == [None]  # type: ignore[attr-defined]
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(PROGRAM is None, reason="there is no Chromium")
+def test_a_callback_that_awaits_is_told_with_the_group_that_it_keeps(tmp_path: Path) -> None:
+    point = """const box = $("lanes").getBoundingClientRect(), edge = left(box.width);
+      const told = run.rows.map((row, place) => { $("about").textContent = "";
+        describe({ clientX: box.left + edge + (now - start) / length * (box.width - edge),
+          clientY: box.top + ROW * (place + .5) }); return $("about").textContent; });
+      document.title = told.join("; ")"""
+    text = page(timeline_of(small_run())).replace("</body>", f"<script>{point}</script></body>")
+    dom = shown_by_browser(text, "1.3", tmp_path)
+    assert told_by_browser(dom)["later"] == "awaits for 200 ms"
+    assert "C exclusive: kept by later, which awaits for 500 ms from 1.100 s" in dom
+    assert "later: awaits for 500 ms from 1.100 s" in dom
