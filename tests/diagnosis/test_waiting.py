@@ -348,3 +348,38 @@ def test_a_timer_that_is_late_now_and_then_or_for_a_moment_is_well(
     period: float, length: float, every: float
 ) -> None:
     assert kept_late(period, length, every).problems() == set()
+
+
+@pytest.mark.parametrize(
+    ("length", "stops", "told"),
+    [
+        (0.4, False, "; it comes at 13.3 Hz in place of 20 Hz"),
+        (0.4, True, ""),
+        (0.12, False, ""),
+    ],
+    ids=["by a third", "stops meanwhile", "by a tenth"],
+)
+def test_a_timer_that_seldom_waits_but_comes_too_seldom_by_that_is_worth_a_remark_with_both_rates(
+    length: float, stops: bool, told: str
+) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def often() -> None: ...
+
+        def slow() -> None:
+            simulation.sleep(length)
+
+        timer = node.create_timer(0.05, often)
+        node.create_timer(1.0, slow)
+        if stops:
+            once(node, 10.05, timer.cancel)
+            once(node, 17.05, timer.reset)
+        spin(node, None)
+
+    run = diagnosed(program, 20.0)
+    assert run.problems() == set()
+    assert run.told() == ({("group-starvation", "often")} if told else set())
+    if told:
+        told = f"often waited 350 ms: group A was held by slow (19 times in all){told}"
+        assert run.explained("group-starvation").what == told

@@ -38,6 +38,8 @@ _SOON: Nanoseconds = SECOND // 20
 """A timer's wait that is shorter is never long, however short its period."""
 _HABIT = 3
 """The number of waits from which on their share of a timer's calls counts."""
+_IN_TIME = 0.9
+"""The share of its ticks at which a timer must come lest it come too seldom."""
 
 
 class KeptWaiting(Rule):
@@ -65,9 +67,11 @@ class KeptWaiting(Rule):
                     yield Finding(self, wait.since, wait.until, entity.id, culprit, size=waited)
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Irrelevant if it is a timer that seldom waits, not for long; a remark if its culprit waits too."""
+        """A remark if its culprit waits too, and of a timer that seldom waits, not for long, but comes too
+        seldom by that; other such timers are irrelevant.
+        """
         if found.size < HALF_A_SECOND and self._of_habit(found, timeline) is None:
-            return None
+            return Weight.REMARK if found.count >= _HABIT and _lost_rate(found, timeline) else None
         return weight_beside_lock(found.culprit, Window(found.at, found.until), timeline)
 
     def _of_habit(self, found: Finding, timeline: Timeline) -> Weight | None:
@@ -87,12 +91,28 @@ class KeptWaiting(Rule):
         up_to, times = ("up to ", "") if len(waited) > 1 else ("", often(found.count))
         place = line_of(found.culprit, Window(found.at, found.until), timeline)
         return Explanation(
-            f"{names} waited {up_to}{duration(found.lasted)}: {cause}{times}",
+            f"{names} waited {up_to}{duration(found.lasted)}: {cause}{times}{_lost_rate(found, timeline)}",
             why,
             cure,
             place or place_of(found.subject, timeline),
             remedies=remedies,
         )
+
+
+def _lost_rate(found: Finding, timeline: Timeline) -> str:
+    """Tell how often a timer comes that waits for less than half a second at a time, if that is too seldom.
+
+    Of a timer that comes even less often than its waits explain, as it was cancelled, nothing is told.
+    """
+    period = entity_of(found, timeline).period
+    calls = timeline.spans_of(found.subject, Window(0, timeline.end + 1))
+    if not period or found.size >= HALF_A_SECOND or len(calls) < 2:
+        return ""
+    lasted, ticks = calls[-1].start - calls[0].start, len(calls) - 1
+    lost = lasted - ticks * period
+    if not (1 - _IN_TIME) * lasted < lost <= found.count * found.size:
+        return ""
+    return f"; it comes at {ticks * SECOND / lasted:.3g} Hz in place of {SECOND / period:.3g} Hz"
 
 
 class GroupStarvation(KeptWaiting):
