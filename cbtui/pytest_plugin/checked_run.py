@@ -274,7 +274,7 @@ class AskedChain:
     names: Sequence[str]
 
     def never_takes_longer_than(self, seconds: float) -> CheckedRun:
-        """Each message of the first topic leads to one of the last topic within ``seconds``."""
+        """Each message of the first topic that leads to one of the last topic does so within ``seconds``."""
         return self.run.passes(checks.chain_never_takes_longer_than(self.names, seconds))
 
     def never_uses_older_than(self, seconds: float) -> CheckedRun:

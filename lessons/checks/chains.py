@@ -13,18 +13,27 @@ def chain_never_takes_longer_than(names: Sequence[str], limit: float) -> Check:
     """From a message of the first topic to the first of the last one that comes of it: at most ``limit`` s.
 
     Topics or services between these may be named, too. Messages that lead to none do not count.
+
+    Raises:
+        ValueError: these are not two names or more.
     """
     return _within(names, limit, "takes", lambda found: found.whole_chain)
 
 
 def chain_never_uses_older_than(names: Sequence[str], limit: float) -> Check:
-    """Each message of the last topic comes of one of the first that was sent at most ``limit`` s before."""
+    """Each message of the last topic comes of one of the first that was sent at most ``limit`` s before.
+
+    Raises:
+        ValueError: these are not two names or more.
+    """
     return _within(names, limit, "uses a message", lambda found: found.runs)
 
 
 def _within(
     names: Sequence[str], limit: float, what: str, counts: Callable[[Chain], Sequence[ChainRun]]
 ) -> Check:
+    if isinstance(names, str) or len(names) < 2:
+        raise ValueError(f"{names!r} is not a chain; give a first and a last topic: ('/scan', '/cmd_vel')")
     most = nearest_ns(limit)
     expected = f"at most {seconds(most)}"
 

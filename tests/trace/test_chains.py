@@ -1,5 +1,7 @@
 """Chains of messages, in runs whose latencies are worked out by hand."""
 
+from collections.abc import Sequence
+
 import pytest
 
 from lessons.checks import Verdict, chain_never_takes_longer_than, chain_never_uses_older_than
@@ -256,6 +258,13 @@ def test_a_chain_has_a_budget(line: Line) -> None:
     )
     nowhere = chain_never_takes_longer_than(("/points", "/odom"), 1.0).judge(run)
     assert nowhere.seen == "nothing was sent on /odom; there was /points, /cmd_vel"
+
+
+@pytest.mark.parametrize("names", ["/scan:/cmd_vel", ("/scan",)])
+def test_a_budget_without_a_chain_is_refused_at_once(names: Sequence[str]) -> None:
+    for check in (chain_never_takes_longer_than, chain_never_uses_older_than):
+        with pytest.raises(ValueError, match="is not a chain; give a first and a last topic"):
+            check(names, 1.0)
 
 
 def test_what_did_not_lead_there_is_said(line: Line) -> None:
