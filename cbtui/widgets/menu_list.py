@@ -210,8 +210,8 @@ def _said(choice: MenuChoice) -> str:
     elif isinstance(choice, Puzzle):
         parts = (choice.title, choice.task, "puzzle")
     else:
-        unit = f"Unit {choice.unit}"
-        parts = (str(choice.number), choice.title, choice.teaches, choice.executor, choice.groups, unit)
+        unit, told = f"Unit {choice.unit}", (choice.title, choice.teaches, choice.executor, choice.groups)
+        parts = (str(choice.number), *told, unit, *choice.diagnoses.node, *choice.diagnoses.shows)
     return " ".join(parts).casefold()
 
 

@@ -71,13 +71,21 @@ async def test_what_is_found_stands_below_the_heading_of_its_unit_in_the_order_o
         assert "wait" in chosen.title
 
 
-async def test_what_is_found_by_its_text_alone_is_shown_too() -> None:
+@pytest.mark.parametrize(
+    ("typed", "titles"),
+    [
+        ("single", ["Single thread", "One shared group"]),
+        ("deadlock", ["Call in a callback", "Service in a service"]),
+    ],
+)
+async def test_what_is_found_by_its_text_or_by_the_problem_it_shows_is_shown_too(
+    typed: str, titles: list[str]
+) -> None:
     app = menu()
     async with app.run_test(size=TALL) as pilot:
-        await pilot.press("slash", *"single")
+        await pilot.press("slash", *typed)
         await pilot.pause()
-        assert "Single thread" in text_of(app)
-        assert "One shared group" in text_of(app)
+        assert all(title in text_of(app) for title in titles)
 
 
 async def test_a_search_begins_anew_after_a_lesson(program: Path) -> None:
