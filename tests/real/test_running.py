@@ -378,9 +378,9 @@ class Tried(Node):
 
 @pytest.mark.parametrize("ground", ["model", "ros2"])
 def test_a_sleep_by_simulated_time_that_stops_its_clock_is_a_deadlock(tmp_path: Path, ground: str) -> None:
-    call = 0.5
+    call = 1.5  # seconds in which a busy machine has loaded rclpy
     timeline = programs.run(
-        tmp_path, SIM_TIME, "SingleThreadedExecutor()", call, ground=ground, seconds=4.0
+        tmp_path, SIM_TIME, "SingleThreadedExecutor()", call, ground=ground, seconds=4.5
     ).timeline
     (found,) = (each for each in diagnose(timeline) if each.rule.id == "self-made-deadlock")
     assert found.rule.kind(found, timeline) == "deadlock-over-the-clock"
