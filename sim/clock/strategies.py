@@ -171,7 +171,7 @@ STRATEGIES: dict[str, Callable[[int], Schedule]] = {
 }
 """The schedules by the name in front of a seed, such as ``pct:5``."""
 DEFAULT_STRATEGY = "pos"
-"""The strategy of a seed without a name. It finds most bugs soonest (``tests.exploring.strategies``)."""
+"""The strategy of a seed without a name. It alone finds every seeded bug (``tests.exploring.strategies``)."""
 
 
 def schedule_of(seed: Seed | None) -> Schedule:
