@@ -248,6 +248,11 @@ def test_what_asyncio_misses_in_a_callback_is_told_with_what_to_await_instead(th
             "give the attribute another name, such as my_handle",
         ),
         (
+            "ValueError: generator already executing",
+            "another thread is in the same generator; where this line spins, it spins the same executor",
+            "spin an executor in one thread only, and let the others wait for that one to end",
+        ),
+        (
             "AttributeError: 'NoneType' object has no attribute 'successful'",
             "the callback of add_on_set_parameters_callback() returned nothing; rclpy needs its answer",
             "end that callback with: return SetParametersResult(successful=True)",

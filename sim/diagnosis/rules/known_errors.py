@@ -104,6 +104,11 @@ _KNOWN = tuple(
             r"make a \1(), set its fields, and publish that",
         ),
         (
+            r"ValueError: generator already executing",
+            r"another thread is in the same generator; where this line spins, it spins the same executor",
+            r"spin an executor in one thread only, and let the others wait for that one to end",
+        ),
+        (
             r"RuntimeError: Context must be initialized before it can be shutdown",
             r"rclpy is not initialised by then: it was shut down before, or init() was not called",
             r"to shut down what may be shut down already, call rclpy.try_shutdown()",

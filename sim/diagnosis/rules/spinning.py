@@ -106,7 +106,10 @@ class NestedSpin(Rule):
             )
         else:
             what = f"{subject} spins {runner}, by {clash.function}()"
-            why = "an executor is spun once at a time; rclpy before Jazzy 7.1.9 tells nobody, and may hang"
+            why = (
+                "an executor is spun once at a time; rclpy before Jazzy 7.1.9 does not refuse this: "
+                "it may hang, or raise ValueError: generator already executing"
+            )
             if clash.refused:
                 what += ": RuntimeError: Executor is already spinning"
             elif self.weigh(found, timeline) is Weight.REMARK:
