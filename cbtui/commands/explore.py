@@ -152,8 +152,10 @@ def _search(shard: "Shard", exploration: "Exploration", part: int, parts: int) -
     found: dict[str, ScheduleResult] = {}
     interrupted = _interrupted(exploration.search(search), found)
     done = (part,) if search.is_complete and not interrupted else ()
+    if done:
+        found = {seed: found[seed] for seed in search.counted}
     preempted = {seed: search.preempted(seed) for seed in found}
-    branches = search.branches
+    branches = {seed: search.branches[seed] for seed in found}
     return structs.replace(
         shard, results=found, done=done, preempted=preempted, branches=branches
     ), interrupted

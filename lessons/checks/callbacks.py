@@ -28,7 +28,7 @@ def keeps_coming(callback: str, while_: Stretch, at_least: float) -> Check:
             return _missing(callback, expected)
         long_enough = [each for each in while_.windows(run) if each.length * at_least >= 2 * SECOND]
         if not long_enough:
-            return Verdict(False, expected, f"no time at which {while_.words}")
+            return Verdict(False, expected, f"no long stretch in which {while_.words}")
         rates = [(len(calls_of(run, callback, window)), window) for window in long_enough]
         count, window = min(rates, key=lambda pair: pair[0] / pair[1].length)
         passed = count * SECOND >= at_least * window.length

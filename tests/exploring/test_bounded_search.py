@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from functools import partial
+from itertools import islice
 from math import factorial
 
 import pytest
@@ -140,6 +141,22 @@ def test_parts_together_count_the_schedules_of_the_whole_search(
     seeds = of_all_parts(preemptions, branches)
     assert len(seeds) == number
     assert {seed: found[seed] for seed in seeds} == whole
+
+
+@pytest.mark.parametrize(("data", "preemptions"), [("wxyz", 0), (("xxx", "yxy"), 2)])
+@pytest.mark.parametrize("at_once", [2, 3, 5])
+def test_runs_at_once_that_end_in_any_order_count_as_one_after_the_other(
+    data: Sequence[str], preemptions: int, at_once: int
+) -> None:
+    whole, in_order = searched(threads(*data), preemptions)
+    assert in_order.counted == list(whole)
+    search, running, found = BoundedSearch(preemptions, 1000), list[str](), dict[str, str]()
+    while running := [*running, *islice(search, at_once - len(running))]:
+        seed = running.pop()
+        found[seed], choices = played(threads(*data), seed)
+        search.take(seed, (), choices)
+    assert search.is_complete
+    assert {seed: found[seed] for seed in search.counted} == whole
 
 
 def test_all_runs_count_where_one_is_missing_that_another_order_needs() -> None:

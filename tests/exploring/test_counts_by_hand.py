@@ -85,5 +85,9 @@ def test_parts_of_a_file_are_together_the_whole(parts: int, tmp_path: Path) -> N
     explored = exploration(CROSSED, tmp_path, 0.06)
     searches = [BoundedSearch(2, 100, part, parts) for part in range(1, parts + 1)]
     found = {seed: result for each in searches for seed, result in explored.search(each)}
-    seeds = of_all_parts(2, {seed: each for search in searches for seed, each in search.branches.items()})
-    assert {seed: found[seed] for seed in seeds} == dict(explored.search(BoundedSearch(2, 100)))
+    branches = {seed: search.branches[seed] for search in searches for seed in search.counted}
+    whole = BoundedSearch(2, 100)
+    made = dict(explored.search(whole))
+    assert {seed: found[seed] for seed in of_all_parts(2, branches)} == {
+        each: made[each] for each in whole.counted
+    }

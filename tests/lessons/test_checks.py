@@ -360,7 +360,7 @@ def test_what_was_never_there_is_said_by_its_name() -> None:
     verdict = keeps_coming("/scan", ROTATES, 15).judge(NOTHING)
     assert verdict.seen == "no call of /scan"
     still = keeps_coming("/scan", ROTATES, 15).judge(timeline(split_groups_run(3.0)))
-    assert still.seen == "no time at which the robot rotates"
+    assert still.seen == "no long stretch in which the robot rotates"
 
 
 def test_a_time_too_short_for_two_calls_is_no_reason_to_fail() -> None:

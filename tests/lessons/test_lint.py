@@ -112,7 +112,7 @@ def test_a_solution_that_fails_a_check_is_none(folder: Path) -> None:
     (fault,) = faults_of(folder)
     assert fault == (
         f"{folder}/solution.py: fails 'blink keeps coming while work runs': "
-        "expected at least 1.5 calls a second; saw no time at which work runs"
+        "expected at least 1.5 calls a second; saw no long stretch in which work runs"
     )
 
 
@@ -151,7 +151,7 @@ def test_a_node_that_ends_its_process_is_told_once(folder: Path) -> None:
     node.write_text("import os\nos._exit(3)\n" + node.read_text())
     assert list(faults_of(folder)) == [
         f"{folder}/node.py: node.py ended its whole process at 0.000 s: "
-        "the engine ended with exit code 3 (node.py:2, in <module>)"
+        "the program ended its process by os._exit(), with exit code 3 (node.py:2, in <module>)"
     ]
 
 

@@ -21,16 +21,17 @@ class BoundedSearch:
     """An iterator of seeds; ``take`` receives the choices of each run, which lead to further seeds.
 
     It may have a next seed again after StopIteration. Seeds with fewer preemptions come first. Of two runs
-    that reach the same state only one is continued: the other can find nothing new. At most ``limit`` seeds
-    are returned. Each of several ``parts`` follows its share of the first run's choices. A run that several
-    parts reach is in each of them, with all that follows from it; ``of_all_parts`` returns those of these
-    runs that a search in one part makes.
+    that reach the same state only one is continued: the other can find nothing new. Where several run at
+    once, which one depends on which ends first; so the search goes on until it has made all runs that one
+    after the other would make, and these are ``counted``. At most ``limit`` seeds are returned. Each of
+    several ``parts`` follows its share of the first run's choices. A run that several parts reach is in each
+    of them, with all that follows from it; ``of_all_parts`` returns those that a search in one part counts.
     """
 
     def __init__(self, preemptions: int, limit: int, part: int = 1, parts: int = 1) -> None:
         self._preemptions = preemptions
         self._limit = limit
-        self._mine = slice(part - 1, None, parts)
+        self._part, self._parts = part, parts
         self._given: dict[str, tuple[int, Moves]] = {}
         self._waiting: list[tuple[int, int, str, Moves]] = []
         self._seen: set[tuple[int, int]] = set()
@@ -47,8 +48,32 @@ class BoundedSearch:
         return self
 
     def __next__(self) -> str:
+        if not self._waiting:
+            _, left_out = self._one_by_one(self.branches)
+            if left_out is not None and moves_text(left_out[1]) not in self._given:
+                self._add(*left_out)
         if not self._waiting or len(self._given) == self._limit:
             raise StopIteration
+        return self._pop()
+
+    @property
+    def counted(self) -> list[str]:
+        """The seeds of the runs that one after the other would make, as far as they are made."""
+        return self._one_by_one(self.branches)[0]
+
+    def _one_by_one(
+        self, branches: Mapping[str, tuple[Branch, ...]]
+    ) -> tuple[list[str], tuple[int, Moves] | None]:
+        """Search among the runs of ``branches``; also return the first that is needed and not among them."""
+        search = BoundedSearch(self._preemptions, self._limit, self._part, self._parts)
+        while search._waiting:
+            seed = search._pop()
+            if seed not in branches:
+                return list(search.branches), search._given[seed]
+            search.follow(seed, branches[seed])
+        return list(search.branches), None
+
+    def _pop(self) -> str:
         used, _, seed, moves = heappop(self._waiting)
         self._given[seed] = used, moves
         return seed
@@ -81,7 +106,7 @@ class BoundedSearch:
             more = used + preempts
             if more <= self._preemptions:
                 found += [(more, {**moves, number: option}) for option in range(1, able)]
-        for more, each in found if moves else found[self._mine]:
+        for more, each in found if moves else found[self._part - 1 :: self._parts]:
             self._add(more, each)
 
     def _add(self, used: int, moves: Moves) -> None:
@@ -91,12 +116,7 @@ class BoundedSearch:
 def of_all_parts(preemptions: int, branches: Mapping[str, tuple[Branch, ...]]) -> list[str]:
     """Return the seeds of a search in one part, from the branches of all runs of its parts.
 
-    These are all the seeds if the parts did not take their runs in order, as when several run at once, so
-    that one left out a run which another order needs.
+    These are all the seeds if a part has left out a run which another part's runs make needless there.
     """
-    search = BoundedSearch(preemptions, len(branches))
-    for seed in search:
-        if seed not in branches:
-            return list(branches)
-        search.follow(seed, branches[seed])
-    return list(search.branches)
+    seeds, left_out = BoundedSearch(preemptions, len(branches))._one_by_one(branches)
+    return seeds if left_out is None else list(branches)
