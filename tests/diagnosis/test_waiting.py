@@ -1,16 +1,19 @@
 """Callbacks that are ready and do not run: for their group, for a thread, for somebody to spin."""
 
+from pathlib import Path
+
 import pytest
 
 import sim.ros.rclpy as rclpy
 from sim.diagnosis import diagnose
+from sim.diagnosis.rule import Weight
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.ros.scheduling.events_executor import EventsExecutor
 from sim.ros.scheduling.executors import SingleThreadedExecutor
 from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, once, spin
 from tests.support.builder import ns
-from tests.support.engine_runs import run_lesson
+from tests.support.engine_runs import run_lesson, run_program
 from tests.support.simulation import Simulation
 
 
@@ -162,6 +165,45 @@ def test_calls_that_wait_for_a_lock_are_told_where_they_wait() -> None:
         "give count_with_lock a MutuallyExclusiveCallbackGroup: then its calls wait outside, "
         "without a thread; for a lock they wait inside, and one more thread would wait there too"
     )
+
+
+SAVES_UNDER_A_LOCK = """
+import threading
+import time
+
+import rclpy
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor
+
+
+def fast():
+    with lock:
+        pass
+
+
+def save():
+    with lock:
+        time.sleep(1.2)
+
+
+rclpy.init()
+node, lock, group = rclpy.create_node("n"), threading.Lock(), ReentrantCallbackGroup()
+node.create_timer(0.1, fast, callback_group=group)
+node.create_timer(2.0, save, callback_group=group)
+executor = MultiThreadedExecutor(4)
+executor.add_node(node)
+executor.spin()
+"""
+
+
+@pytest.mark.parametrize("clock", ["virtual", "real"])
+def test_threads_that_wait_for_a_lock_are_no_reason_for_one_thread_more(clock: str, tmp_path: Path) -> None:
+    timeline = run_program(tmp_path, SAVES_UNDER_A_LOCK, 4.0, clock).timeline
+    told = {each.rule.id: (each.weight_in(timeline), each.explained(timeline)) for each in diagnose(timeline)}
+    weight, busy = told["no-free-worker"]
+    assert weight is Weight.REMARK
+    assert "save held a lock for which fast waited, and no thread was free" in busy.what
+    assert busy.cure.startswith("in save, keep the lock only")
 
 
 def test_groups_of_their_own_and_two_threads_are_well() -> None:

@@ -16,11 +16,12 @@ from sim.diagnosis.rule import (
     place_of,
 )
 from sim.diagnosis.rules.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
-from sim.diagnosis.rules.locks import let_return, weight_beside_lock
+from sim.diagnosis.rules.locks import LET_GO, let_return, weight_beside_lock
 from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import (
     group_of,
     listed,
+    lock_keeper,
     often,
     only_thread,
     threads_for,
@@ -201,13 +202,22 @@ class NoFreeWorker(KeptWaiting):
             cure = f"give {culprit} a MutuallyExclusiveCallbackGroup: {outside}"
             if self.kind(found, timeline) == "threads-wait-for-lock":
                 cure += "; for a lock they wait inside, and one more thread would wait there too"
+        elif waiters := _wait_for_its_lock(found, timeline):
+            waiting = listed([who(each, timeline) for each in waiters])
+            busy = f"{culprit} held a lock for which {waiting} waited, and no thread was free"
+            room, cure = Remedy(), f"in {culprit}, {LET_GO}; one more thread may wait for it, too"
         else:
             busy = f"all threads were busy, one with {culprit}"
         why = "its group would have let it in, but a callback also needs a thread to run on"
         return self._explained(found, timeline, busy, why, cure, room)
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Irrelevant if the culprit also kept others out of its group, which is told with this."""
+        """Irrelevant if the culprit also kept others out of its group, which is told with this.
+
+        A remark if others waited on their threads for a lock that the culprit held.
+        """
+        if _wait_for_its_lock(found, timeline):
+            return Weight.REMARK
         kept = _others_waiting(found, Reason.GROUP_HELD, timeline)
         asked = (EntityKind.CLIENT, EntityKind.SERVICE)
         is_told = any(timeline.entities[each].kind not in asked for each in kept)
@@ -236,6 +246,15 @@ class BehindOthers(KeptWaiting):
             "an EventsExecutor asks no group: it runs one callback at a time, in order of arrival",
             f"keep {culprit} short, or let a MultiThreadedExecutor with more than one thread run both{apart}",
         )
+
+
+def _wait_for_its_lock(found: Finding, timeline: Timeline) -> list[EntityId]:
+    """Return the callbacks that waited, in the middle of a wait, for a lock that its culprit held."""
+    middle = (found.at + found.until) // 2
+    there = (timeline.position_on(each, middle) for each in timeline.threads)
+    waiting = (each for each in there if each is not None and each.waits_for_lock)
+    callbacks = (each.entity for each in waiting if lock_keeper(each, timeline) == found.culprit)
+    return [*dict.fromkeys(filter(None, callbacks))]
 
 
 def _long_for(entity: EntityInfo) -> Nanoseconds:
