@@ -17,6 +17,7 @@ from cbtui.keys.action import PANES
 from cbtui.runs.setup.shown_program import of_file
 from cbtui.screens.parts import panes
 from cbtui.screens.parts.runs import RunController
+from cbtui.terminal import key_turns
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
 from cbtui.widgets.diagnosis_line import DiagnosisLine
@@ -57,8 +58,9 @@ def tabs(app: RecordedConsole) -> str:
 @pytest.mark.parametrize("pane", ["2", "5"])
 @pytest.mark.parametrize(("key", "line"), [("slash", LogFilter), ("colon", Prompt)])
 async def test_what_is_typed_in_one_go_goes_where_its_first_key_leads(
-    key: str, line: type[Input], pane: str
+    key: str, line: type[Input], pane: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(key_turns, "PATIENCE", 10.0)  # a busy machine is slow, too
     async with console() as (app, pilot):
         await press(pilot, pane)
         for each in (key, *"timer"):  # r alone would reset the world
@@ -67,7 +69,10 @@ async def test_what_is_typed_in_one_go_goes_where_its_first_key_leads(
         assert app.screen.query_one(line).has_focus
 
 
-async def test_escape_and_a_letter_that_come_at_once_are_no_letter_with_alt() -> None:
+async def test_escape_and_a_letter_that_come_at_once_are_no_letter_with_alt(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(key_turns, "PATIENCE", 10.0)
     async with console() as (app, pilot):
         await press(pilot, "slash", *"timer")
         app.post_message(Key("alt+f", "f"))
