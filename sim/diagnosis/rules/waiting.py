@@ -249,10 +249,10 @@ class BehindOthers(KeptWaiting):
 
 
 def _wait_for_its_lock(found: Finding, timeline: Timeline) -> list[EntityId]:
-    """Return the callbacks that waited, in the middle of a wait, for a lock that its culprit held."""
+    """Return the other callbacks that waited, in the middle of a wait, for a lock that its culprit held."""
     middle = (found.at + found.until) // 2
     there = (timeline.position_on(each, middle) for each in timeline.threads)
-    waiting = (each for each in there if each is not None and each.waits_for_lock)
+    waiting = (each for each in there if each and each.waits_for_lock and each.entity != found.culprit)
     callbacks = (each.entity for each in waiting if lock_keeper(each, timeline) == found.culprit)
     return [*dict.fromkeys(filter(None, callbacks))]
 
