@@ -488,3 +488,43 @@ def test_on_real_ros_a_spin_that_another_thread_leaves_waiting_is_told_with_the_
     assert told.what.startswith("the program waits in spin_until_future_complete() for")
     assert told.what.endswith("though its call of /home was answered")
     assert str(told.place) == "node.py:13"
+
+
+ASKS_ITSELF = """
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup as Group
+from rclpy.executors import MultiThreadedExecutor
+from std_srvs.srv import Trigger
+
+
+def serve(request, response):
+    return response
+
+
+def ask():
+    ASK
+
+
+rclpy.init()
+node = rclpy.create_node("n")
+node.create_service(Trigger, "own", serve)
+client = node.create_client(Trigger, "own")
+node.create_timer(0.5, ask)
+executor = MultiThreadedExecutor(2)
+executor.add_node(node)
+executor.spin()
+"""
+
+
+def test_a_callback_that_spins_for_the_service_of_its_own_node_is_told_of_both_groups(tmp_path: Path) -> None:
+    spins = "rclpy.spin_until_future_complete(node, client.call_async(Trigger.Request()))"
+    timeline = run_program(tmp_path, ASKS_ITSELF.replace("ASK", spins), 2.0).timeline
+    told = next(each.explained(timeline) for each in diagnose(timeline) if each.rule.id == "nested-spin")
+    assert told.cure.endswith("use client.call(), and give ask and the client a callback group each")
+    cured = ASKS_ITSELF.replace("ASK", "client.call(Trigger.Request())")
+    for mine in ('"own")', "0.5, ask)"):
+        assert mine in cured
+        cured = cured.replace(mine, f"{mine[:-1]}, callback_group=Group())")
+    assert [each.replied is not None for each in run_program(tmp_path, cured, 2.2).timeline.calls] == [
+        True
+    ] * 4

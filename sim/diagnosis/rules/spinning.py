@@ -383,6 +383,6 @@ def _cure(clash: SpinClashed, subject: str, timeline: Timeline) -> str:
         )
     return (
         f"after call_async() let {subject} return and go on in future.add_done_callback(), or "
-        f"{awaiting(subject)}; to wait inside {subject}, use client.call() of a client with a callback group "
-        f"of its own{threads}"
+        f"{awaiting(subject)}; to wait inside {subject}, use client.call(), and give {subject} and the "
+        f"client a callback group each{threads}"
     )
