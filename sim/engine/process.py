@@ -68,8 +68,8 @@ from sim.trace.events.fields import SourcePlace
 if TYPE_CHECKING:
     from sim.shell import OnExit, Running
 
-_PERIODS_A_LOOK = 5
-"""Periods of the outbox, of 10 ms each, between two samples of the threads' frames on the real clock."""
+_SAMPLED_EVERY = 100_000_000
+"""Nanoseconds between two samples of the threads' frames on the real clock."""
 
 
 class Engine:
@@ -106,7 +106,7 @@ class Engine:
         self._probe = Probe(clock, control.record, self._contents)
         clock.activity = self._probe.running_here
         self._positions = CallbackPositions(self._probe, clock, record)
-        self._periods = 0
+        self._sample_due = 0
         profile = profile_of(setup, lambda text: record(Notice(0, Severity.ERROR, text)))
         self._host = Host(
             clock, self._probe, threads=setup.threads, overrides=overrides_of(setup), profile=profile
@@ -250,8 +250,8 @@ class Engine:
     def _look_at_waits_of_real_time(self) -> None:
         if not isinstance(self._clock, VirtualClock) and not self._shutdown.has_begun:
             self._host.explain_waits()
-            self._periods += 1
-            if self._periods % _PERIODS_A_LOOK == 0:
+            if (now := self._clock.now()) >= self._sample_due:
+                self._sample_due = now + _SAMPLED_EVERY
                 self._positions.look()
                 self._own_threads.look()
 

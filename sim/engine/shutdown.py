@@ -109,7 +109,7 @@ class RunShutdown:
         """Set the cause of the run's end and return True; return False if there is one already."""
         if self._cause is not None:
             return False
-        self._cause = cause
+        self._cause, self._host.catches_up = cause, False
         if self._endless is not None:
             self._endless.finish()
         if self._host.overrides is not None and not cause.failed:

@@ -123,11 +123,8 @@ class Probe:
         group = entity.callback_group
         if group.trace_id == 0:
             group.trace_id = next(self._groups)
-            kind = group.trace_kind
-            class_name = type(group).__name__
-            self._sink(
-                events.GroupAppeared(now, group.trace_id, entity.node.trace_id, GroupKind(kind), class_name)
-            )
+            kind, name = GroupKind(group.trace_kind), type(group).__name__
+            self._sink(events.GroupAppeared(now, group.trace_id, entity.node.trace_id, kind, name))
         return group.trace_id
 
     def entity_gone(self, entity: TracedEntity) -> None:
@@ -153,13 +150,15 @@ class Probe:
             self._sink(events.MessageDropped(self._now(), entity.trace_id, depth, message))
 
     def waits(
-        self, entity: TracedEntity, reason: Reason, holder: TracedEntity | None, workers_busy: bool
+        self, entity: TracedEntity, reason: Reason, holder: TracedEntity | None, busy: bool, began: int
     ) -> None:
-        """Record that a ready callback does not run, if that or the reason is new."""
-        state = (reason, 0 if holder is None else holder.trace_id, workers_busy)
-        if entity.traced and entity.wait_shown != state:
+        """Record that a ready callback does not run, if that is new, or the reason, which has ``began``."""
+        state, before = (reason, 0 if holder is None else holder.trace_id, busy), entity.wait_shown
+        if entity.traced and before != state:
             entity.wait_shown = state
-            self._sink(events.WaitStarted(self._now(), entity.trace_id, entity.ready_since, *state))
+            is_other = before is not None and before[:2] != state[:2]
+            t = max(began, entity.ready_since) if is_other else self._now()
+            self._sink(events.WaitStarted(t, entity.trace_id, entity.ready_since, *state))
 
     def wait_ended(self, entity: TracedEntity) -> None:
         """Record that a callback no longer waits."""

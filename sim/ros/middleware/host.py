@@ -22,6 +22,9 @@ from sim.ros.middleware.network import Network
 # Kept from before sim.clock.stdlib puts the virtual one in its place.
 _RLock = threading.RLock
 
+_OVERDUE = 40_000_000
+"""Nanoseconds without a look at the waits on the real clock, after which a callback that ends has one."""
+
 
 @dataclass(eq=False)
 class Host:
@@ -31,6 +34,7 @@ class Host:
     ``threads`` replaces the number of threads of every executor (None: the program's own), and ``overrides``
     has the other changes to the programs. ``default_domain`` is used outside programs. ``takes_signals``: the
     process runs only the program, so rclpy's signal handlers may be installed. ``profile``: the release.
+    ``catches_up``: nobody asks for the waits whenever time passes, so they are recorded before they are over.
     """
 
     clock: RunClock
@@ -38,6 +42,7 @@ class Host:
     threads: int | None = None
     overrides: CallbackOverrides | None = None
     lock: AbstractContextManager[bool] = field(init=False)
+    catches_up: bool = field(init=False)
     default_domain: int = field(default_factory=domain_of_machine)
     takes_signals: bool = False
     profile: Profile = field(default_factory=Profile)
@@ -45,8 +50,11 @@ class Host:
     _networks: dict[int, Network] = field(default_factory=dict)
     _explainers: list[WeakMethod[Callable[[], int | None]]] = field(default_factory=list)
 
+    _explained_at: int = 0
+
     def __post_init__(self) -> None:
         self.lock = lock_on(self.clock, self.probe.callback_here)
+        self.catches_up = isinstance(self.clock, PacedClock)
 
     @property
     def network(self) -> Network:
@@ -68,9 +76,15 @@ class Host:
         Returns when the next timer is due: only then is known whether that timer has to wait.
         """
         with self.lock:
+            self._explained_at = self.clock.now()
             alive = [each for reference in self._explainers if (each := reference()) is not None]
             dues = [explain() for explain in alive]
         return min((due for due in dues if due is not None), default=None)
+
+    def catch_up(self) -> None:
+        """Record who waits for a callback that is about to end, unless that was looked at just now."""
+        if self.catches_up and self.clock.now() - self._explained_at >= _OVERDUE:
+            self.explain_waits()
 
     def explain_waits_with(self, explain: Callable[[], int | None]) -> None:
         """Make ``explain_waits`` call a bound method, which is held weakly, with the lock held.

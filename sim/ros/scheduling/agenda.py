@@ -200,11 +200,12 @@ class Agenda:
         if not self._probe.visible:
             return None
         executor = self.executor
-        for entity in self.collect_due(self.host.clock.now()):
+        now = self.host.clock.now()
+        for entity in self.collect_due(now):
             if not entity.queued:
                 continue  # foreign replies: nothing that a program has wait
             if executor is None:
-                self._probe.waits(entity, Reason.NOBODY_SPINS, None, workers_busy=False)
+                self._probe.waits(entity, Reason.NOBODY_SPINS, None, busy=False, began=now)
             else:
                 executor._runner.explain_wait(entity)
         return self.next_due()

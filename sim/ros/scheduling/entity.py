@@ -97,6 +97,9 @@ class Entity:
     due = NEVER
     """When the entity becomes ready by time alone, in nanoseconds of the run's clock."""
 
+    entered_at = 0
+    """When its callback last began, in nanoseconds of the run's clock."""
+
     task_number = 0
     """The number of the task that calls it: rclpy makes it where an executor yields the entity."""
 

@@ -29,13 +29,15 @@ class CallbackRunner:
     def __init__(self, executor: Executor) -> None:
         # A weak reference, so that an executor that is dropped without a shutdown is freed at once.
         self._executor = weakref.ref(executor)
-        self.lock = executor.context.host.lock
-        self.clock = executor.context.host.clock
+        self._host = executor.context.host
+        self.lock = self._host.lock
+        self.clock = self._host.clock
         self.cycle: Cycle
         """The executor's cycle."""
         self._probe = executor.context.probe
         self._coroutines: dict[Task[Any], Entity] = {}
         self._running: list[Entity] = []
+        self._stopped_at = 0
         self.at_work = 0
         """How many callbacks and tasks have started and not ended."""
         self.refuses = False
@@ -89,6 +91,7 @@ class CallbackRunner:
         """Take the data for a callback without entering its group; None: there is none."""
         taken = entity.take(now)
         if taken is not None:
+            entity.entered_at = now
             self._running.append(entity)
             self.at_work += 1
             if entity.wait_shown is not None:
@@ -186,7 +189,7 @@ class CallbackRunner:
         awaited = task._advance()
         if not task._settled():
             with self.lock:
-                self._running.remove(entity)
+                self._stop(entity)
                 self._probe.callback_suspended(entity, outer, task._handler)
             try:
                 task._arm(awaited)
@@ -214,7 +217,7 @@ class CallbackRunner:
         As in rclpy, another executor that serves members of the group is not woken.
         """
         with self.lock:
-            self._running.remove(entity)
+            self._stop(entity)
             self._probe.callback_ended(entity, outer)
             if self.asks_groups and not entity.stuck:
                 self._free_group_of(entity)
@@ -234,7 +237,7 @@ class CallbackRunner:
     def suspend(self, entity: Entity, outer: int, coroutine: object = None) -> None:
         """A coroutine callback awaits something and leaves this thread."""
         with self.lock:
-            self._running.remove(entity)
+            self._stop(entity)
             self._probe.callback_suspended(entity, outer, coroutine)
             self._leave()
 
@@ -244,6 +247,12 @@ class CallbackRunner:
             self._running.append(entity)
             self.at_work += 1
             return self._probe.callback_resumed(entity)
+
+    def _stop(self, entity: Entity) -> None:
+        """A callback is about to leave its thread, for which others may wait. Called with the lock held."""
+        self._host.catch_up()
+        self._running.remove(entity)
+        self._stopped_at = self.clock.now()
 
     def _leave(self) -> None:
         """A thread has finished its work. Called with the lock held."""
@@ -265,20 +274,21 @@ class CallbackRunner:
 
     def explain_wait(self, entity: Entity) -> None:
         """Record why a ready callback of this executor waits; record nothing if it is about to run."""
-        executor = self.executor
-        busy = executor._workers_busy()
+        executor, tell, now = self.executor, self._probe.waits, self.clock.now()
+        busy, first = executor._workers_busy(), self._running[0] if self._running else None
         if not executor._spinning and not entity.handed_out:
-            self._probe.waits(entity, Reason.NOBODY_SPINS, None, workers_busy=False)
+            tell(entity, Reason.NOBODY_SPINS, None, busy=False, began=now)
         elif not self.asks_groups:
             if busy:
-                self._probe.waits(entity, Reason.EVENT_QUEUE, self._first_running(), workers_busy=True)
+                tell(entity, Reason.EVENT_QUEUE, first, busy=True, began=self._busy_since())
         elif not entity.callback_group.can_execute(entity):
             holder: Entity | None = getattr(entity.callback_group, "holder", None)
-            self._probe.waits(entity, Reason.GROUP_HELD, holder, workers_busy=busy)
+            tell(entity, Reason.GROUP_HELD, holder, busy, now if holder is None else holder.entered_at)
         elif busy:
-            self._probe.waits(entity, Reason.NO_FREE_WORKER, self._first_running(), workers_busy=True)
+            tell(entity, Reason.NO_FREE_WORKER, first, busy=True, began=self._busy_since())
         elif entity.wait_shown is not None:  # another executor freed the group without waking this one
             self._probe.wait_ended(entity)
 
-    def _first_running(self) -> Entity | None:
-        return self._running[0] if self._running else None
+    def _busy_since(self) -> int:
+        """Since when the same callbacks run."""
+        return max([self._stopped_at, *(each.entered_at for each in self._running)])

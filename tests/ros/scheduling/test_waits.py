@@ -8,6 +8,9 @@ from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from sim.trace.events import Reason, WaitEnded, WaitStarted
+from sim.trace.model import Window
+from tests.support.builder import ns
+from tests.support.real_threads import on_parallel_time, spin
 from tests.support.simulation import Simulation, Trace, simulate
 
 Int32 = message("std_msgs", "Int32")
@@ -124,6 +127,35 @@ def test_a_reason_that_changes_is_told_anew_and_keeps_since_when() -> None:
         (3.0, 1.0, "third", Reason.GROUP_HELD, "second", True),
     ]
     assert ended(trace) == [(3.0, "second"), (5.0, "third")]
+
+
+@pytest.mark.parametrize("shares_group", [True, False])
+def test_on_the_real_clock_what_keeps_a_callback_is_dated_though_nobody_looks_until_it_is_over(
+    shares_group: bool,
+) -> None:
+    """``third`` is due at 1.5 s; until 5 s the others keep it: in its group, or on its thread."""
+    with on_parallel_time() as simulation:
+        node = Node("n")
+
+        def first() -> None:
+            simulation.sleep(2.0)
+
+        def second() -> None:
+            simulation.sleep(2.0)
+
+        def third() -> None:
+            rclpy.shutdown()
+
+        for callback, due in ((first, 1.0), (second, 1.0), (third, 1.5)):
+            group = None if shares_group else MutuallyExclusiveCallbackGroup()
+            node.create_timer(due, callback, group).timer_period_ns = 10**12
+        spin(node, MultiThreadedExecutor(2) if shares_group else SingleThreadedExecutor())
+        trace = Trace(simulation.events)
+    third_wait = trace.timeline().waits_of(trace.entity("third"), Window(0, 10**10))
+    assert [(each.start, each.end, trace.names[each.holder]) for each in third_wait] == [
+        (ns(1.5), ns(3.0), "first"),
+        (ns(3.0), ns(5.0), "second"),
+    ]
 
 
 def test_a_full_queue_waits_for_its_own_callback() -> None:
