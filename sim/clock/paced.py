@@ -7,7 +7,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NamedTuple
 
-from sim.interpreter.function_marks import waits_for_time
+from sim.interpreter.function_marks import notes_begin, waits_for_time
 
 # Kept from before sim.clock.paced_stdlib puts its own in their place.
 _monotonic_ns = time.monotonic_ns
@@ -15,6 +15,8 @@ _sleep = time.sleep
 _allocate_lock = threading.Lock
 _Thread = threading.Thread
 
+_LONG_WAIT = 100_000_000
+"""Nanoseconds of a wait that is told of as it ends."""
 _ASIDE = 20e-6
 """Seconds between two attempts to read the time while another thread changes the pace."""
 
@@ -30,15 +32,20 @@ class PacedAutoResetEvent:
         self._bell = _allocate_lock()
         self._bell.acquire()
 
+    @notes_begin
     def wait(self, deadline: int | None) -> bool:
         """Wait until set, or until the clock shows ``deadline``; True if it was set."""
-        if deadline is None:
+        since = self._clock.now()
+        is_set = self._wait_for_ever() if deadline is None else self._wait_until(deadline)
+        self._clock.end_wait(since)
+        if is_set:
+            self._is_set = False
+        return is_set
+
+    def _wait_for_ever(self) -> bool:
+        self._bell.acquire()
+        while not self._is_set:
             self._bell.acquire()
-            while not self._is_set:
-                self._bell.acquire()
-        elif not self._wait_until(deadline):
-            return False
-        self._is_set = False
         return True
 
     @waits_for_time
@@ -91,6 +98,8 @@ class PacedClock:
         self.origin = _monotonic_ns()
         """The machine's monotonic time at which the run began."""
         self.activity: Callable[[], object] = lambda: None
+        self.on_long_wait: Callable[[], None] = lambda: None
+        """Called on a thread whose long wait ends."""
         self._sleepers: set[PacedAutoResetEvent] = set()
         self._changing = _allocate_lock()
         self._paused = False
@@ -117,6 +126,11 @@ class PacedClock:
             now = _at(rate, _monotonic_ns())
             if self._rate is rate:  # otherwise the clock may have been paused before that reading
                 return now
+
+    def end_wait(self, since: int) -> None:
+        """The calling thread, which has waited since then, is about to go on."""
+        if self.now() - since >= _LONG_WAIT:
+            self.on_long_wait()
 
     def wall_seconds_until(self, moment: int) -> float:
         """Real seconds until the clock shows ``moment`` at its present pace; infinite while it is paused."""

@@ -15,7 +15,7 @@ from types import CodeType, FrameType, TracebackType
 from typing import Any
 
 from sim.clock.paced import PacedClock
-from sim.interpreter.function_marks import asks_time, waits_for_time
+from sim.interpreter.function_marks import asks_time, notes_begin, waits_for_time
 from sim.interpreter.guarding import takes_to_guard
 from sim.quantities.nanoseconds import wait_ns
 
@@ -72,10 +72,7 @@ class PacedLock:
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock; False if it is not available at once (or within ``timeout`` seconds)."""
-        if timeout <= 0 or not blocking:
-            taken = self._lock.acquire(blocking, timeout)
-        else:
-            taken = _within(timeout, self._clock, lambda seconds: self._lock.acquire(timeout=seconds))
+        taken = _take(self._lock.acquire, blocking, timeout, self._clock)
         if taken:
             taker = sys._getframe(1)
             guards = taker.f_code.co_filename not in _LIBRARY and takes_to_guard(taker)
@@ -85,7 +82,7 @@ class PacedLock:
         return taken
 
     def __enter__(self) -> bool:
-        self._lock.acquire()
+        _take(self._lock.acquire, True, -1, self._clock)
         _note_taking(self, sys._getframe(1), self._clock)
         return True
 
@@ -111,12 +108,8 @@ class PacedRLock(_RLock):  # type: ignore[misc]
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock once more; False if it is not available at once (or within ``timeout`` seconds)."""
-        take: Callable[..., bool] = super().acquire
         again = self._is_owned()
-        if timeout <= 0 or not blocking:
-            taken = take(blocking, timeout)
-        else:
-            taken = _within(timeout, self._clock, lambda seconds: take(timeout=seconds))
+        taken = _take(super().acquire, blocking, timeout, self._clock)
         if taken and not again:
             _note_taking(self, sys._getframe(1), self._clock)
         return taken
@@ -139,6 +132,19 @@ def _note_taking(lock: PacedLock | PacedRLock, frame: FrameType, clock: PacedClo
     lock.taken_at = frame.f_code, frame.f_lasti
 
 
+@notes_begin
+def _take(acquire: Callable[..., bool], blocking: bool, timeout: float, clock: PacedClock) -> bool:
+    """Call the ``acquire`` of a lock with a timeout on a clock; nobody waits for a lock that is free."""
+    if not blocking or (timeout <= 0 and timeout != -1):
+        return acquire(blocking, timeout)
+    if acquire(False):
+        return True
+    since = clock.now()
+    taken = acquire() if timeout == -1 else _within(timeout, clock, lambda left: acquire(timeout=left))
+    clock.end_wait(since)
+    return taken
+
+
 @waits_for_time
 def _within(timeout: float, clock: PacedClock, attempt: Callable[[float], bool]) -> bool:
     """Retry ``attempt``, each time for some real seconds, until it succeeds or the timeout is over."""
@@ -150,16 +156,19 @@ def _within(timeout: float, clock: PacedClock, attempt: Callable[[float], bool])
 
 
 def _paced_join(clock: PacedClock) -> Callable[[threading.Thread, float | None], None]:
+    @notes_begin
     def join(thread: threading.Thread, timeout: float | None = None) -> None:
-        if timeout is None or timeout <= 0:
-            _thread_join(thread, timeout)
-            return
+        since = clock.now()
 
         def attempt(seconds: float) -> bool:
             _thread_join(thread, seconds)
             return not thread.is_alive()
 
-        _within(timeout, clock, attempt)
+        if timeout is None or timeout <= 0:
+            _thread_join(thread, timeout)
+        else:
+            _within(timeout, clock, attempt)
+        clock.end_wait(since)
 
     return join
 

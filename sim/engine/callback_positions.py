@@ -11,8 +11,8 @@ from types import FrameType, MappingProxyType
 from typing import TypeAlias
 
 from sim.clock import RunClock
-from sim.engine.waited_lock import WaitedLock, decorated, first_line, waited_lock
-from sim.interpreter.function_marks import asks_time, calls_the_program, waits_for_keyboard
+from sim.engine.waited_lock import WaitedLock, decorated, first_line, taken_lock, waited_lock
+from sim.interpreter.function_marks import asks_time, calls_the_program, notes_begin, waits_for_keyboard
 from sim.probes.own_code import is_library, is_own, outwards
 from sim.probes.probe import Probe, RunningCallback
 from sim.trace.events import AnyEvent, CallbackAt, Doing, EntityId, ThreadId
@@ -32,16 +32,23 @@ _LONGEST = 1_000_000_000
 """Seconds of the longest timeout that is recorded."""
 
 PositionFields: TypeAlias = tuple[Doing, str, tuple[tuple[str, str, int], ...], SourcePlace, WaitedLock]
+_Found: TypeAlias = tuple[PositionFields, int]
+"""A position, and the timeout of its wait."""
 
 
 class CallbackPositions:
-    """Samples the threads' frames, and records the position of each running callback if it has changed."""
+    """Samples the threads' frames, and records the position of each running callback if it has changed.
+
+    A position in which a thread waits is dated from when the wait began, if the thread has noted that.
+    """
 
     def __init__(self, probe: Probe, clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
         self._probe = probe
         self._clock = clock
         self._record = record
         self._latest: dict[int, tuple[RunningCallback, PositionFields]] = {}
+        self._seen: dict[int, int] = {}
+        """When each thread was looked at last."""
 
     def look(self) -> None:
         """Take one sample; one thread at a time may call this."""
@@ -52,15 +59,40 @@ class CallbackPositions:
         threads = self._probe.threads()
         for ident, callback in running.items():
             found = position_of(tops.get(ident), running, threads)
-            if found is None:
-                continue
-            position, timeout = found
-            if self._latest.get(ident) != (callback, position):
-                self._latest[ident] = callback, position
-                until = now + timeout if timeout else 0
-                doing, call, frames, loop, lock = position
-                where = doing, call, frames, loop, lock.holder, until
-                self._record(CallbackAt(now, callback.entity, callback.thread, *where, *lock[1:]))
+            if found is not None and self._latest.get(ident) != (callback, found[0]):
+                self._tell(ident, callback, found, tops.get(ident), now)
+            self._seen[ident] = now
+
+    def look_back(self) -> None:
+        """Record where the calling thread has waited, if no sample has found that; it is about to go on."""
+        ident, top, now = threading.get_ident(), sys._getframe(1), self._clock.now()
+        running = self._probe.running()
+        callback = running.get(ident)
+        if callback is None:
+            return
+        lock = taken_lock(takewhile(lambda frame: not is_own(frame), outwards(top)))
+        if lock is not None and isinstance(lock.taken_during, tuple) and lock.taken_during[0]:
+            running[lock.holder_ident] = RunningCallback(*lock.taken_during)  # which may be over by now
+        known = self._latest.get(ident)
+        found = position_of(top, running, self._probe.threads())
+        if found is None or (known is not None and (known[0], known[1][:3]) == (callback, found[0][:3])):
+            return
+        _, _, frames, loop, _ = found[0]
+        self._tell(ident, callback, found, top, now)
+        self._seen[ident] = now
+        self._tell(ident, callback, ((Doing.COMPUTES, "", frames, loop, WaitedLock()), 0), None, now)
+
+    def _tell(
+        self, ident: int, callback: RunningCallback, found: _Found, top: FrameType | None, now: int
+    ) -> None:
+        position, timeout = found
+        since, seen = wait_began(top) or now, self._seen.get(ident, 0)
+        self._latest[ident] = callback, position
+        doing, call, frames, loop, lock = position
+        until = (now if call == _JOIN else since) + timeout if timeout else 0
+        where = doing, call, frames, loop, lock.holder, until
+        t = since if since > seen else now
+        self._record(CallbackAt(t, callback.entity, callback.thread, *where, *lock[1:]))
 
     def callback_on(self, ident: int) -> EntityId:
         """Take a sample, and return the callback that runs on a thread (0: none)."""
@@ -73,7 +105,7 @@ def position_of(
     top: FrameType | None,
     running: Mapping[int, RunningCallback] = MappingProxyType({}),
     threads: Mapping[int, ThreadId] = MappingProxyType({}),
-) -> tuple[PositionFields, int] | None:
+) -> _Found | None:
     """Return where a thread is, inside its callback if it runs one, and the timeout of its wait.
 
     The timeout is in nanoseconds, 0 for none; who joins a thread waits no longer than that does now. None:
@@ -100,6 +132,12 @@ def position_of(
         )
         timeout = timeout or (_timeout(there[-1]) if there else 0)
     return (doing, call, frames, next(filter(None, loops), ("", 0)), lock), timeout
+
+
+def wait_began(top: FrameType | None) -> int:
+    """Return since when a thread waits in what the program has called, if it has noted that, else 0."""
+    inside = takewhile(lambda frame: not is_own(frame), outwards(top))
+    return next((frame.f_locals.get("since", 0) for frame in inside if frame in notes_begin), 0)
 
 
 def _is_written(frame: FrameType) -> bool:

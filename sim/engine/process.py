@@ -188,6 +188,7 @@ class Engine:
             self._live_on(clock)
         elif isinstance(clock, PacedClock):
             follow(clock)
+            clock.on_long_wait = self._positions.look_back
             HungCallbacks(clock, record, self._probe.running, self._positions.look).start()
         self._terminal.put_in_place()
         self._probe.usage.watch_coroutines()

@@ -35,6 +35,8 @@ calls_the_program = FunctionMark()
 """Functions that call a callback or a task of the program."""
 waits_for_time = FunctionMark()
 """Functions that wait for time to pass."""
+notes_begin = FunctionMark()
+"""Functions that wait; their local ``since`` is when they began to."""
 asks_time = FunctionMark()
 """Functions that tell the time in place of Python's own, and do not wait."""
 waits_for_keyboard = FunctionMark()

@@ -10,7 +10,7 @@ from types import FrameType
 from typing import NamedTuple
 
 from sim.clock import RunClock
-from sim.engine.callback_positions import LOCK, position_of
+from sim.engine.callback_positions import LOCK, position_of, wait_began
 from sim.engine.waited_lock import decorated, taken_lock
 from sim.engine.watchdogs.wait_descriptions import advice_on_pools
 from sim.interpreter.function_marks import calls_the_program, waits_for_keyboard, waits_for_time
@@ -86,7 +86,7 @@ class HungCallbacks:
             takings = None if call is None else _takings(top, tops)
             if call is None or takings is None:
                 continue
-            sample = _HungCall(id(call), running.get(thread, _NONE), takings, now, 1)
+            sample = _HungCall(id(call), running.get(thread, _NONE), takings, wait_began(top) or now, 1)
             seen[thread] = hung = self._seen.get(thread, _HungCall()).seen_again(sample)
             if hung.looks == _PATIENCE:
                 self._look_at_positions()
