@@ -7,10 +7,12 @@ import pytest
 import sim.ros.rclpy as rclpy
 from sim.diagnosis import diagnose
 from sim.diagnosis.rule import Weight
+from sim.quantities.durations import duration
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.ros.scheduling.events_executor import EventsExecutor
 from sim.ros.scheduling.executors import SingleThreadedExecutor
+from sim.trace.figures.summary import summarise
 from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, once, spin
 from tests.support.builder import ns
 from tests.support.engine_runs import run_lesson, run_program
@@ -338,6 +340,28 @@ def test_a_node_that_is_spun_no_more_is_told() -> None:
     run = diagnosed(program)
     assert run.problems() == {("node-never-spins", "<lambda>")}
     assert run.explained("node-never-spins").what.endswith("nobody spins its node any more")
+
+
+@pytest.mark.parametrize(
+    ("seconds", "timeout", "waited"), [(0.25, 0.0, "waited up to"), (1.2, 0.05, "waited")]
+)
+def test_a_loop_that_spins_too_rarely_is_told_with_the_longest_wait_of_the_table(
+    seconds: float, timeout: float, waited: str
+) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        publisher = node.create_publisher(Int32, "t", 10)
+        node.create_timer(0.1, lambda: publisher.publish(Int32()))
+        if not timeout:
+            node.create_subscription(Int32, "t", lambda _: None, 10)
+        while simulation.clock.now() < ns(5.3):
+            rclpy.spin_once(node, timeout_sec=timeout)
+            simulation.sleep(seconds)
+
+    run = diagnosed(program, 5.3)
+    waits = [each.longest_wait for each in summarise(run.timeline).callbacks]
+    longest = max(each.length for each in waits if each is not None)
+    assert f" {waited} {duration(longest)}: " in run.explained("spins-too-rarely").what
 
 
 def test_a_node_that_is_spun_after_a_while_is_well() -> None:

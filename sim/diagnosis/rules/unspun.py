@@ -46,6 +46,7 @@ class NodeNeverSpins(Rule):
     id = "node-never-spins"
     summary = "callbacks are ready and nobody spins their node"
     dated_by_first = True
+    hides = frozenset(("spins-too-rarely",))
     threshold = SECOND
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
@@ -140,7 +141,7 @@ class NodeNeverSpins(Rule):
 class SpinsTooRarely(KeptWaiting):
     """A timer misses ticks at most of its calls, as the program spins its node now and then only.
 
-    Of a wait that is as long as that of a node that nobody spins the rule on that tells.
+    While one is as long as that of a node that nobody spins, the rule on that tells.
     """
 
     id = "spins-too-rarely"
@@ -149,7 +150,7 @@ class SpinsTooRarely(KeptWaiting):
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Irrelevant if the timer seldom waits so."""
-        return None if found.size >= NodeNeverSpins.threshold else self._of_habit(found, timeline)
+        return self._of_habit(found, timeline)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         loop, cure = loop_beside_spin(found.at + found.size // 2, timeline)

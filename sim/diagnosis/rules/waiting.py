@@ -31,6 +31,7 @@ from sim.diagnosis.words import (
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
+from sim.trace.figures.waiting import waited_by
 from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -65,7 +66,9 @@ class KeptWaiting(Rule):
                     shares[part.holder] += wait.length(part)
                 culprit = max(shares, key=shares.__getitem__)
                 if culprit not in view.nested_spinners:
-                    yield Finding(self, wait.since, wait.until, entity.id, culprit, size=waited)
+                    since = wait.until - waited_by(wait.until, wait.parts[-1], view.timeline)
+                    size = waited + wait.since - since
+                    yield Finding(self, since, wait.until, entity.id, culprit, size=size)
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """A remark if its culprit waits too, and of a timer that seldom waits, not for long, but comes too
