@@ -91,6 +91,17 @@ def test_threads_change_nothing_where_all_callbacks_share_a_group() -> None:
     assert told == "4 threads change nothing: all callbacks share group A"
 
 
+def test_threads_change_something_where_the_timer_of_a_rate_is_in_a_group_beside_that_of_all_others() -> None:
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        rate = node.create_rate(5.0)
+        node.create_timer(1.0, lambda: rate.sleep())  # noqa: PLW0108 - a callback of its own
+        node.create_timer(1.0, lambda: None)
+        spin(node, 2)
+
+    assert rules(diagnosed(program, until=5.0)) == []
+
+
 def test_groups_change_nothing_where_there_is_one_thread() -> None:
     run = two_timers(two_groups(), threads=None)
     assert rules(run) == ["groups-change-nothing"]

@@ -127,10 +127,11 @@ def _runs_on_one_executor(view: TimelineView) -> bool:
 
 
 def _only_group(timeline: Timeline) -> GroupInfo | None:
-    """The exclusive group that all callbacks share despite several threads."""
+    """The exclusive group that all callbacks share despite several threads, those that rclpy makes too."""
     if not _with_workers(timeline):
         return None
-    groups = list(islice((each for each in timeline.groups.values() if _callbacks(timeline, each)), 2))
+    every = timeline.groups.values()
+    groups = list(islice((each for each in every if timeline.group_members(each.id)), 2))
     if len(groups) != 1 or groups[0].kind is not GroupKind.EXCLUSIVE:
         return None
     return groups[0] if len(_callbacks(timeline, groups[0])) > 1 else None
