@@ -99,11 +99,19 @@ class ChoosingScreen(RunScreen[LiveRun]):
 
     @on(OptionList.OptionSelected)
     def _choose(self, message: OptionList.OptionSelected) -> None:
-        self._choices.choose(message.option_index)
+        self._choose_in_the_present(message.option_index)
 
     @on(ChoiceOptions.ChosenUnseen)
     def _choose_unseen(self, message: ChoiceOptions.ChosenUnseen) -> None:
-        self._choices.choose(message.option)
+        self._choose_in_the_present(message.option)
+
+    def _choose_in_the_present(self, option: int) -> None:
+        """Choose an option; whoever looks back is first brought to the moment that the question is about."""
+        if self.navigation.playhead.at is None or not self.runs.run.alive:
+            self._choices.choose(option)
+        else:
+            self.navigation.action_live()
+            self.tell("Nothing is chosen yet: that was the past, and here is the present. Choose now.")
 
     @on(OptionList.OptionHighlighted)
     def _show_line(self, message: OptionList.OptionHighlighted) -> None:

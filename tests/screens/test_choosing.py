@@ -103,6 +103,25 @@ async def test_choices_are_moves_until_the_goal_is_reached_which_is_kept() -> No
         assert Progress().of(PUZZLE.id).passed
 
 
+@pytest.mark.parametrize("key", ["1", "9", "enter"])
+async def test_whoever_looks_back_is_brought_to_the_present_before_anything_is_chosen(key: str) -> None:
+    sessions = Asking()
+    app = console(sessions)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        navigation = shown(app).navigation
+        await pilot.press("left_square_bracket")
+        assert navigation.playhead.at is not None
+        await pilot.press(key)
+        await settle(pilot)
+        assert not sessions.latest.commands
+        assert navigation.now == navigation.end()
+        assert [note.message[:22] for note in app._notifications] == ["Nothing is chosen yet:"]
+        await pilot.press("1")
+        await settle(pilot)
+        assert sessions.latest.commands == [Choose(0)]
+
+
 async def test_keys_that_come_before_their_choices_are_kept_in_order() -> None:
     sessions = Asking(questions=4)
     app = console(sessions)
