@@ -136,6 +136,16 @@ async def test_keys_that_come_before_their_choices_are_kept_in_order() -> None:
         assert news(app) == "Choice 4, 2 moves. Who goes on?"
 
 
+async def test_the_key_bar_offers_choosing_only_while_something_is_asked() -> None:
+    app = console(Asking())
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        assert "1-9 choose" in lines_of(app)[-1]
+        await pilot.press("space")
+        await settle(pilot)
+        assert "choose" not in lines_of(app)[-1]
+
+
 async def test_a_key_that_is_too_early_is_taken_back_before_a_choice_is() -> None:
     sessions = Asking(questions=4)
     app = console(sessions)
