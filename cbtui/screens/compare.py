@@ -19,7 +19,7 @@ from cbtui.runs.compared_runs import ComparedSide
 from cbtui.runs.judged.compared_problems import ComparedProblems
 from cbtui.runs.live.playhead import SPANS, Playhead
 from cbtui.screens.compare_scrolling import TableScrolling
-from cbtui.screens.compare_words import about, shorter, why_nothing
+from cbtui.screens.compare_words import about, only_begun, shorter, why_nothing
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.bars import BarSelection
 from cbtui.screens.parts.frames import FRAMES_A_SECOND
@@ -183,7 +183,7 @@ class CompareScreen(SizedScreen[None]):
         """Start a new comparison if the window changed, but rarely enough to keep the keys responsive."""
         asked = self._common(self._asked)
         compared = asked, *(side.timeline.ended for side in self._sides)
-        if compared == self._compared and self._whole and not self._comparing and asked.length > 0:
+        if compared == self._compared and self._whole and not self._comparing and self._verdict:
             self._title(self._extent(asked))  # a run goes on
             self._compare_problems()
         if compared == self._compared or self._comparing or monotonic() < self._rest_until:
@@ -264,9 +264,10 @@ class CompareScreen(SizedScreen[None]):
 
     def _figures(self, asked: Window) -> Incremental[tuple[str, tuple[Section, ...]]]:
         first, second = self._sides
-        if asked.length <= 0:
+        begun = only_begun(first, second)
+        if begun or asked.length <= 0:
             self._verdict = ""
-            return f"{self._what}: nothing that both runs have; {shorter(first, second)}", ()
+            return f"{self._what}: {begun or f'nothing that both runs have; {shorter(first, second)}'}", ()
         alike = yield from lettered_alike(first.timeline, self._problems.second, second.timeline)
         self._lanes(1).timeline = alike
         self._sides = first, replace(second, timeline=alike)

@@ -10,9 +10,12 @@ from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.compared_runs import ComparedSide
 from cbtui.text.cells import fit
+from cbtui.widgets.lanes.rows import ever_ran
 from sim.quantities.durations import timestamp
+from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import executor_label
 from sim.trace.figures.comparison_rows import RUNS
+from sim.trace.model import Nanoseconds
 
 _GAP = "   "
 _PLAIN = Ink(Role.TEXT)
@@ -43,6 +46,23 @@ def shorter(first: ComparedSide, second: ComparedSide) -> str:
     side = second if shorter else first
     until = "has come to" if side.alive() else "ends at"
     return f"{RUNS[shorter]} {until} {timestamp(side.timeline.end)}"
+
+
+def only_begun(first: ComparedSide, second: ComparedSide) -> str:
+    """Return which run has only begun: no callback has run, nor had one in the other run by then; or "".
+
+    On the real clock the beginnings of two runs do not last equally long.
+    """
+    for name, side, other in zip(RUNS, (first, second), (second, first), strict=True):
+        end = side.timeline.end
+        by_then = max(0, end - SECOND) if side.timeline.is_real else end
+        if side.alive() and end < other.timeline.end and not (_ran(side, end) or _ran(other, by_then)):
+            return f"no callback has run yet in {name}, which has come to {timestamp(end)}"
+    return ""
+
+
+def _ran(side: ComparedSide, by: Nanoseconds) -> bool:
+    return any(ever_ran(side.timeline, thread, by) for thread in side.timeline.threads)
 
 
 def why_nothing(meant: Sequence[KeyAction], charset: Charset) -> list[str]:

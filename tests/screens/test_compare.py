@@ -29,6 +29,7 @@ from cbtui.widgets.lanes.rows import GroupLane, ThreadLane
 from sim.quantities.durations import timestamp
 from sim.trace.events import (
     AnyEvent,
+    CallbackStarted,
     CommandGiven,
     CommandKind,
     GroupAppeared,
@@ -539,6 +540,22 @@ async def test_a_run_that_has_only_begun_gets_its_verdict_and_the_first_differen
         assert f"They differ from {timestamp(at)} on;" in text_of(app)
         await press(app, pilot, "0")
         assert app.comparison.navigation.now == growing.end
+
+
+async def test_a_run_in_which_no_callback_has_run_yet_has_no_figures() -> None:
+    events = shared_group_run().events
+    first_call = min(each.t for each in events if isinstance(each, CallbackStarted))
+    growing = Timeline()
+    growing.extend([each for each in events if each.t < first_call])
+    app = ComparingConsole(sides()[0], ComparedSide("now", growing, alive=lambda: True))
+    async with app.run_test(size=WIDE) as pilot:
+        await drawn(app, pilot)
+        begun = f"Whole runs: no callback has run yet in run B, which has come to {timestamp(growing.end)}"
+        assert begun in title(app)
+        assert "calls" not in text_of(app)
+        growing.extend([each for each in events if first_call <= each.t <= ns(3.0)])
+        await until(pilot, lambda: "Whole runs, 0 to 3 s" in title(app))
+        assert "calls" in text_of(app)
 
 
 async def test_how_a_run_failed_and_what_of_a_recording_is_lost_is_said() -> None:
