@@ -24,6 +24,9 @@ _TEXTS_AFTER = 0.005
 _LANES_A_PANE = 3
 """Lane frames per frame of all panes: their words and figures are read slower than lanes move."""
 
+_BEHIND = _LANES_A_PANE / FRAMES_A_SECOND
+"""Seconds after which the other panes are drawn with any frame: on a busy machine frames come seldom."""
+
 _SMOOTH = 2.0
 """The highest speed at which lanes move between frames of all panes: else they would be seconds ahead."""
 
@@ -83,7 +86,9 @@ class FrameSchedule:
         if self._clock() < self._rests_until and not self._stale:
             return FrameContent.NOTHING
         self._frames += 1
-        is_turn = self._frames % _LANES_A_PANE == 0 or self._clock() < self._began_at + _BEGINNING
+        now = self._clock()
+        is_turn = self._frames % _LANES_A_PANE == 0 or now < self._began_at + _BEGINNING
+        is_turn = is_turn or now >= self._drawn_at + _BEHIND
         if self._stale or ((self._grown or self._texts_behind) and is_turn):
             return FrameContent.ALL
         return FrameContent.LANES if self._grown and is_smooth else FrameContent.NOTHING

@@ -60,6 +60,15 @@ def test_what_comes_first_or_after_a_pause_is_drawn_in_all_panes_for_a_second() 
         drawing(schedule, 9, grows=False, clock=clock)
 
 
+def test_lanes_are_not_ahead_of_the_other_panes_where_frames_come_seldom() -> None:
+    clock = Clock()
+    schedule = FrameSchedule(clock)
+    drawing(schedule, 18, grows=True, clock=clock)
+    for _ in range(9):
+        clock.now += 0.3
+        assert drawing(schedule, 1, grows=True) == [FrameContent.ALL]
+
+
 def test_texts_that_were_left_out_are_drawn_although_nothing_more_comes() -> None:
     schedule = FrameSchedule()
     schedule.drawn(FrameContent.ALL_BUT_TEXTS)
