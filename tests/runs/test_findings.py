@@ -152,9 +152,9 @@ class Clock:
         return self.now
 
 
-def watched(clock: Clock, takes: float = 0.0) -> tuple[FindingsMonitor, Counting]:
+def watched(clock: Clock, takes: float = 0.0, *, computes: bool = True) -> tuple[FindingsMonitor, Counting]:
     rule = Counting(clock, takes)
-    return FindingsMonitor(Timeline(), Diagnoses([rule]), clock), rule
+    return FindingsMonitor(Timeline(), Diagnoses([rule]), clock, clock if computes else float), rule
 
 
 def watch_of(run: Run, until: float) -> FindingsMonitor:
@@ -195,6 +195,13 @@ def test_after_a_dear_look_the_rules_rest_a_hundred_times_as_long() -> None:
     watch, rule = watched(clock, takes=0.05)
     assert at_frames(watch, clock, [100.0, 101.5, 104.9]) == [True, False, False]
     assert at_frames(watch, clock, [105.06]) == [True]
+    assert rule.asked == 2
+
+
+def test_a_look_that_waits_for_a_processor_does_not_put_off_the_next() -> None:
+    clock = Clock()
+    watch, rule = watched(clock, takes=0.2, computes=False)
+    at_frames(watch, clock, [100.0, 100.4, 100.6])
     assert rule.asked == 2
 
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from time import monotonic
+from time import monotonic, thread_time
 from typing import NamedTuple
 
 from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
@@ -15,7 +15,7 @@ from sim.trace.timeline import Timeline
 _MIN_INTERVAL = 0.5
 """Least seconds between two updates."""
 _TIME_SHARE = 0.01
-"""The share of time that updates may take: the longer one takes, the later the next."""
+"""The share of time that updates may compute: the longer one does, the later the next."""
 _MAX_GROWTH: Nanoseconds = 20_000_000_000
 """Growth after which an update is not delayed: a recording grows by minutes while it is read, and one update
 for all of that would block the keys."""
@@ -70,17 +70,23 @@ class Standstill(NamedTuple):
 class FindingsMonitor:
     """Updates the findings of the rules in a timeline. Not thread-safe, like the timeline.
 
-    ``clock`` tells real time in seconds.
+    ``clock`` tells real time in seconds, ``computed`` for how many this thread has computed: waiting for a
+    processor does not put an update off.
     """
 
     def __init__(
-        self, timeline: Timeline, diagnoses: Diagnoses | None = None, clock: Callable[[], float] = monotonic
+        self,
+        timeline: Timeline,
+        diagnoses: Diagnoses | None = None,
+        clock: Callable[[], float] = monotonic,
+        computed: Callable[[], float] = thread_time,
     ) -> None:
         self.findings: tuple[ExplainedFinding, ...] = ()
         """The findings of the last update, the worst problem first."""
         self._timeline = timeline
         self._diagnoses = diagnoses or Diagnoses()
         self._clock = clock
+        self._computed = computed
         self._due = 0.0
         self.looked_to: Nanoseconds = 0
         """The end of the run at the last update."""
@@ -147,12 +153,12 @@ class FindingsMonitor:
 
     def update(self) -> None:
         """Update the findings now."""
-        began = self._clock()
+        began, computed = self._clock(), self._computed()
         timeline = self._timeline
         self.looked_to, self._notices = timeline.end, len(timeline.notices)
         self.findings = tuple(_explained(found, timeline) for found in self._diagnoses.update(timeline))
-        ended = self._clock()
-        self._due = max(began + _MIN_INTERVAL, ended + (ended - began) / _TIME_SHARE)
+        cost = self._computed() - computed
+        self._due = max(began + _MIN_INTERVAL, self._clock() + cost / _TIME_SHARE)
 
 
 def _explained(found: Finding, timeline: Timeline) -> ExplainedFinding:
