@@ -154,7 +154,7 @@ def _is_known(found: ExplainedFinding, at: Nanoseconds) -> bool:
     """Whether all that a finding says had happened by a moment."""
     finding, explanation = found.finding, found.explanation
     stuck = explanation.for_ever or explanation.until
-    return (finding.at if stuck else finding.until) <= at
+    return (finding.known_at if stuck else finding.until) <= at
 
 
 def _key(action: str, keymap: Keymap) -> str:

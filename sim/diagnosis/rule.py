@@ -98,11 +98,18 @@ class Finding:
     """The cycle of waits, from a callback by the awaited things back to it: ``tick``, ``/add``, ``tick``."""
     keeper: EntityId = 0
     """The callback of a cycle that keeps its group from what others wait for; 0 for none."""
+    closed: Nanoseconds = 0
+    """When the last of the waits of a cycle began; 0 for none."""
 
     @property
     def key(self) -> tuple[str, EntityId, str]:
         """What occurrences of one finding have in common."""
         return self.rule.id, self.culprit if self.rule.by_culprit else self.subject, self.about
+
+    @property
+    def known_at(self) -> Nanoseconds:
+        """When all held that it says, but for how long it lasts."""
+        return max(self.at, self.closed)
 
     @property
     def lasted(self) -> Nanoseconds:

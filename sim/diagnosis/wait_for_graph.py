@@ -283,9 +283,9 @@ class WaitForGraph:
                 return None
             name = group_of(owner, self._timeline)
             text = f"{needs} waits for {name}, which {self._names(by)} holds"
-            return Obstacle(wanted, text, by, group=name)
+            return Obstacle(wanted, text, by, group=name, since=wait.start)
         if wait.reason in (Reason.NO_FREE_WORKER, Reason.EVENT_QUEUE) and wait.holder:
-            return self._worker_obstacle(self._pool(wait.holder), wanted, needs)
+            return self._worker_obstacle(self._pool(wait.holder), wanted, needs, wait.start)
         return None
 
     def _service_obstacle(self, call: Call) -> Obstacle | None:
@@ -293,14 +293,17 @@ class WaitForGraph:
         for thread, span in self._running_spans():
             entity = self._timeline.entities.get(span.entity)
             if entity is not None and self._serves(entity.id, call) and span.message == call.id:
-                return self._callback_obstacle(call, entity.id, OnThread(thread))
+                return self._callback_obstacle(call, entity.id, OnThread(thread), span.start)
         for suspended in self._suspended():
             if self._serves(suspended, call):
                 return self._callback_obstacle(call, suspended, Suspended(suspended))
         return None
 
-    def _callback_obstacle(self, call: Call, entity: EntityId, by: Waiter) -> Obstacle:
-        return Obstacle(call.service, f"{call.service} is answered by {who(entity, self._timeline)}", (by,))
+    def _callback_obstacle(
+        self, call: Call, entity: EntityId, by: Waiter, since: Nanoseconds = 0
+    ) -> Obstacle:
+        text = f"{call.service} is answered by {who(entity, self._timeline)}"
+        return Obstacle(call.service, text, (by,), since=since)
 
     def _serves(self, entity: EntityId, call: Call) -> bool:
         known = self._timeline.entities[entity]
@@ -314,10 +317,13 @@ class WaitForGraph:
                 for span in self._timeline.spans_of(entity.id, since):
                     if span.message == call.id:
                         pool = tuple(map(OnThread, pool_of(span.thread, self._timeline)))
-                        return self._worker_obstacle(pool, call.service, f"the reply of {call.service}")
+                        needs = f"the reply of {call.service}"
+                        return self._worker_obstacle(pool, call.service, needs, span.end_at(self._at))
         return None
 
-    def _worker_obstacle(self, pool: tuple[Waiter, ...], wanted: str, needs: str) -> Obstacle | None:
+    def _worker_obstacle(
+        self, pool: tuple[Waiter, ...], wanted: str, needs: str, since: Nanoseconds = 0
+    ) -> Obstacle | None:
         if not pool:
             return None
         if len(pool) == 1:
@@ -327,7 +333,7 @@ class WaitForGraph:
             same = len({self._name(waiter) for waiter in pool}) == 1
             where = f"{' in' if same else ':'} {self._names(pool)}"
             text = f"{needs} needs a thread, and {every} stand still{where}"
-        return Obstacle(wanted, text, pool, needs_worker=True)
+        return Obstacle(wanted, text, pool, needs_worker=True, since=since)
 
     # threads and queues
 

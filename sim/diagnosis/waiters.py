@@ -33,7 +33,7 @@ class Obstacle:
 
     ``wanted`` is the service, or a ``WaitedFor``; ``needs_worker``: whether a thread is missing; ``group`` is
     the group that has to admit it, "" for none; ``name`` is the name of what is wanted, if it has one of its
-    own.
+    own. ``since`` is when it began to be in the way, 0 if it was there before the wait for it.
     """
 
     wanted: str
@@ -42,6 +42,7 @@ class Obstacle:
     needs_worker: bool = False
     group: str = ""
     name: str = ""
+    since: Nanoseconds = 0
 
     @property
     def kind(self) -> WaitedFor:

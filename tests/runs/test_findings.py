@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from cbtui.runs.live.findings import FindingsMonitor, problem_count_text
+from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel, with_worst_problem
 from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.timeline_view import TimelineView
@@ -19,11 +20,11 @@ from tests.support.runs import shared_group_run, split_groups_run
 from tests.support.simulation import Simulation
 
 
-def calling(*, beats: bool, logs: bool = False) -> FindingsMonitor:
+def calling(*, beats: bool, logs: bool = False, answers_in: float = 0.0) -> FindingsMonitor:
     """Two threads, and a callback that at 1 s calls a service whose reply its own group keeps out."""
 
     def program(simulation: Simulation) -> None:
-        serve_outside(simulation)
+        serve_outside(simulation, seconds=answers_in)
         node = Node("n")
         group = MutuallyExclusiveCallbackGroup()
         client = node.create_client(SetBool, "/outside", callback_group=group)
@@ -46,6 +47,17 @@ def test_nothing_moves_once_all_that_runs_is_stuck() -> None:
     assert stuck is not None
     assert len(stuck.ring) == 4
     assert watch.stuck_at(ns(0.5)) is None
+
+
+def test_a_deadlock_is_none_before_the_last_of_its_waits_begins() -> None:
+    watch = calling(beats=False, answers_in=0.3)
+    [found] = watch.findings
+    assert (found.finding.at, found.finding.known_at) == (ns(1.0), ns(1.3))
+    assert watch.stuck_at(ns(1.2)) is None
+    assert watch.stuck_at(ns(1.3)) is found.finding
+    moment = Diagnosis("tick waits", DiagnosisLevel.PENDING)
+    assert with_worst_problem(moment, watch.findings, at=ns(1.2)) is moment
+    assert "for ever" in with_worst_problem(moment, watch.findings, at=ns(1.3)).text
 
 
 def test_a_program_of_which_a_part_goes_on_still_moves() -> None:

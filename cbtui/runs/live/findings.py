@@ -95,7 +95,7 @@ class FindingsMonitor:
     def stuck_at(self, at: Nanoseconds) -> Finding | None:
         """The finding on callbacks that had stopped for ever by a moment; None if there is none."""
         endless = (each.finding for each in self.findings if each.explanation.for_ever)
-        return next((found for found in endless if found.at <= at), None)
+        return next((found for found in endless if found.known_at <= at), None)
 
     def standstill(self) -> Standstill | None:
         """Since when all callbacks that run are stuck; None if others run, or several threads move."""

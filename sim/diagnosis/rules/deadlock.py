@@ -391,4 +391,5 @@ def _found(
         waited_for=frozenset(each.obstacle.kind for each in deadlock),
         ring=(*ring, who(closing.entity, timeline)),
         keeper=next(keepers, 0),
+        closed=max(max(each.since, each.obstacle.since) for each in deadlock),
     )
