@@ -29,6 +29,12 @@ from sim.trace.timeline import Timeline
 
 __tracebackhide__ = True
 
+_NOT_SO = "not so in {}, this one is --cbtui-seed {}"
+_FAILS = (
+    "the program itself fails in {}, this one is --cbtui-seed {}; "
+    "what is asked of the run after this was not looked at"
+)
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -117,7 +123,7 @@ class CheckedRun:
         """The program neither raises nor is broken off."""
         failed = [each for each in self._outcomes if each.observed.trouble is not None]
         for each in failed[:1]:
-            self._fail(each, str(each.observed.trouble), each.observed.timeline.end, len(failed))
+            self._fail(each, str(each.observed.trouble), each.observed.timeline.end, len(failed), _FAILS)
         return self
 
     def has_callbacks(self, *names: str) -> Self:
@@ -177,15 +183,18 @@ class CheckedRun:
             said = f"not so: {check.asks}\n{verdict_line(JudgedCheck(check, verdict))}"
             self._fail(outcome, said, verdict.at, len(failed))
 
-    def _fail(self, outcome: Outcome, said: str, at: Nanoseconds | None, failed: int) -> NoReturn:
+    def _fail(
+        self, outcome: Outcome, said: str, at: Nanoseconds | None, failed: int, counted_so: str = _NOT_SO
+    ) -> NoReturn:
         kept = outcome if outcome.events else self._again(outcome.seed)
         lines = [said]
         if self._setup.clock == "virtual":
             of = len(self._outcomes)
-            which = f"in {failed} of {counted(of, 'schedule')}, this one is"
+            which = counted_so.format(f"{failed} of {counted(of, 'schedule')}", outcome.seed)
             if of == 1:
-                which = "order of threads:" if outcome.seed else "the usual order of threads,"
-            lines.append(f"{which} --cbtui-seed {outcome.seed}")
+                order = "order of threads:" if outcome.seed else "the usual order of threads,"
+                which = f"{order} --cbtui-seed {outcome.seed}"
+            lines.append(which)
         lines.append(self._recordings.keep(self._setup, outcome.seed, kept.events))
         print_log(kept.events, at)
         timeline = outcome.observed.timeline

@@ -87,7 +87,7 @@ def test_a_fresh_project_has_a_green_a_red_and_an_equal_test(project: Path, work
         r"expected a wait of at most 0\.1 s; saw a wait of 0\.\d s, group A held by press, at [01]\.\d{3} s",
         told,
     )
-    assert "in 2 of 2 schedules, this one is --cbtui-seed 0" in told
+    assert "not so in 2 of 2 schedules, this one is --cbtui-seed 0" in told
     assert "! take and send waited up to 500 ms: group A was held by press." in told
     assert re.search(r"^press +│.*│", told, re.MULTILINE)
     (recorded,) = (project / "cbtui-recordings").iterdir()
@@ -143,9 +143,17 @@ def test_a_failure_tells_the_log_the_order_of_threads_and_names_that_exist(proje
         "    cbtui('line.py', seconds=0.5, seed='moves:1=1').logs('took two')\n"
         "def test_name(cbtui):\n"
         "    cbtui('line.py', seconds=0.5).callback('tack').is_never_called()\n"
+        "def test_raises(cbtui):\n"
+        "    cbtui('broken.py', schedules=2).logs('took two')\n"
     )
+    (project / "broken.py").write_text("raise ValueError('no')\n")
     run = pytest_in(project, "-q")
-    assert "2 failed" in run.stdout
+    assert "3 failed" in run.stdout
+    told = " ".join(line.removeprefix("E").strip() for line in run.stdout.splitlines())
+    assert (
+        "the program itself fails in 2 of 2 schedules, this one is --cbtui-seed 0; "
+        "what is asked of the run after this was not looked at"
+    ) in told
     assert "order of threads: --cbtui-seed moves:1=1" in run.stdout
     assert re.search(r"^\[INFO\] \[1700000000\.\d+\] \[line\]: took one$", run.stdout, re.MULTILINE)
     assert "no callback, topic or service is named tack; callbacks: send, press, take" in run.stdout
