@@ -126,8 +126,11 @@ async def test_while_a_trial_stands_still_its_time_goes_on(monkeypatch: pytest.M
         await until(pilot, lambda: "A cure is being tried, for 0 s now: its run is starting." in text_of(app))
         started.set()
         await until(pilot, lambda: "A cure is being tried, for 0 s now: 20 %." in text_of(app))
+        await press(pilot, "t")
+        assert "a cure is being tried, for 0 s now: 20 % " in text_of(app), "the key says what it waits for"
         now[0] += 7
         await until(pilot, lambda: "A cure is being tried, for 7 s now: 20 %." in text_of(app))
+        assert "a cure is being tried, for 7 s now: 20 % " in text_of(app), "and no second number"
         over.set()
         await press(pilot, "escape")
 

@@ -23,13 +23,7 @@ from cbtui.keys.refused import NOT_IN_DIAGNOSES
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.judged.cures import Cure, Verdict, tried_in_vain
 from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
-from cbtui.screens.windows.finding_texts import (
-    cure_details,
-    details_of,
-    row_of,
-    step_row,
-    title_of,
-)
+from cbtui.screens.windows.finding_texts import cure_details, details_of, row_of, step_row, title_of
 from cbtui.screens.windows.window import PlainOptionList, WindowScreen
 from cbtui.widgets.key_bar import KeyBar
 from lessons.lesson import Lesson
@@ -121,8 +115,8 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         self._as_of = as_of
         self._beside = beside
         self._outdated = Event()
-        self._refused_in: _Row | None = None
-        """The row in which a key did nothing, while the window says why."""
+        self._refused: tuple[str, _Row | None] = "", None
+        """The action of a key that did nothing, and the row in which it did, while the window says why."""
         self._list(findings)
 
     def _list(self, findings: Sequence[ExplainedFinding]) -> None:
@@ -317,6 +311,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
             in_vain = self._untried[place] == 0 and {each.helps for each in self._of(place)} == {False}
             details = details_of(found, self._charset, self._about_trial(place), in_vain=in_vain)
         self.query_one(".told", Static).update(details)
+        self._tell_refused()
 
     def _of(self, place: int) -> list[Verdict]:
         """The verdicts on the cures of a finding."""
@@ -348,7 +343,7 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
     @on(OptionList.OptionHighlighted)
     def _tell(self) -> None:
         self._tell_highlighted()
-        if self._chosen != self._refused_in:  # the same row is told again when a cure gets a row before it
+        if self._chosen != self._refused[1]:  # the same row is told again when a cure gets a row before it
             self._explain_refused("")
         self.query_one(VerticalScroll).scroll_home(animate=False)
         self.call_after_refresh(self.query_one(KeyBar).changed)
@@ -357,12 +352,22 @@ class DiagnosesScreen(WindowScreen[ChosenStep]):
         """Say why a key of the window does nothing now."""
         meant = keymap_of(self.app).on(event.key, self.SCOPE)
         if meant and canonical(event.key) not in self.query_one(KeyBar).in_force():
-            self._explain_refused(NOT_IN_DIAGNOSES[meant[0].id] if self._findings else "the list is empty")
+            self._explain_refused(meant[0].id)
 
-    def _explain_refused(self, why: str) -> None:
-        """Say in the frame why a key did nothing in the highlighted row; "" says nothing."""
+    def _explain_refused(self, action: str) -> None:
+        """Say in the frame why an action did nothing in the highlighted row; "" says nothing."""
+        self._refused = action, self._chosen if action else None
+        self._tell_refused()
+
+    def _tell_refused(self) -> None:
+        action, row = self._refused
+        why = NOT_IN_DIAGNOSES.get(action, "")
+        if why and not self._findings:
+            why = "the list is empty"
+        elif action == "try_cure" and row is not None and self._untried[row.place]:
+            why = self._about_trial(row.place).rstrip(".")
+            why = why[0].lower() + why[1:]
         self.query_one(".window").border_subtitle = why
-        self._refused_in = self._chosen if why else None
 
     def action_go(self) -> None:
         """Go where the highlighted row leads."""
