@@ -6,6 +6,7 @@ from cbtui.looks.theme import GLYPHS, Ink, Role
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
 from cbtui.widgets.factory.scene import Area, Belt, FactoryScene
 from cbtui.widgets.factory.texts import belt_details, belt_name, first_fitting, queue_level, wait_texts
+from cbtui.widgets.lanes.names import shortened
 from sim.quantities.durations import duration
 from sim.trace.events import EntityKind
 
@@ -25,7 +26,7 @@ class BeltPainter:
         self._scene = scene
         self._door = door
         every = [belt for area in scene.areas for belt in area.belts]
-        longest = max((len(belt_name(belt, scene.timeline)) for belt in every), default=0)
+        longest = max((len(self._name_of(belt)) for belt in every), default=0)
         self._name = min(longest, _LONGEST_NAME, max(_SHORTEST_NAME, door * 2 // 5))
         self._level = max((len(_widest_level(belt)) for belt in every if belt.tick is None), default=0)
 
@@ -55,9 +56,14 @@ class BeltPainter:
         """Show the number of belts that do not fit."""
         self._canvas.write(1, line, f"+{hidden} more belts", FAINT, self._door - 1)
 
+    def _name_of(self, belt: Belt) -> str:
+        return belt_name(belt, self._scene.timeline, self._canvas.charset)
+
     def _head(self, belt: Belt, line: int) -> int:
         """Write a belt's name and its level or a timer's rate; return the column after them."""
-        self._canvas.write(1, line, belt_name(belt, self._scene.timeline), STRONG, self._name)
+        name = self._name_of(belt)
+        name = shortened(name, self._name, GLYPHS[self._canvas.charset].ellipsis, (name,))
+        self._canvas.write(1, line, name, STRONG, self._name)
         at = self._name + 2
         if belt.tick is not None:
             text, ink = f"{self._glyphs.clock} {duration(belt.entity.period)}", PLAIN

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.text.callback_names import short_name
 from cbtui.widgets.factory.scene import Area, Belt, FactoryScene, FactoryWorker, WorkerState
 from cbtui.widgets.lanes.details import time_waited
@@ -134,26 +135,26 @@ def _why(belt: Belt, timeline: Timeline) -> tuple[str, ...]:
     if wait.holder == belt.entity.id:
         return ("its last call still runs", "last call runs", "own call")
     holder = name_of(wait.holder, timeline)
-    return (f"seat taken by {holder}", f"seat taken by {short_name(holder)}", "seat taken", "taken")
+    return (f"seat held by {holder}", f"seat held by {short_name(holder)}", "seat held", "held")
 
 
 _WITHOUT_HOLDER = {
-    Reason.GROUP_HELD: ("seat taken", "taken"),
+    Reason.GROUP_HELD: ("seat held", "held"),
     Reason.NO_FREE_WORKER: ("no free worker", "no worker"),
     Reason.EVENT_QUEUE: (Reason.EVENT_QUEUE.value, "in the event queue", "queued"),
     Reason.NOBODY_SPINS: ("nobody spins",),
 }
 
 
-def belt_name(belt: Belt, timeline: Timeline) -> str:
-    """Return the name of a belt; a client has its service's, as its level says that it is one."""
-    return short_name(told_apart(belt.entity, timeline, reply="").rstrip())
+def belt_name(belt: Belt, timeline: Timeline, charset: Charset) -> str:
+    """Return the name of a belt, as on the lanes: a client's has a mark that tells it from its service."""
+    return short_name(told_apart(belt.entity, timeline, GLYPHS[charset].back))
 
 
 def queue_level(belt: Belt) -> str:
     """Return the level of a queue: ``3/10``, ``10/10 !``; the bare number if it has no limit.
 
-    A client's says that it is one, or how many replies wait: its service has the same name.
+    A client's says that it is one, or how many replies wait.
     """
     if belt.entity.kind is EntityKind.CLIENT:
         replies = belt.queue.depth

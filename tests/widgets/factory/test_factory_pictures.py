@@ -31,9 +31,9 @@ def test_one_seat_starves_the_sensors() -> None:
         | belts                            areas                         |
         |                                ┏━ A one seat ━━━ 2 wait ━┓     |
         | odom  10/10 ! lost 168 ■■■■■■■✗┃                         ┃     |
-        |         waits 8.9 s: seat taken┃                         ┃     |
+        | waits 8.9 s: seat held by timer┃                         ┃     |
         | scan  10/10 ! lost 168 ■■■■■■■✗┃▐☻ timer_callback▌ 8.9 s ┃     |
-        |         waits 8.9 s: seat taken┃   MainThread            ┃     |
+        | waits 8.9 s: seat held by timer┃   MainThread            ┃     |
         | timer ◷ 500 ms ──────────────◆✗┃                         ┃     |
         |      late 8.4 s: last call runs┃                         ┃     |
         |                                ┗━━━━━━━━━━━━━━━━━━━━━━━━━┛     |
@@ -48,9 +48,9 @@ def test_the_same_starving_in_nine_rows_of_ascii() -> None:
         """
         | 1 worker, 1 seat: 2 callbacks wait for it  += A ## one seat == 2 wait =+     |
         | odom  10/10 ! lost 168 ---#########[498ms]X|                           |     |
-        |   waits 8.9 s: seat taken by timer_callback|                           |     |
+        |    waits 8.9 s: seat held by timer_callback|                           |     |
         | scan  10/10 ! lost 168 ---#########[495ms]X|[@ timer_callback] 8.9 s   |     |
-        |   waits 8.9 s: seat taken by timer_callback|   MainThread              |     |
+        |    waits 8.9 s: seat held by timer_callback|   MainThread              |     |
         | timer every 500 ms ----------------------*X|                           |     |
         |        late 8.4 s: its last call still runs|                           |     |
         |                                            +===========================+     |
@@ -65,9 +65,9 @@ def test_one_seat_fits_a_narrow_pane() -> None:
         | 1 worker, 1 seat: 2 wait for it      |
         |                  ╔═ A one seat ══╗   |
         | odom  10/10 ! ■■✗║               ║   |
-        | 8.9 s: seat taken║               ║   |
+        |  8.9 s: seat held║               ║   |
         | scan  10/10 ! ■■✗║▐☻ timer▌ 8.9 s║   |
-        | 8.9 s: seat taken║   MainThread  ║   |
+        |  8.9 s: seat held║   MainThread  ║   |
         | timer ○ 500 ms ♦✗║               ║   |
         |   8.4 s: own call║               ║   |
         |                  ╚═══════════════╝   |
@@ -132,8 +132,8 @@ def test_in_a_narrow_pane_the_reason_of_a_wait_stays_before_a_rate_and_how_long_
     assert factory(SHARED, 9.412, 44, 6) == drawn(
         """
         | 1 worker, 1 seat    ┏━ A one seat ━━━━━┓   |
-        | odom  10/10 ! taken✗┃▐☻ timer▌ 5.4 s   ┃   |
-        | scan  10/10 ! taken✗┃   MainThread     ┃   |
+        | odom  10/10 ! held ✗┃▐☻ timer▌ 5.4 s   ┃   |
+        | scan  10/10 ! held ✗┃   MainThread     ┃   |
         | timer own call ───◆✗┃                  ┃   |
         |                     ┗━━━━━━━━━━━━━━━━━━┛   |
         | · MainThread works in A                    |
@@ -176,10 +176,10 @@ def test_large_figures_are_readable_in_ascii() -> None:
     | belts                                  areas                               workers                     |
     |                                      += A ## one seat ==== 2 wait =+                                   |
     | odom  10/10 ! lost 168 ---##########X|                             |                                   |
-    |      waits 8.9 s: seat taken by timer|                             |        .   MainThread             |
+    |       waits 8.9 s: seat held by timer|                             |        .   MainThread             |
     |                                      |                             |            works in A             |
     | scan  10/10 ! lost 168 ---##########X|    @                        |                                   |
-    |      waits 8.9 s: seat taken by timer| [ /|\ ]   timer  8.9 s      |                                   |
+    |       waits 8.9 s: seat held by timer| [ /|\ ]   timer  8.9 s      |                                   |
     |                                      | [_____]   MainThread        |                                   |
     | timer every 500 ms ----------------*X|                             |                                   |
     |  late 8.4 s: its last call still runs|                             |                                   |
@@ -196,7 +196,7 @@ def test_four_workers_have_one_seat() -> None:
         | belts                                        areas                           |
         |                                            ╔═ A ██ one seat ═ 1 waits ═╗     |
         | odom  3/3 ! lost 2 ─────▐4.5s▌▐4.6s▌▐4.7s▌✗║                           ║     |
-        |   waits 4.9 s: seat taken by timer_callback║▐☻ timer_callback▌ 5.0 s   ║     |
+        |    waits 4.9 s: seat held by timer_callback║▐☻ timer_callback▌ 5.0 s   ║     |
         | timer ○ 500 ms ───────────────────────────►║   Pool-0_0                ║     |
         |                                            ║                           ║     |
         |                                            ╚═══════════════════════════╝     |
@@ -212,7 +212,7 @@ def test_four_workers_have_one_seat_in_large() -> None:
     | belts                                  areas                               workers                     |
     |                                      ┏━ A ██ one seat ━━━ 1 waits ━┓                                   |
     | odom  3/3 ! lost 2 ────■▐4.6s▌▐4.7s▌✗┃                             ┃                                   |
-    |      waits 4.9 s: seat taken by timer┃    ☻                        ┃        ·   Pool-0_0               |
+    |       waits 4.9 s: seat held by timer┃    ☻                        ┃        ·   Pool-0_0               |
     |                                      ┃ ▐ /█\ ▌   timer  5.0 s      ┃            works in A             |
     | timer ◷ 500 ms ─────────────────────▸┃ ▐▄▄▄▄▄▌   Pool-0_0          ┃                                   |
     |                                      ┃                             ┃        ☺                          |
@@ -326,7 +326,7 @@ def test_a_worker_in_a_call_is_blocked_in_its_seat() -> None:
         | timer       ◷ 1.0 s ──────────────────────▸┃                           ┃     |
         |                                            ┃▐☻ timer_callback▌ 2.0 s   ┃     |
         | motor_power 1/10    ───────□□□□□□□□□▐1.8s▌✗┃   blocked in call 1.8 s   ┃     |
-        |   waits 1.8 s: seat taken by timer_callback┃                           ┃     |
+        |    waits 1.8 s: seat held by timer_callback┃                           ┃     |
         |                                            ┗━━━━━━━━━━━━━━━━━━━━━━━━━━━┛     |
         | · Pool-0_0 works in A  ☺ worker 2 never needed                               |
         """
@@ -361,7 +361,7 @@ def test_the_most_telling_areas_come_first_in_a_short_pane() -> None:
     )
 
 
-def test_a_client_is_told_from_the_service_of_its_name_by_the_replies_that_wait_on_its_belt() -> None:
+def test_a_client_is_told_from_the_service_of_its_name_by_its_mark_however_narrow_the_pane() -> None:
     run = Run()
     thread, node = run.thread("MainThread"), run.node("/node")
     ask = run.timer(run.exclusive(node), "ask", 9.0)
@@ -372,10 +372,12 @@ def test_a_client_is_told_from_the_service_of_its_name_by_the_replies_that_wait_
     run.request(client, 2.5)
     run.stop(3.0)
     timeline = told(run)
-    assert "weigh 0/10   " in factory(timeline, 3.0, 64, 12)
-    assert "weigh client " in factory(timeline, 1.5, 64, 12)
-    assert "weigh 1 reply " in factory(timeline, 2.2, 64, 12)
-    assert "weigh 2 replies " in factory(timeline, 2.7, 64, 12)
+    assert "weigh   0/10   " in factory(timeline, 3.0, 64, 12)
+    assert "weigh ◂ client " in factory(timeline, 1.5, 64, 12)
+    assert "weigh < client " in factory(timeline, 1.5, 64, 12, Charset.ASCII)
+    assert "weigh ◂ 1 reply " in factory(timeline, 2.2, 64, 12)
+    assert "weigh ◂ 2 replies " in factory(timeline, 2.7, 64, 12)
+    assert "wei… ◂ client" in factory(timeline, 1.5, 38, 12)
 
 
 def test_before_a_run_is_over_no_worker_was_never_needed() -> None:
