@@ -1,8 +1,7 @@
 """A compositor that draws and sends only the cells that changed."""
 
 from collections.abc import Iterable, Sequence
-from itertools import pairwise
-from operator import attrgetter
+from itertools import groupby, pairwise
 from typing import NamedTuple
 
 from rich.console import Console, ConsoleOptions, RenderResult
@@ -137,15 +136,19 @@ class PatchCompositor(Compositor):
 
 
 def _drawn(stretches: Iterable[_LineSegment]) -> list[ScreenPatch]:
-    """Render each widget once, from its first to its last wanted line."""
+    """Render the wanted lines of each widget, those that follow each other at once."""
     wanted: dict[Widget, list[_LineSegment]] = {}
     for stretch in stretches:
         wanted.setdefault(stretch.shown.widget, []).append(stretch)
     parts = []
     for widget, its in wanted.items():
-        lines = list(map(attrgetter("line"), its))
-        first, region = min(lines), its[0].shown.region
-        strips = widget.render_lines(Region(0, first, region.width, max(lines) + 1 - first))
-        for line, (_, y, start, end) in zip(lines, its, strict=True):
-            parts.append(ScreenPatch(start, y, strips[line - first].crop(start - region.x, end - region.x)))
+        region, strips = its[0].shown.region, dict[int, Strip]()
+        places = enumerate(dict.fromkeys(each.line for each in its))
+        for _, neighbours in groupby(places, lambda each: each[1] - each[0]):
+            lines = [line for _, line in neighbours]
+            drawn = widget.render_lines(Region(0, lines[0], region.width, len(lines)))
+            strips.update(zip(lines, drawn, strict=True))
+        for each in its:
+            strip = strips[each.line].crop(each.start - region.x, each.end - region.x)
+            parts.append(ScreenPatch(each.start, each.y, strip))
     return parts

@@ -27,6 +27,6 @@ class LatePaintedWidget(Widget):
         raise NotImplementedError
 
     def _exchange_repaint_regions(self) -> Collection[Region]:
-        if not self._pruning and (regions := self.changed_regions()):
-            self._set_dirty(*regions)
-        return super()._exchange_repaint_regions()
+        regions = () if self._pruning else self.changed_regions()
+        offset = self.content_offset
+        return [*super()._exchange_repaint_regions(), *(region.translate(offset) for region in regions)]

@@ -3,7 +3,7 @@
 import pytest
 from textual._compositor import LayoutUpdate
 from textual.app import App
-from textual.geometry import Size
+from textual.geometry import Region, Size
 from textual.screen import Screen
 from textual.strip import Strip
 from textual.widget import Widget
@@ -101,6 +101,26 @@ async def test_a_pane_without_news_is_not_asked_to_draw(asked: list[type[Widget]
         await settle(pilot)
         assert asked
         assert Guide not in asked
+
+
+async def test_lines_between_those_with_news_are_not_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawn: list[int] = []
+    render_lines = Lanes.render_lines
+
+    def spy(lanes: Lanes, crop: Region) -> list[Strip]:
+        drawn.extend(crop.line_range)
+        return render_lines(lanes, crop)
+
+    monkeypatch.setattr(Lanes, "render_lines", spy)
+    app = RecordedConsole("shared-group", EVENTS, 2.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        drawn.clear()
+        lanes = app.lesson_screen.query_one(Lanes)
+        lanes.refresh(Region(0, 0, 5, 2), Region(0, 4, 5, 1))
+        await settle(pilot)
+        top = lanes.gutter.top
+        assert drawn == [top, top + 1, top + 4]
 
 
 async def test_no_pane_is_asked_to_draw_by_a_screen_that_it_hides(asked: list[type[Widget]]) -> None:
