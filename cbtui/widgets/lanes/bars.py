@@ -211,11 +211,12 @@ class BarPainter:
         The columns of ``marks`` stay free of words, as the marks are drawn later.
         """
         number = self._number(entity.id)
+        bar, line = Ink(Role.BAR, number), Ink(Role.LINE, number)
         for stretch in stretches(columns):
             if stretch.is_short:
-                self._columns(row, stretch, _ink(Role.BAR, number))
+                self._columns(row, stretch, bar)
             else:
-                self._line(row, stretch, Ink(Role.LINE, number))
+                self._line(row, stretch, line)
                 if row.cells[: stretch.first + 1][-2:] == [self.glyphs.line] * 2:
                     row.cells[stretch.first] = self.glyphs.line_start
                 span = stretch.top

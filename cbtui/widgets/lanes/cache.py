@@ -9,7 +9,6 @@ from cbtui.looks.theme import Charset, TextRun
 from cbtui.text.cells import CellRow
 from cbtui.widgets.lanes.columns import I, InstantColumns, LaneColumn, LaneColumns
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, SoleLane, ThreadLane
-from cbtui.widgets.lanes.scale import TimeScale
 from sim.trace.events import EntityId
 from sim.trace.model import Blocked, EntityInfo, Position, Span, Wait, Window
 from sim.trace.timeline import Timeline
@@ -25,7 +24,6 @@ class LaneSummary:
     words; ``unseen`` are the columns that are not aggregated yet.
     """
 
-    scale: TimeScale
     calls: list[LaneColumn[Span] | None]
     waits: list[LaneColumn[Wait] | None]
     blocks: list[LaneColumn[Blocked] | None]

@@ -147,7 +147,7 @@ class LaneColumns(Generic[I]):
         kept = past.kept
         first = max(scale.first, 0)
         after = min(scale.first + scale.columns, edge // scale.per_column + 1)
-        missing = [number for number in range(first, after) if number not in kept]
+        missing = sorted({*range(first, after)}.difference(kept))
         fresh, left = self._newest_of(missing, edge, ration or IntervalBudget())
         late = {number: past.shown[number] for number in missing[:left] if number in past.shown}
         self.unseen = tuple(number - scale.first for number in missing[:left] if number not in late)
@@ -221,6 +221,8 @@ class LaneColumns(Generic[I]):
         found = self._query(Window(numbers[0] * length, (numbers[-1] + 1) * length))
         if not found:
             return dict.fromkeys(numbers), 1
+        if len(found) <= SAMPLES_PER_COLUMN * len(numbers):
+            found = list(found)  # each is made once, not again at every step of a bisection
         looks = len(numbers)
         summed: dict[int, LaneColumn[I] | None] = {}
         low = high = bisect_left(found, numbers[0] * length, key=_START)
@@ -271,7 +273,7 @@ class InstantColumns:
         fresh = self._query(Window(max(0, self._known_to * length), max(0, after * length)))
         self._marked.update(at // length for at in fresh)
         self._known_to = max(self._known_to, min(after, (edge - _SETTLED_AFTER) // length))
-        return [place for place in range(after - first) if first + place in self._marked]
+        return sorted([number - first for number in self._marked if first <= number < after])
 
 
 def _neighbours(numbers: Sequence[int]) -> Sequence[int]:
@@ -332,7 +334,7 @@ def stretches(columns: Sequence[LaneColumn[I] | None]) -> list[MergedColumns[I]]
     """Join neighbouring columns with the same top."""
     found: list[MergedColumns[I]] = []
     before: I | None = None
-    for place, column in enumerate(columns):
+    for place, column in enumerate(columns) if any(columns) else ():
         if column is None:
             before = None
             continue

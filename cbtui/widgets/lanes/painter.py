@@ -267,9 +267,8 @@ class _LaneFrame:
             self._cache.overview = (None if self.is_behind else key, busy)
         row = self._cache.overview[1].copy()
         row.put(scale.column_of(self._now), self._glyphs.cursor, NOW)
-        row.inks = [
-            ink if first <= place <= last else ink._replace(later=True) for place, ink in enumerate(row.inks)
-        ]
+        later = {ink: ink._replace(later=True) for ink in {*row.inks}}
+        row.inks = [ink if first <= place <= last else later[ink] for place, ink in enumerate(row.inks)]
         name, unit = TextRun("whole run", FAINT), TextRun(f"{duration(scale.per_column)}/col", FAINT)
         return self._framed([name], row.runs(), unit, chosen=False)
 
@@ -334,9 +333,7 @@ class _LaneFrame:
             if column is not None and (column.top.end is None or column.top.end > self._told)
         )
         lengths = tuple(duration(max(0, self._told - start)) for start in lasting)
-        return LaneSummary(
-            self._scale, calls, waits, blocks, inside, losses, kept, lengths, tuple(sorted(unseen))
-        )
+        return LaneSummary(calls, waits, blocks, inside, losses, kept, lengths, tuple(sorted(unseen)))
 
     def _summed(
         self, columns: LaneColumns[I], unseen: set[int], scale: TimeScale | None = None

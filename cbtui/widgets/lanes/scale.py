@@ -1,5 +1,6 @@
 """Maps columns of the screen to times of a run, and places the labels of the time axis."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 from sim.quantities.nanoseconds import SECOND
@@ -47,6 +48,7 @@ def whole_scale(end: Nanoseconds, columns: int) -> TimeScale:
     return TimeScale(0, nice_column(end // columns + 1), columns)
 
 
+@lru_cache
 def nice_column(least: Nanoseconds) -> Nanoseconds:
     """Return the smallest round length of a column that is ``least`` or more."""
     power = 1

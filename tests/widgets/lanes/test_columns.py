@@ -1,5 +1,6 @@
 """Summing up intervals column by column: nothing long is lost, and what is kept stays true."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from hypothesis import given
@@ -13,6 +14,7 @@ from cbtui.widgets.lanes.columns import (
     stretches,
 )
 from cbtui.widgets.lanes.scale import TimeScale
+from sim.trace.lazy import LazySequence
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, ns
@@ -78,6 +80,18 @@ def test_a_long_call_is_found_among_very_many_short_ones() -> None:
     long = Stay(7003, 3 * S)
     columns = LaneColumns(Store(*short, long).query).over(TimeScale(0, S, 4), 9 * S)
     assert [column.top is long if column else None for column in columns] == [False, True, True, None]
+
+
+def test_an_interval_is_made_once_for_a_look_at_its_column() -> None:
+    store = Store(*(Stay(place * S // 2 + 1, place * S // 2 + 2) for place in range(20)))
+    made: list[int] = []
+
+    def query(window: Window) -> Sequence[Stay]:
+        found = store.query(window)
+        return LazySequence(range(len(found)), lambda row: made.append(row) or found[row])  # type: ignore[func-returns-value]
+
+    LaneColumns(query).over(TimeScale(0, S, 10), 11 * S)
+    assert made == list(range(20))
 
 
 def test_many_short_calls_take_as_much_of_a_column_as_all_of_them_do() -> None:

@@ -437,3 +437,14 @@ def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
     )
     far = plain(LanePainter().paint(timeline, Window(0, ns(600)), ns(30), 80, 7).rows)
     assert "12.0 s/col" in far
+
+
+def test_a_lane_without_calls_is_not_painted_again_as_the_run_goes_on() -> None:
+    events, timeline, painter = split_groups_run().events, Timeline(), LanePainter()
+    kept = []
+    for first, second in ((0, 9), (9, 12)):
+        timeline.extend([event for event in events if ns(first) < event.t + 1 <= ns(second)])
+        painter.paint(timeline, *last(10, second), 80, 20)
+        lane = ThreadLane([*timeline.threads.values()][-1])
+        kept.append(painter.cache.painted[lane][1])
+    assert kept[0] is kept[1]
