@@ -8,6 +8,7 @@ from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
 from textual.color import Color
+from textual.filter import ANSIToTruecolor
 from textual.geometry import Region, Size
 from textual.reactive import reactive
 from textual.strip import Strip
@@ -34,9 +35,8 @@ class _PaintedAttribute(reactive[ValueT]):
         self._paints_always = always_update
 
     def __set__(self, widget: Any, value: ValueT) -> None:
-        before = getattr(widget, self.name)
-        super().__set__(widget, value)
-        if self._paints_always or getattr(widget, self.name) != before:
+        if self._paints_always or getattr(widget, self.name) != value:
+            super().__set__(widget, value)
             widget.changed()
 
 
@@ -93,11 +93,12 @@ class PaintedWidget(LatePaintedWidget):
         """Return lines of the widget, its frame included.
 
         Textual's own method handles features that no painted widget uses, such as tints, and takes longer
-        than the painting.
+        than the painting. No ink has a colour of the terminal's own that would have to be converted.
         """
         size = self.size
         top, rows, width = self.gutter.top, size.height, self.outer_size.width
-        background, filters = self._background_now(), self.get_line_filters()
+        background = self._background_now()
+        filters = [each for each in self.get_line_filters() if not isinstance(each, ANSIToTruecolor)]
         self._paint_for(size)
         lines: list[Strip] = []
         for y in crop.line_range:
@@ -164,12 +165,15 @@ def changed_part(before: Sequence[TextRun], after: Sequence[TextRun]) -> tuple[i
     """Return the columns from the first to the last different run; both rows have the same width."""
     if before == after:
         return 0, 0
-    start = _same(before, after)
-    width = sum(cell_len(run.text) for run in after)
-    return start, width - _same(before[::-1], after[::-1])
+    first, last = _same(before, after), _same(before[::-1], after[::-1])
+    start = _width(after[:first])
+    return start, start + _width(after[first : len(after) - last])
 
 
 def _same(before: Sequence[TextRun], after: Sequence[TextRun]) -> int:
-    """The width of the runs with which both rows begin."""
-    pairs = takewhile(lambda pair: pair[0] == pair[1], zip(before, after, strict=False))
-    return sum(cell_len(run.text) for run, _ in pairs)
+    """The number of runs with which both rows begin."""
+    return len([*takewhile(lambda pair: pair[0] == pair[1], zip(before, after, strict=False))])
+
+
+def _width(runs: Sequence[TextRun]) -> int:
+    return sum([cell_len(run.text) for run in runs])

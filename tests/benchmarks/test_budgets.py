@@ -14,6 +14,7 @@ import pytest
 
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.widgets.lanes import INTERVALS_PER_FRAME, LanePainter
+from cbtui.widgets.status_line import StatusLine
 from sim.engine.setup import RunSetup
 from sim.trace.model import Window
 from sim.trace.roster import MOST_LANES
@@ -105,6 +106,12 @@ def test_a_batch_costs_the_same_among_two_thousand_timers_as_among_twenty() -> N
         return calls_of(lambda: live.take(call(1, ns(11))))
 
     assert of_a_batch(2000) == of_a_batch(20)
+
+
+def test_what_a_painted_widget_has_already_costs_next_to_nothing_to_set() -> None:
+    line = StatusLine()
+    assert line.turn == 0
+    assert calls_of(lambda: setattr(line, "turn", 0)) < 8
 
 
 def of_a_callback(scene: Scene) -> float:

@@ -1,10 +1,15 @@
-"""Which part of a painted row is sent to the terminal again."""
+"""Which part of a painted row is sent to the terminal again, and what is not done to it on its way."""
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from textual.filter import ANSIToTruecolor
+from textual.geometry import Region
 
 from cbtui.looks.theme import Ink, Role, TextRun
-from cbtui.widgets.painted_widget import changed_part
+from cbtui.widgets.painted_widget import PaintedWidget, changed_part
+from tests.support.console import WIDE, RecordedConsole, settle
+from tests.support.runs import shared_group_run
 
 TEXT, WARN = Ink(Role.TEXT), Ink(Role.WARN)
 
@@ -49,3 +54,17 @@ def test_what_is_not_sent_is_as_it_was(
     start, end = changed_part(before, after)
     old, new = cells(before), cells(after)
     assert old[:start] + new[start:end] + old[max(start, end) :] == new
+
+
+async def test_no_colour_of_a_painted_row_has_to_be_converted(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = RecordedConsole("shared-group", shared_group_run().events, 6.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        painted = list(app.lesson_screen.query(PaintedWidget))
+        assert any(isinstance(each, ANSIToTruecolor) for each in app.get_line_filters())
+        monkeypatch.setattr(ANSIToTruecolor, "apply", lambda *_: pytest.fail("a row was converted"))
+        for widget in painted:
+            top = widget.gutter.top
+            for line in widget.render_lines(Region(0, top, widget.outer_size.width, widget.size.height)):
+                colours = [each for _, style, _ in line if style for each in (style.color, style.bgcolor)]
+                assert all(colour is None or colour.triplet for colour in colours)
