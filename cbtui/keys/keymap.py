@@ -23,7 +23,7 @@ class Keymap:
 
     def of(self, actions: Iterable[KeyAction]) -> list[KeyAction]:
         """Return the actions with their keys in force."""
-        return [self._with_its_keys(action) for action in actions]
+        return [self._with_its_keys(action) for action in actions] if self._chosen else list(actions)
 
     def sign(self, scope: Scope, action_id: str, charset: Charset) -> str:
         """Return the key of one action as people write it."""

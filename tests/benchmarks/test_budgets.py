@@ -12,6 +12,8 @@ from types import FrameType
 
 import pytest
 
+from cbtui.keys.actions import ACTIONS
+from cbtui.keys.keymap import Keymap
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.widgets.lanes import INTERVALS_PER_FRAME, LanePainter
 from cbtui.widgets.status_line import StatusLine
@@ -106,6 +108,10 @@ def test_a_batch_costs_the_same_among_two_thousand_timers_as_among_twenty() -> N
         return calls_of(lambda: live.take(call(1, ns(11))))
 
     assert of_a_batch(2000) == of_a_batch(20)
+
+
+def test_the_keys_of_actions_are_not_looked_up_one_by_one_if_nobody_has_chosen_any() -> None:
+    assert calls_of(lambda: Keymap().of(ACTIONS)) < len(ACTIONS) / 10
 
 
 def test_what_a_painted_widget_has_already_costs_next_to_nothing_to_set() -> None:
