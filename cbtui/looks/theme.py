@@ -1,7 +1,7 @@
 """Styles of drawn things by their role, and the glyphs of each charset."""
 
 from dataclasses import dataclass
-from enum import Enum, StrEnum, auto
+from enum import StrEnum, auto
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -22,8 +22,8 @@ class Charset(StrEnum):
     ASCII = "ascii"
 
 
-class Role(Enum):
-    """What a piece of a picture represents; the palette gives its colour."""
+class Role(StrEnum):
+    """What a piece of a picture represents; the palette gives its colour by the value."""
 
     TEXT = auto()
     FAINT = auto()
@@ -231,7 +231,7 @@ def _colour(ink: Ink, palette: Palette) -> str:
         return group_colour(ink.number, palette)
     if ink.role is Role.STRONG:
         return palette.text
-    colour: str = getattr(palette, ink.role.name.lower())
+    colour: str = getattr(palette, ink.role)
     return colour
 
 

@@ -14,6 +14,7 @@ import pytest
 
 from cbtui.keys.actions import ACTIONS
 from cbtui.keys.keymap import Keymap
+from cbtui.looks.theme import Ink, Role
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.widgets.lanes import INTERVALS_PER_FRAME, LanePainter
 from cbtui.widgets.status_line import StatusLine
@@ -108,6 +109,12 @@ def test_a_batch_costs_the_same_among_two_thousand_timers_as_among_twenty() -> N
         return calls_of(lambda: live.take(call(1, ns(11))))
 
     assert of_a_batch(2000) == of_a_batch(20)
+
+
+def test_a_style_is_found_by_its_ink_without_a_call() -> None:
+    ink = Ink(Role.BAR, 1)
+    styles = {ink: "a style"}
+    assert calls_of(lambda: styles[ink]) == 1
 
 
 def test_the_keys_of_actions_are_not_looked_up_one_by_one_if_nobody_has_chosen_any() -> None:
