@@ -7,7 +7,7 @@ from itertools import islice
 from typing import TypeAlias
 
 from sim.clock import RunClock
-from sim.engine.callback_positions import PositionFields, position_of
+from sim.engine.callback_positions import PositionFields, position_of, wait_began
 from sim.probes.probe import Probe
 from sim.ros.middleware.process import Process
 from sim.trace.events import AnyEvent, Doing, OwnThreadAt, ProgramAt
@@ -52,25 +52,29 @@ class OwnThreads:
         now = self._clock.now()
         if now < self._due:
             return
-        self._due = now + _EVERY
+        before, self._due = self._due - _EVERY, now + _EVERY
         in_callbacks, programs = self._probe.running().keys(), list(self._main_threads())
         for ident, process in programs:
-            found = None if ident in in_callbacks else position_of(sys._current_frames().get(ident))
+            top = sys._current_frames().get(ident)
+            found, since = None if ident in in_callbacks else position_of(top), wait_began(top)
             if found is not None:
-                self._tell_of_program(now, process, *found)
+                self._tell_of_program(since if since > before else now, now, process, *found)
         # The engine's own main thread may be seen before its program has begun, and after its end.
         mains = {threading.main_thread().ident or 0, *(ident for ident, _ in programs)}
         self._tell_of_threads(now, self._positions(in_callbacks | mains))
 
-    def _tell_of_program(self, now: int, process: Process, position: PositionFields, timeout: int) -> None:
+    def _tell_of_program(
+        self, since: int, now: int, process: Process, position: PositionFields, timeout: int
+    ) -> None:
         """Record where a program is; without frames if it spins, but not in a node's constructor."""
         doing, call, frames, loop, _ = position
         if process.spinning and all(function != "__init__" for _, function, _ in frames):
             frames = ()
         if frames != self._programs.get(process.number, ()):
             self._programs[process.number] = frames
-            until = now + timeout if timeout else 0
-            self._record(ProgramAt(now, doing, call, frames, loop, until, process.number))
+            t = since if frames else now
+            until = t + timeout if timeout else 0
+            self._record(ProgramAt(t, doing, call, frames, loop, until, process.number))
 
     def _tell_of_threads(self, now: int, found: dict[int, _Fields]) -> None:
         for ident in [each for each in self._latest if each not in found]:

@@ -1,4 +1,4 @@
-"""When a callback came to the line at which it waits is known, however late anybody looks."""
+"""When a callback or a program came to the line at which it waits is known, however late anybody looks."""
 
 import sys
 import threading
@@ -11,9 +11,10 @@ import pytest
 from sim.clock.paced import PacedClock
 from sim.clock.paced_stdlib import PacedLock, PacedRLock
 from sim.engine.callback_positions import CallbackPositions, wait_began
+from sim.engine.own_threads import OwnThreads
 from sim.interpreter.function_marks import calls_the_program
 from sim.probes.probe import RunningCallback
-from sim.trace.events import Doing
+from sim.trace.events import Doing, ProgramAt
 from tests.support.builder import ns
 
 _HOLDER = RunningCallback(entity=2, thread=2, begun=1)
@@ -103,3 +104,16 @@ def test_a_wait_that_nobody_saw_is_recorded_as_it_ends(clock: SetClock, way: str
     if "lock" in way:
         (at,) = (each for each in waiter.seen if each.doing is Doing.WAITS)
         assert (at.call, at.holder, at.keeper) == ("Lock.acquire", _HOLDER.thread, 0)
+
+
+def test_a_wait_of_a_program_that_is_found_late_is_dated_from_when_it_began(clock: SetClock) -> None:
+    wait, end = _waits(clock)["signal"]
+    waiter, told = Waiter(clock, wait), list[Any]()
+    probe: Any = SimpleNamespace(running=dict, threads=dict)
+    program: Any = SimpleNamespace(spinning=False, number=0)
+    watch = OwnThreads(probe, clock, told.append, lambda: [(waiter.thread.ident or 0, program)])
+    clock.moment = ns(5.0)
+    watch.look()
+    end()
+    waiter.thread.join(_PATIENCE)
+    assert [(each.t, type(each)) for each in told] == [(ns(1.0), ProgramAt)]
