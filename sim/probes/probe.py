@@ -124,7 +124,9 @@ class Probe:
         if group.trace_id == 0:
             group.trace_id = next(self._groups)
             kind, name = GroupKind(group.trace_kind), type(group).__name__
-            self._sink(events.GroupAppeared(now, group.trace_id, entity.node.trace_id, kind, name))
+            self._sink(
+                events.GroupAppeared(now, group.trace_id, entity.node.trace_id, kind, name, group.is_own)
+            )
         return group.trace_id
 
     def entity_gone(self, entity: TracedEntity) -> None:

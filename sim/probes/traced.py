@@ -16,6 +16,10 @@ class TracedGroup(Protocol):
     def trace_kind(self) -> GroupKind:
         """How it admits callbacks."""
 
+    @property
+    def is_own(self) -> bool:
+        """Whether the program made it; else a change to the run did."""
+
 
 class TracedNode(Protocol):
     """A node, as far as the trace shows it."""

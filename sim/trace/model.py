@@ -70,6 +70,8 @@ class GroupInfo:
     kind: GroupKind
     class_name: str
     place: int
+    is_own: bool = True
+    """Whether the program made it; else a change to the run did."""
 
     @property
     def letter(self) -> str:

@@ -69,7 +69,9 @@ class Participants:
     def add_group(self, event: GroupAppeared) -> None:
         """Add a callback group with the next letter."""
         place = len(self.groups)
-        self.groups[event.group] = GroupInfo(event.group, event.node, event.kind, event.class_name, place)
+        self.groups[event.group] = GroupInfo(
+            event.group, event.node, event.kind, event.class_name, place, event.is_own
+        )
 
     def add_entity(self, event: EntityAppeared) -> EntityInfo:
         """Add an entity."""

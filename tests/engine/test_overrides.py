@@ -49,6 +49,7 @@ def test_callbacks_that_share_are_in_one_group_whatever_the_program_says() -> No
     run = overridden("split-groups", 12, groups=wishes)
     found = groups_of(run.timeline)
     assert len({found[wish.callback] for wish in wishes}) == 1
+    assert not run.timeline.groups[found["odom_callback"][0]].is_own
     assert not [at for at in run.starts("scan_callback") if 5 < at < 12]
 
 

@@ -1,5 +1,7 @@
 """The letters of callback groups in two runs that are compared."""
 
+from dataclasses import replace
+
 import pytest
 
 from sim.trace.events import EntityAppeared, EntityKind, GroupAppeared, GroupKind
@@ -43,6 +45,15 @@ def test_a_group_has_the_letter_of_the_one_with_which_it_shares_most_and_else_on
 ) -> None:
     run = groups(*second)
     assert letters(run_to_end(lettered_alike(groups(*first), run, run))) == told
+
+
+def test_a_group_that_a_change_adds_takes_no_letter_from_one_of_the_program() -> None:
+    run = groups("new", "old", "moved also", "stays")
+    for added in (1, 3):
+        run.groups[added] = replace(run.groups[added], is_own=False)
+    assert letters(run_to_end(lettered_alike(groups("new old", "moved also stays"), run, run))) == (
+        "C:new A:old D:moved D:also B:stays"
+    )
 
 
 def test_a_run_that_goes_on_keeps_its_letters_and_shows_what_is_new_in_it() -> None:

@@ -26,10 +26,15 @@ class NodeOverrides:
             case None:
                 return asked
             case GroupChoice.OWN:
-                return MutuallyExclusiveCallbackGroup()
+                return _added(MutuallyExclusiveCallbackGroup())
             case GroupChoice.SHARED as choice:
-                return self._shared.setdefault(choice, MutuallyExclusiveCallbackGroup())
+                return self._shared.setdefault(choice, _added(MutuallyExclusiveCallbackGroup()))
             case GroupChoice.REENTRANT as choice:
-                return self._shared.setdefault(choice, ReentrantCallbackGroup())
+                return self._shared.setdefault(choice, _added(ReentrantCallbackGroup()))
             case GroupChoice.DEFAULT:
                 return default
+
+
+def _added(group: CallbackGroup) -> CallbackGroup:
+    group.is_own = False
+    return group

@@ -20,6 +20,8 @@ class CallbackGroup(ABC):
 
     trace_kind: ClassVar[GroupKind] = GroupKind.CUSTOM
     trace_id = 0
+    is_own = True
+    """Whether the program made it; else a change to the run did."""
 
     def __init__(self) -> None:
         super().__init__()

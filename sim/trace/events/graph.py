@@ -95,6 +95,8 @@ class GroupAppeared(TraceEvent, frozen=True, tag="group"):
     kind: WireOnly[GroupKind]
     class_name: str
     """Python class of the group."""
+    is_own: WireOnly[bool] = True
+    """Whether the program made it; else a change to the run did, such as a cure."""
 
 
 class EntityAppeared(TraceEvent, frozen=True, tag="entity"):

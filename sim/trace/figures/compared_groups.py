@@ -27,8 +27,9 @@ class _Lettered(dict[GroupId, GroupInfo]):
 def lettered_alike(first: Timeline, second: Timeline, before: Timeline) -> Incremental[Timeline]:
     """Return the second run, which may go on, with the letters of the groups that it shares with the first.
 
-    Those with the most callbacks in common are the same; others get letters that the first run does not use.
-    ``before`` is what was returned before, or the second run: it is returned again if nothing has changed.
+    Those with the most callbacks in common are the same, first among groups that the program made, or a
+    change in both runs; others get letters that the first run does not use. ``before`` is what was returned
+    before, or the second run: it is returned again if nothing has changed.
     """
     common: Counter[tuple[GroupId, GroupId]] = Counter()
     for one, other in matched(first, second):
@@ -37,7 +38,12 @@ def lettered_alike(first: Timeline, second: Timeline, before: Timeline) -> Incre
     yield
     places: dict[GroupId, int] = {}
     taken: set[int] = set()
-    for group, alike in sorted(common, key=lambda pair: (-common[pair], pair[1])):
+
+    def rank(pair: tuple[GroupId, GroupId]) -> tuple[bool, int, GroupId]:
+        one, other = pair
+        return first.groups[one].is_own != second.groups[other].is_own, -common[pair], other
+
+    for group, alike in sorted(common, key=rank):
         place = first.groups[group].place
         if alike not in places and place not in taken:
             places[alike] = place
