@@ -123,10 +123,9 @@ class Probe:
         group = entity.callback_group
         if group.trace_id == 0:
             group.trace_id = next(self._groups)
-            kind, name = GroupKind(group.trace_kind), type(group).__name__
-            self._sink(
-                events.GroupAppeared(now, group.trace_id, entity.node.trace_id, kind, name, group.is_own)
-            )
+            kind, of = GroupKind(group.trace_kind), entity.node.trace_id
+            name, is_own = type(group).__name__, group.is_own
+            self._sink(events.GroupAppeared(now, group.trace_id, of, kind, name, is_own))
         return group.trace_id
 
     def entity_gone(self, entity: TracedEntity) -> None:
