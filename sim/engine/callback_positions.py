@@ -49,6 +49,8 @@ class CallbackPositions:
         self._latest: dict[int, tuple[RunningCallback, PositionFields]] = {}
         self._seen: dict[int, int] = {}
         """When each thread was looked at last."""
+        self._went_on: dict[int, tuple[RunningCallback, int]] = {}
+        """When the last long wait of each thread was over, and the callback that it was in."""
 
     def look(self) -> None:
         """Take one sample; one thread at a time may call this."""
@@ -59,7 +61,11 @@ class CallbackPositions:
         threads = self._probe.threads()
         for ident, callback in running.items():
             found = position_of(tops.get(ident), running, threads)
-            if found is not None and self._latest.get(ident) != (callback, found[0]):
+            known = self._latest.get(ident)
+            if found is not None and known != (callback, found[0]):
+                who, went_on = self._went_on.get(ident, (None, 0))
+                if known is not None and who == known[0] and went_on > self._seen.get(ident, 0):
+                    self._tell_of_end(ident, *known, went_on)
                 self._tell(ident, callback, found, tops.get(ident), now)
             self._seen[ident] = now
 
@@ -70,6 +76,7 @@ class CallbackPositions:
         callback = running.get(ident)
         if callback is None:
             return
+        self._went_on[ident] = callback, now
         lock = taken_lock(takewhile(lambda frame: not is_own(frame), outwards(top)))
         if lock is not None and isinstance(lock.taken_during, tuple) and lock.taken_during[0]:
             running[lock.holder_ident] = RunningCallback(*lock.taken_during)  # which may be over by now
@@ -77,10 +84,13 @@ class CallbackPositions:
         found = position_of(top, running, self._probe.threads())
         if found is None or (known is not None and (known[0], known[1][:3]) == (callback, found[0][:3])):
             return
-        _, _, frames, loop, _ = found[0]
         self._tell(ident, callback, found, top, now)
         self._seen[ident] = now
-        self._tell(ident, callback, ((Doing.COMPUTES, "", frames, loop, WaitedLock()), 0), None, now)
+        self._tell_of_end(ident, callback, found[0], now)
+
+    def _tell_of_end(self, ident: int, callback: RunningCallback, waited: PositionFields, at: int) -> None:
+        _, _, frames, loop, _ = waited
+        self._tell(ident, callback, ((Doing.COMPUTES, "", frames, loop, WaitedLock()), 0), None, at)
 
     def _tell(
         self, ident: int, callback: RunningCallback, found: _Found, top: FrameType | None, now: int

@@ -106,6 +106,28 @@ def test_a_wait_that_nobody_saw_is_recorded_as_it_ends(clock: SetClock, way: str
         assert (at.call, at.holder, at.keeper) == ("Lock.acquire", _HOLDER.thread, 0)
 
 
+def test_a_callback_that_is_found_elsewhere_late_has_gone_on_when_its_wait_was_over(clock: SetClock) -> None:
+    wait, end = _waits(clock)["signal"]
+    went_on, over = threading.Event(), threading.Event()
+
+    def wait_and_compute() -> None:
+        wait()
+        went_on.set()
+        over.wait(_PATIENCE)
+
+    waiter = Waiter(clock, wait_and_compute)
+    waiter.positions.look()
+    clock.moment = ns(2.0)
+    end()
+    went_on.wait(_PATIENCE)
+    clock.moment = ns(5.0)
+    waiter.positions.look()
+    over.set()
+    waiter.thread.join(_PATIENCE)
+    assert [each.t for each in waiter.seen] == [ns(1.0), ns(2.0), ns(5.0)]
+    assert waiter.seen[1].doing is Doing.COMPUTES
+
+
 def test_a_wait_of_a_program_that_is_found_late_is_dated_from_when_it_began(clock: SetClock) -> None:
     wait, end = _waits(clock)["signal"]
     waiter, told = Waiter(clock, wait), list[Any]()
