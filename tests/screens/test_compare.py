@@ -289,6 +289,13 @@ async def test_a_stretch_that_only_one_run_has_says_so() -> None:
         assert "odom_callback" not in "\n".join(lines_of(app)[-18:])
 
 
+async def test_at_the_beginning_no_key_is_said_to_look_back() -> None:
+    async with compared(*sides(), size=(160, 40)) as (app, pilot):
+        await press(app, pilot, "G", "0", "enter")
+        assert "] cursor" in lines_of(app)[-1]
+        assert "look back" not in lines_of(app)[-1]
+
+
 async def test_g_goes_to_a_moment_of_both() -> None:
     async with compared(*sides()) as (app, pilot):
         await pilot.press("G")
