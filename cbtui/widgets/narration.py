@@ -7,7 +7,7 @@ from cbtui.widgets.lanes.names import short_thread
 from sim.diagnosis.words import group_of, late_reply, thread_count
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
-from sim.trace.events import Doing, EntityId, EntityKind, Reason
+from sim.trace.events import Doing, EntityId, EntityKind, Reason, ThreadId
 from sim.trace.figures.waiting import (
     WORTH_TELLING,
     admits_others,
@@ -62,9 +62,12 @@ def decisions_at(timeline: Timeline, at: Nanoseconds, stepped: bool = True) -> i
     return 1 if last is None else max(1, len(_decided(timeline, last)))
 
 
-def decided_about(timeline: Timeline, at: Nanoseconds, place: int) -> EntityId | None:
-    """Return the callback that a decision of a moment is about; ``place`` counts from 0, -1 is the last."""
-    about = [entity for entity, _ in _deeds(timeline, at)]
+def decided_about(timeline: Timeline, at: Nanoseconds, place: int) -> tuple[EntityId, ThreadId | None] | None:
+    """Return the callback and the thread, if any, that a decision of a moment is about.
+
+    ``place`` counts from 0, -1 is the last.
+    """
+    about = [(entity, thread) for entity, thread, _ in _deeds(timeline, at)]
     return about[place] if -len(about) <= place < len(about) else None
 
 
@@ -75,27 +78,27 @@ def _decided(timeline: Timeline, at: Nanoseconds) -> Sequence[str]:
         for wait in waits_at(timeline.moment(at), timeline)
         if wait.since == at
     ]
-    return tuple(told for _, told in _deeds(timeline, at)) or tuple(filter(None, ("; ".join(ready),)))
+    return tuple(told for *_, told in _deeds(timeline, at)) or tuple(filter(None, ("; ".join(ready),)))
 
 
-def _deeds(timeline: Timeline, at: Nanoseconds) -> Iterator[tuple[EntityId, str]]:
-    """What was done at a moment and by whom, as the trace has it; calls without duration and losses once."""
+def _deeds(timeline: Timeline, at: Nanoseconds) -> Iterator[tuple[EntityId, ThreadId | None, str]]:
+    """What was done at a moment, by whom and on which thread; calls without duration and losses once."""
     made = list(timeline.decisions(Window(at, at + 1)))
     at_once = [span for (_, span), then in pairwise(made) if then == (Deed.ENDED, span)]
     losses = iter(_lost(timeline, at))
     for deed, what in made:
         match what:
             case Span() if deed is Deed.SUSPENDED:
-                yield what.entity, _suspending(what, timeline)
+                yield what.entity, what.thread, _suspending(what, timeline)
             case Span() if deed is not Deed.ENDED:
                 begun = _begun(what, deed, timeline, returns=what in at_once)
-                yield from ((what.entity, told) for told in begun)
+                yield from ((what.entity, what.thread, told) for told in begun)
             case Span() if what not in at_once:
-                yield what.entity, returning(what, timeline)
+                yield what.entity, what.thread, returning(what, timeline)
             case Blocked():
-                yield what.entity, _blocked(what, deed, timeline)
+                yield what.entity, what.thread, _blocked(what, deed, timeline)
             case int():
-                yield from ((what, told) for told in losses)
+                yield from ((what, None, told) for told in losses)
 
 
 def _without_decision(timeline: Timeline, at: Nanoseconds, last: Nanoseconds) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.rows import NONE_KEPT
 from cbtui.widgets.narration import decided_about, decisions_at
 from cbtui.widgets.narrator import Narrator
+from sim.trace.events import ThreadId
 
 
 def was_stepped(run: ShownRun, navigation: TimeNavigation) -> bool:
@@ -50,24 +51,26 @@ class Narration(ScreenPart):
             and self.runs.run.state is RunState.LIVE
         ):
             self._show(False)
-        step, screen = self._step, self.panes.screen
+        (step, thread), screen = self._step, self.panes.screen
         screen.query_one(CodeView).step = step
-        screen.query_one(Lanes).kept = NONE_KEPT if step is None else {step.about: 0}
+        lanes = screen.query_one(Lanes)
+        lanes.kept = NONE_KEPT if step is None else {step.about: 0}
+        lanes.kept_thread = thread
         if self.widget.display:
             self.widget.stepped = was_stepped(self.runs.run, self.navigation)
             self.widget.place = self.navigation.place
             self.widget.now, self.widget.timeline = self.navigation.now, self.runs.timeline
 
     @property
-    def _step(self) -> Step | None:
-        """The decision to which a step led, while it is told."""
+    def _step(self) -> tuple[Step | None, ThreadId | None]:
+        """The decision to which a step led, while it is told, and the thread that it is about."""
         was_live = was_stepped(self.runs.run, self.navigation)
         if not self.widget.display or not (was_live or self.navigation.playhead.at is not None):
-            return None
+            return None, None
         now, place = self.navigation.now, self.navigation.place
         place = -1 if was_live or place is None else place
         about = decided_about(self.runs.timeline, now, place)
-        return None if about is None else Step(now, place, about)
+        return (None, None) if about is None else (Step(now, place, about[0]), about[1])
 
     def action_narrate(self) -> None:
         """Show or hide it."""

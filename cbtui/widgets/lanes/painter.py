@@ -32,7 +32,7 @@ from cbtui.widgets.lanes.selection import Selection
 from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls, marked_columns
 from cbtui.widgets.lanes.status import LaneStatus
 from sim.quantities.durations import duration
-from sim.trace.events import EntityId, EntityKind
+from sim.trace.events import EntityId, EntityKind, ThreadId
 from sim.trace.figures.chains import ChainStep
 from sim.trace.model import Blocked, Moment, Nanoseconds, Position, Span, ThreadInfo, Wait, Window
 from sim.trace.timeline import Timeline
@@ -69,9 +69,9 @@ class LanePainter:
         more_key: str = "",
         threads_last: bool = False,
     ) -> None:
-        self.charset = charset
+        self.charset, self.service = charset, service
         self.call_key, self.more_key = call_key, more_key
-        self.service = service
+        self.kept_thread: ThreadId | None = None
         self.looks, self.threads_last = looks, threads_last
         self.cache = LaneCache(Timeline())
 
@@ -92,8 +92,8 @@ class LanePainter:
         """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells.
 
         Words and figures are of the moment ``told``, ``now`` unless given. With ``whole`` there is an
-        overview, up to that end; else only where it takes no room. ``path`` stands out on its lanes; the
-        lanes of the callbacks ``kept`` stay longest, by rank. The run is drawn up to ``end``, if given.
+        overview, up to that end; else only where it takes no room. ``path`` stands out on its lanes; those of
+        the callbacks ``kept`` and the thread ``kept_thread`` stay longest. The run is drawn up to ``end``.
         """
         if timeline is not self.cache.timeline:
             self.cache = LaneCache(timeline)
@@ -105,7 +105,7 @@ class LanePainter:
             return LanePicture(((TextRun(" " * width, PLAIN),),) * height, (), layout, scale)
         room = height - 1 - (whole > 0)
         chosen = None if selection is None else selection.lane
-        lanes = choose_lanes(every, room, timeline, scale.window, chosen, kept)
+        lanes = choose_lanes(every, room, timeline, scale.window, chosen, kept, self.kept_thread)
         moment = timeline.moment(now if told is None else told)
         known = timeline.end if end is None else end
         frame = _LaneFrame(self, timeline, scale, layout, now, moment, selection, path, known, lanes)

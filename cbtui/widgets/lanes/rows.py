@@ -115,13 +115,14 @@ def choose_lanes(
     window: Window,
     selected: Lane | None = None,
     kept: Mapping[EntityId, int] = NONE_KEPT,
+    kept_thread: ThreadId | None = None,
 ) -> list[Lane]:
     """Return the most important lanes of ``window`` that fit, in their order.
 
     The selected lane and its neighbours stay, so that moving through the lanes scrolls the view. The
-    callbacks ``kept`` come next, by rank, then lanes with work or long waits; idle ones are dropped first,
-    and threads beyond half of the room before callbacks that are called: one thread works like another, but
-    the busiest stays. The cursor's moment does not count: the choice would flicker.
+    callbacks ``kept`` come next, by rank, with ``kept_thread``, then lanes with work or long waits; idle ones
+    are dropped first, and threads beyond half of the room before callbacks that are called: one thread works
+    like another, but the busiest stays. The cursor's moment does not count: the choice would flicker.
     """
     if len(lanes) <= room:
         return lanes
@@ -133,6 +134,9 @@ def choose_lanes(
         value[place] = min(value[place], _SPARE)
     for place in threads[:1]:
         value[place] = _BUSIEST
+    for place, lane in enumerate(lanes):
+        if isinstance(lane, ThreadLane) and lane.thread.id == kept_thread:
+            value[place] = _KEPT
     middle = lanes.index(selected) if selected in lanes else -_FAR
     places = sorted(
         range(len(lanes)), key=lambda place: (min(abs(place - middle), _FAR), -value[place], place)

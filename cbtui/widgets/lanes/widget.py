@@ -27,7 +27,7 @@ from cbtui.widgets.lanes.selection import (
     start_of,
 )
 from cbtui.widgets.painted_widget import PaintedWidget, painted
-from sim.trace.events import EntityId
+from sim.trace.events import EntityId, ThreadId
 from sim.trace.figures.chains import ChainStep
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -70,6 +70,8 @@ class Lanes(PaintedWidget, can_focus=True):
     path: reactive[Sequence[ChainStep]] = painted(())
     kept: reactive[Mapping[EntityId, int]] = painted(NONE_KEPT)
     """The callbacks whose lanes are the last to be hidden, with their ranks."""
+    kept_thread: reactive[ThreadId | None] = painted(None)
+    """The thread whose lane is among them; None for none."""
     threads_last = False
     """Whether threads, of which another run may have more, are below the callbacks."""
     changes: reactive[str] = painted("")
@@ -218,6 +220,7 @@ class Lanes(PaintedWidget, can_focus=True):
         selection = self.selection_now
         described = self._rows_told(size) if selection is not None else 0
         height = size.height - described
+        self._painter.kept_thread = self.kept_thread
         picture = self._painter.paint(
             self.timeline,
             self.window,

@@ -103,8 +103,12 @@ async def test_the_lane_of_the_callback_that_a_step_is_about_is_among_the_last_t
         step = app.screen.query_one(CodeView).step
         assert step is not None
         assert [*lanes.kept] == [step.about]
+        app.lesson_screen.navigation.seek(ns(2.0))
+        await press(pilot, "comma")
+        assert lanes.kept_thread in app.lesson_screen.runs.timeline.threads, "one ran a callback then"
         await press(pilot, "0", "space")
         assert not lanes.kept, "time flows"
+        assert lanes.kept_thread is None
 
 
 async def test_a_step_on_the_real_clock_says_why_there_is_none() -> None:

@@ -1,7 +1,7 @@
 import pytest
 
 from cbtui.widgets.lanes.names import group_name, more_lanes, service_name, shortened, thread_name, told_apart
-from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ThreadLane, all_lanes, choose_lanes
+from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, ThreadLane, all_lanes, choose_lanes
 from sim.trace.events import EntityAppeared, EntityKind, GroupKind, Reason
 from sim.trace.model import GroupInfo, ThreadInfo, Window
 from sim.trace.timeline import Timeline
@@ -154,6 +154,22 @@ def test_where_lanes_are_few_threads_leave_room_for_callbacks_that_run() -> None
     timeline = run_timeline(run)
     lanes = choose_lanes(all_lanes(timeline, ""), 8, timeline, Window(0, ns(5.0)))
     assert [isinstance(each, ThreadLane) for each in lanes] == 4 * [True] + 4 * [False]
+
+
+def test_the_thread_that_the_picture_is_about_keeps_its_lane() -> None:
+    run = Run()
+    node = run.node("/n")
+    threads = [run.thread(f"ThreadPoolExecutor-0_{number}") for number in range(6)]
+    callbacks = [run.timer(run.exclusive(node), f"ask_{number}", 1.0) for number in range(6)]
+    for thread, callback in zip(threads, callbacks, strict=True):
+        run.callback(callback, thread, 0.5, 4.0)
+    timeline = run_timeline(run)
+    every, window = all_lanes(timeline, ""), Window(0, ns(5.0))
+    about = next(lane for lane in every if isinstance(lane, ThreadLane) and lane.thread.id == threads[-1])
+    assert about not in choose_lanes(every, 4, timeline, window)
+    lanes = choose_lanes(every, 4, timeline, window, kept={callbacks[-1]: 0}, kept_thread=threads[-1])
+    assert about in lanes
+    assert callbacks[-1] in {lane.entity.id for lane in lanes if isinstance(lane, MemberLane | SoleLane)}
 
 
 def test_a_callback_that_the_picture_is_about_keeps_its_lane_though_it_is_idle() -> None:
