@@ -199,12 +199,11 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         yield StatusLine()
         yield Lanes()
         yield self._narration.widget
-        has_scene = bool(self.subject.scene)
-        yield Tabs(self.PANES_HERE, has_scene)
+        yield Tabs(self.PANES_HERE)
         with Container(id="panes"):
             for pane in self.compose_panes():
                 assert pane.id is not None
-                pane.border_title = title_of(pane.id, has_scene)
+                pane.border_title = title_of(pane.id)
                 pane.add_class("pane")
                 yield pane
         yield DiagnosisLine()
@@ -226,6 +225,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         lanes.charset = robot.charset = factory.charset = self.charset
         lanes.service = self.subject.service
         self.panes.enlarge("")
+        self.panes.name_robot()
         lanes.changes = self.changes.words
         prompt, takes_lines = self.query_one(Prompt), self._parts.has("prompt")
         prompt.disabled, prompt.display = not takes_lines, takes_lines

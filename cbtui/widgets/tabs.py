@@ -22,13 +22,14 @@ _SEPARATOR = " · "
 
 
 class Tabs(PaintedWidget):
-    """Shows the panes with their numbers, the current one in brackets; for ``has_scene`` see ``title_of``."""
+    """Shows the panes with their numbers, the current one in brackets."""
 
-    def __init__(self, panes: Sequence[str], has_scene: bool) -> None:
+    def __init__(self, panes: Sequence[str]) -> None:
         super().__init__()
         self._panes = panes
-        self._has_scene = has_scene
 
+    has_scene: reactive[bool] = painted(False)
+    """Whether a scene takes the robot's place."""
     current: reactive[str] = painted(PANES[0])
     empty: reactive[str] = painted("")
     """A pane without content, which has a tab only while it is the current one."""
@@ -72,7 +73,7 @@ class Tabs(PaintedWidget):
         for pane in self._panes:
             if pane == self.empty != self.current:
                 continue
-            title = title_of(pane, self._has_scene)
+            title = title_of(pane, self.has_scene)
             yield pane, f"[{title}]" if pane == self.current else f" {title} "
 
 

@@ -141,6 +141,14 @@ class PaneLayout(ScreenPart):
     def action_cycle_camera(self) -> None:
         """Show the robot's map, the camera's picture, or both."""
         self.screen.query_one(RobotView).cycle_camera()
+        self.name_robot()
+
+    def name_robot(self) -> None:
+        """Call the robot's pane a scene while it shows one."""
+        robot = self.screen.query_one(RobotView)
+        has_scene = robot.shows_scene
+        set_title(robot, title_of("robot", has_scene))
+        self.screen.query_one(Tabs).has_scene = has_scene
 
     def action_filter_log(self) -> None:
         """Let the person type a filter for the log."""

@@ -86,11 +86,16 @@ class RobotView(PaintedWidget):
             self.look = self.look.following
         self.shows_robot = self.look is not RobotViewMode.MAP or not self.shows_robot
 
+    @property
+    def shows_scene(self) -> bool:
+        """Whether it shows the lesson's scene in place of the robot."""
+        return bool(self.actors) and not self.shows_robot
+
     # drawing
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint everything except the picture, which is requested."""
-        if self.actors and not self.shows_robot:
+        if self.shows_scene:
             self._painting = RobotPainting(())
             return paint_scene(self.actors, self.timeline, self.now, size.width, size.height, self.charset)
         note = "" if self._fits() else self._failure or _STARTING

@@ -6,6 +6,7 @@ from textual.pilot import Pilot
 from cbtui.widgets.lanes import Lanes
 from lessons.personal import state_folder
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.pictures import text_of
 from tests.support.runs import shared_group_run, split_groups_run
 
 EVENTS = shared_group_run().events
@@ -119,3 +120,17 @@ async def test_a_file_of_sizes_that_cannot_be_is_not_followed(content: str) -> N
         await settle(pilot)
         assert width(app, "guide") > 30
         assert width(app, "code") > 30
+
+
+@pytest.mark.parametrize("size", [NARROW, WIDE])
+async def test_the_robots_pane_is_called_a_scene_only_while_it_shows_one(size: tuple[int, int]) -> None:
+    app = RecordedConsole("stale-data", shared_group_run().events, 3.0)
+    async with app.run_test(size=size) as pilot:
+        await settle(pilot)
+        await pilot.press("4")
+        await settle(pilot)
+        assert "4 Scene" in text_of(app)
+        await pilot.press("c")
+        await settle(pilot)
+        assert "4 Robot" in text_of(app)
+        assert "4 Scene" not in text_of(app)
