@@ -76,6 +76,7 @@ class LogLines(FollowingView):
         self._now = 0
         self._searching = False
         self._kept: int | None = None
+        self._followed = True
         self._later = 0
         self._drawn: tuple[int, ...] = ()
 
@@ -161,6 +162,13 @@ class LogLines(FollowingView):
         return places[row] if row < len(places) else len(self._search.timeline.logs)
 
     # the picked line
+
+    def watch_picked(self, before: int | None, picked: int | None) -> None:
+        """Follow the end again once no line is picked, if the log did so before one was."""
+        if before is None:
+            self._followed = self.follows
+        elif picked is None and self._followed:
+            self.follow()
 
     @property
     def picked_text(self) -> str:

@@ -211,6 +211,22 @@ async def test_looking_back_does_not_make_a_log_follow_that_stays() -> None:
         assert app.pane.note == "51 lines · stays"
 
 
+async def test_a_log_follows_again_once_the_picked_line_is_let_go() -> None:
+    app = PaneOnly()
+    async with app.run_test(size=(60, 10)) as pilot:
+        timeline = log_of(100)
+        await showing(pilot, timeline)
+        await typed(pilot, "line 1")
+        await pilot.press("enter", "up", "up", "escape", "escape")
+        await showing(pilot, timeline, 50_000_000)
+        assert app.pane.note == "51 lines · follows"
+        await pilot.press("up")
+        await showing(pilot, timeline, 20_000_000)
+        assert app.pane.note == "21 lines · follows", "the picked line came later than the moment"
+        await pilot.press("f", "up", "escape")
+        assert app.pane.note == "21 lines · stays"
+
+
 async def test_enter_tells_the_time_of_the_line_that_was_picked_with_the_arrows() -> None:
     app = PaneOnly()
     async with app.run_test(size=(60, 10)) as pilot:
