@@ -57,7 +57,7 @@ STOPS = (
     ),
     TourStop(
         "guide",
-        "So a lesson goes: predict, run, `a` explains, `e` is the exercise. `?` has every sign and key.",
+        "So a lesson goes: predict, run, `a` explains, `e` is its exercise if it has one. `?` has every key.",
     ),
 )
 

@@ -247,6 +247,11 @@ def test_no_page_of_the_tour_turns_faster_than_one_reads() -> None:
     assert all(len(stop.text.split()) / stop.seconds <= 3 for stop in STOPS)
 
 
+def test_the_tour_promises_no_exercise_that_its_lesson_may_lack() -> None:
+    [told] = [stop.text for stop in STOPS if "exercise" in stop.text]
+    assert "if it has one" in told
+
+
 async def test_the_number_of_no_lesson_does_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cbtui.app.lessons", lambda: lessons()[:8])
     app = menu()
