@@ -28,6 +28,7 @@ from cbtui.screens.parts.navigation import MomentKey, TimeNavigation
 from cbtui.screens.parts.part import ScreenParts
 from cbtui.screens.sized import SizedScreen
 from cbtui.screens.windows.jump import JumpScreen
+from cbtui.terminal.compositing import PatchCompositor
 from cbtui.terminal.textual_internals import clear_hints
 from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, HeadingLine
 from cbtui.widgets.key_bar import KeyBar
@@ -82,6 +83,7 @@ class CompareScreen(SizedScreen[None]):
         self, first: ComparedSide, second: ComparedSide, charset: Charset, bounds: Window | None = None
     ) -> None:
         super().__init__()
+        self._compositor = PatchCompositor()
         self._sides = (first, second)
         self.charset = charset
         """What the terminal can show."""
@@ -146,20 +148,27 @@ class CompareScreen(SizedScreen[None]):
 
     def draw(self) -> None:
         """Show the playhead's moment if it or a run has changed."""
-        ends = tuple((side.timeline.end, side.alive()) for side in self._sides)
-        now = (self.navigation.playhead, ends, self.layout_now)
+        state = (self.navigation.playhead, self.layout_now, *(side.alive() for side in self._sides))
+        now = (state, *(side.timeline.end for side in self._sides))
         if self.layout_now is Layout.SMALL or isinstance(self.app.screen, JumpScreen):
             return
         if now != self._drawn:
+            if now[:1] != self._drawn[:1]:
+                self.query_one(KeyBar).changed()
             self._drawn = now
             self._draw_runs()
-            self.query_one(KeyBar).changed()
         self._draw_table()
 
     def laid_out(self) -> None:
         """Draw what the new layout shows."""
         self._drawn = ()
+        self._limit_lanes()
         self.draw()
+
+    def _limit_lanes(self) -> None:
+        """Leave room for the table, if there is one."""
+        for lanes in self.query(Lanes):
+            lanes.styles.max_height = None if self.has_class(_LANES_ALONE) else (self.size.height - 1) // 4
 
     def _draw_runs(self) -> None:
         at, shown = self.navigation.now, self.navigation.window
@@ -173,7 +182,6 @@ class CompareScreen(SizedScreen[None]):
                 number, side, self.size.width, self.charset
             )
             lanes = self._lanes(number)
-            lanes.styles.max_height = None if self.has_class(_LANES_ALONE) else (self.size.height - 1) // 4
             # Nothing is known of a run after its end, even of a callback that was still running.
             lanes.window, lanes.now = shown, min(at, side.timeline.end)
             lanes.whole = max(each.timeline.end for each in self._sides)
@@ -198,6 +206,7 @@ class CompareScreen(SizedScreen[None]):
         if began >= self._rest_until and any(side.alive() for side in self._sides):
             self._told = self._problems.compared(self._comparison).told
             self._show_first_difference()
+            self.query_one(KeyBar).changed()
             self._rest_until = monotonic() + _REST_FACTOR * (monotonic() - began)
 
     async def _compare(self, asked: Window) -> None:
@@ -375,6 +384,7 @@ class CompareScreen(SizedScreen[None]):
         for name in (_TABLE_ALONE, _LANES_ALONE):
             self.set_class(name == alone, name)
         self._drawn = ()
+        self._limit_lanes()
         more = () if alone == _LANES_ALONE else ("enlarge_lanes",)
         for lanes in self.query(Lanes):
             lanes.keys = lane_keys(keymap_of(self.app), Scope.COMPARE, self.charset, *more)

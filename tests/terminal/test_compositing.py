@@ -1,5 +1,7 @@
 """Partial pictures are the same as whole ones, and only widgets with something new are asked to draw."""
 
+import math
+
 import pytest
 from textual._compositor import LayoutUpdate
 from textual.app import App
@@ -8,10 +10,14 @@ from textual.screen import Screen
 from textual.strip import Strip
 from textual.widget import Widget
 
+from cbtui.runs.compared_runs import ComparedSide
+from cbtui.screens.compare import CompareScreen
 from cbtui.terminal.compositing import PatchCompositor, PatchUpdate
 from cbtui.widgets.guide import Guide
+from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.log import LogLines
+from sim.trace.timeline import Timeline
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.daily import first_daily
@@ -101,6 +107,39 @@ async def test_a_pane_without_news_is_not_asked_to_draw(asked: list[type[Widget]
         await settle(pilot)
         assert asked
         assert Guide not in asked
+
+
+async def test_a_comparison_that_goes_on_sends_parts_and_is_not_laid_out_anew(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    first, second = Timeline(), Timeline()
+    first.extend(EVENTS)
+    second.extend([each for each in EVENTS if each.t <= ns(12)])
+    laid_out: list[Screen[None]] = []
+    terminal, keys = Terminal(), list[KeyBar]()
+    app = RecordedConsole("shared-group", EVENTS, 2.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        sides = ComparedSide("one", first), ComparedSide("two", second, alive=lambda: True)
+        screen = CompareScreen(*sides, app.charset)
+        await app.push_screen(screen)
+        await app.workers.wait_for_complete()
+        await pilot.pause()
+        monkeypatch.setattr(App, "_display", lambda app, screen, update: terminal.take(update))
+        screen.refresh(layout=True)
+        await pilot.pause()
+        monkeypatch.setattr(screen, "_refresh_layout", lambda *_, **__: laid_out.append(screen))
+        monkeypatch.setattr(KeyBar, "rows", lambda bar, _: keys.append(bar) or bar._rows)  # type: ignore[func-returns-value]
+        screen._rest_until = math.inf  # no figures, which come with the keys
+        for tenth in range(121, 150, 3):
+            second.extend([each for each in EVENTS if ns((tenth - 3) / 10) < each.t <= ns(tenth / 10)])
+            screen.draw()
+            await pilot.pause()
+            whole = list(map(cells, screen._compositor.render_strips()))
+            assert terminal.lines == whole
+    assert terminal.parts > 4
+    assert not laid_out
+    assert not keys
 
 
 async def test_lines_between_those_with_news_are_not_drawn(monkeypatch: pytest.MonkeyPatch) -> None:

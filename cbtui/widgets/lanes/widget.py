@@ -64,7 +64,7 @@ class Lanes(PaintedWidget, can_focus=True):
     service: reactive[str] = reactive("", layout=True)
     charset: reactive[Charset] = reactive(Charset.BRAILLE, repaint=False)
     selection: reactive[Selection | None] = painted(None)
-    whole: reactive[Nanoseconds] = reactive(0, layout=True)
+    whole: reactive[Nanoseconds] = painted(0)
     """The end of an overview that is always shown; 0 for one that is shown if there is room."""
     hint: reactive[str] = reactive("", repaint=False)
     path: reactive[Sequence[ChainStep]] = painted(())
@@ -282,6 +282,11 @@ class Lanes(PaintedWidget, can_focus=True):
     def watch_selection(self, before: Selection | None, after: Selection | None) -> None:
         """Highlight another bar, and make room for its description."""
         if (before is None) != (after is None):
+            self.refresh(layout=True)
+
+    def watch_whole(self, before: Nanoseconds, after: Nanoseconds) -> None:
+        """Make room for the overview, which later only grows longer."""
+        if (before > 0) != (after > 0):
             self.refresh(layout=True)
 
     def watch_hint(self) -> None:
