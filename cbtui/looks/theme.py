@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 from enum import StrEnum, auto
-from functools import lru_cache
-from typing import NamedTuple
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, NamedTuple
 
 from rich.color import Color, blend_rgb
 from rich.color_triplet import ColorTriplet
@@ -11,7 +11,9 @@ from rich.style import Style
 
 from cbtui.looks.contrast import legible, readable_on
 from cbtui.looks.palettes import Palette
-from sim.trace.events import Reason
+
+if TYPE_CHECKING:
+    from sim.trace.events import Reason
 
 
 class Charset(StrEnum):
@@ -83,7 +85,8 @@ class Glyphs:
     double_line: str
     line_start: str
     point: str
-    hatch: dict[Reason, str]
+    hatches: str
+    """Of waits, by the order of their reasons."""
     frame: str
     cursor: str
     up: str
@@ -103,6 +106,13 @@ class Glyphs:
     textures: str
     textured: Role
 
+    @cached_property
+    def hatch(self) -> "dict[Reason, str]":
+        """The hatches of waits by their reasons."""
+        from sim.trace.events import Reason  # imported when a wait is drawn: the menu must appear first
+
+        return dict(zip(Reason, self.hatches, strict=True))
+
 
 _BLOCKS = Glyphs(
     left=" ▎▎▍▌▋▊▉█",
@@ -111,12 +121,7 @@ _BLOCKS = Glyphs(
     double_line="═",
     line_start="╶",
     point="·",
-    hatch={
-        Reason.GROUP_HELD: "\N{BOX DRAWINGS LIGHT DIAGONAL UPPER RIGHT TO LOWER LEFT}",
-        Reason.NO_FREE_WORKER: "\N{BOX DRAWINGS LIGHT DIAGONAL UPPER LEFT TO LOWER RIGHT}",
-        Reason.EVENT_QUEUE: "\N{IDENTICAL TO}",
-        Reason.NOBODY_SPINS: "\N{BOX DRAWINGS LIGHT DIAGONAL CROSS}",
-    },
+    hatches="╱╲≡╳",
     frame="│",
     cursor="┊",
     up="▲",
@@ -142,12 +147,7 @@ _PLAIN = Glyphs(
     double_line="=",
     line_start=" ",
     point=".",
-    hatch={
-        Reason.GROUP_HELD: "/",
-        Reason.NO_FREE_WORKER: "\\",
-        Reason.EVENT_QUEUE: "_",
-        Reason.NOBODY_SPINS: "x",
-    },
+    hatches="/\\_x",
     frame="|",
     cursor=":",
     up="^",

@@ -1,5 +1,7 @@
 """Colours: readable on both backgrounds, and never the only code."""
 
+import subprocess
+import sys
 from itertools import combinations, pairwise
 
 import pytest
@@ -141,3 +143,9 @@ def test_ascii_has_no_other_glyphs() -> None:
         for text in (value.values() if isinstance(value, dict) else [value])
     ]
     assert all(text.isascii() for text in texts)
+
+
+def test_the_first_picture_of_the_menu_needs_nothing_of_a_trace() -> None:
+    code = "import sys, cbtui.app; print(*[name for name in sys.modules if name.startswith('sim.trace')])"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == []
