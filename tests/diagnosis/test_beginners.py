@@ -44,6 +44,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "self.opened.wait(0.8)",
             "give on_bell a callback group of its own",
         ),
+        (
+            "two_timers_too_much",
+            "overload",
+            "def right(self):",
+            "give right a callback group of its own, and",
+        ),
         ("call_longer_than_period", "overrun-timer", "self.client.call(", "go on in a done-callback"),
         ("int_for_float", "program-raised", "command.linear.x = 1", "1.0 in place of 1"),
         (

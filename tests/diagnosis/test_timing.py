@@ -477,3 +477,61 @@ def test_what_falls_behind_is_looked_for_in_the_latest_calls_alone(
     lately = Window(run.end - 3 * SECOND, run.end + 1)
     assert list(rule.check(TimelineView(run, lately, Concurrency(run))))
     assert len(reads) < 50
+
+
+def two_timers(
+    lengths: tuple[float, float], *, apart: bool, threads: int | None, other_period: float = 0.1
+) -> Diagnosed:
+    """``left`` and ``right`` take so long, each in its period."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def left() -> None:
+            simulation.sleep(lengths[0])
+
+        def right() -> None:
+            simulation.sleep(lengths[1])
+
+        first = MutuallyExclusiveCallbackGroup()
+        node.create_timer(0.1, left, first)
+        node.create_timer(other_period, right, MutuallyExclusiveCallbackGroup() if apart else first)
+        spin(node, threads)
+
+    return diagnosed(program)
+
+
+@pytest.mark.parametrize(
+    ("apart", "threads", "whose", "cure"),
+    [
+        (False, None, "the only thread", "give right a callback group of its own, and spin with "),
+        (True, None, "the only thread", "spin with MultiThreadedExecutor(num_threads=2); or let them"),
+        (False, 4, "group A", "give right a callback group of its own; or let them take less time"),
+    ],
+)
+def test_timers_that_ask_for_more_than_all_of_the_time_are_told_with_what_they_ask_for(
+    apart: bool, threads: int | None, whose: str, cure: str
+) -> None:
+    run = two_timers((0.06, 0.07), apart=apart, threads=threads)
+    assert {rule for rule, _ in run.problems()} == {"overload"}
+    told = run.explained("overload")
+    assert told.what.startswith(f"left and right ask for 130 % of the time of {whose}: ")
+    assert told.what.endswith(" Hz in place of 10 Hz")
+    assert told.why.endswith("; left takes 60 ms every 100 ms and right takes 70 ms every 100 ms")
+    assert told.cure.startswith(cure)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "other_period", "apart", "threads"),
+    [
+        ((0.04, 0.05), 0.1, False, None),
+        ((0.07, 0.08), 0.1, True, 2),
+        ((0.07, 0.08), 0.4, False, None),
+    ],
+    ids=["time enough", "each on a thread", "seldom"],
+)
+def test_timers_that_have_time_enough_ask_for_nothing(
+    lengths: tuple[float, float], other_period: float, apart: bool, threads: int | None
+) -> None:
+    run = two_timers(lengths, apart=apart, threads=threads, other_period=other_period)
+    assert run.problems() == set()

@@ -177,6 +177,10 @@ FIT = "define it with the parameters it is called with (diff)"
         ("call_in_parameter_callback", [APART.replace("tick", "tune")]),
         ("no_response", ["end answer with: return response (diff)"]),
         ("held_group", ["give on_chatter a callback group of its own"]),
+        (
+            "two_timers_too_much",
+            ["give right a callback group of its own, and spin with MultiThreadedExecutor(num_threads=2)"],
+        ),
         ("sleep_in_service", [APART.replace("tick", "gripper")]),
     ],
 )

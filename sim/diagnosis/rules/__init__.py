@@ -35,7 +35,13 @@ from sim.diagnosis.rules.spinning import (
 )
 from sim.diagnosis.rules.synchronisers import NeverSynchronised
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
-from sim.diagnosis.rules.timing import FallsBehind, MeantInMilliseconds, OverlappingCallback, OverrunTimer
+from sim.diagnosis.rules.timing import (
+    FallsBehind,
+    MeantInMilliseconds,
+    OverlappingCallback,
+    Overload,
+    OverrunTimer,
+)
 from sim.diagnosis.rules.transforms import LookupKeepsTransform
 from sim.diagnosis.rules.unended import ThreadWaitsForNobody, WaitsForLock
 from sim.diagnosis.rules.unspun import NodeNeverSpins, SpinsTooRarely
@@ -84,6 +90,7 @@ RULES: tuple[Rule, ...] = (
     BehindOthers(),
     OverlappingCallback(),
     OverrunTimer(),
+    Overload(),
     FallsBehind(),
     ServiceFallsBehind(),
     StaleData(),

@@ -23,8 +23,21 @@ from sim.diagnosis.rule import (
 from sim.diagnosis.rules.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.rules.edits import edits_for_rounds
 from sim.diagnosis.rules.locks import weight_beside_lock
+from sim.diagnosis.rules.waiting import long_for
+from sim.diagnosis.shares import asked_by_turns, room_for, what_it_takes
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.words import awaited_lock, lock_keeper, lock_taker, often, threads_for, who, with_threads
+from sim.diagnosis.words import (
+    awaited_lock,
+    group_of,
+    listed,
+    lock_keeper,
+    lock_taker,
+    often,
+    only_thread,
+    threads_for,
+    who,
+    with_threads,
+)
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import EntityKind, GroupKind
@@ -218,6 +231,59 @@ def _awaits(entity: EntityInfo, view: TimelineView) -> Iterator[Window]:
 def _kind_of_group(entity: EntityInfo, view: TimelineView) -> GroupKind | None:
     group = view.timeline.groups.get(entity.group)
     return None if group is None else group.kind
+
+
+class Overload(Rule):
+    """Timers of one thread or group come too seldom, each too late by little: they ask for more than all of
+    its time. Told where no call takes longer than its period, and no wait is long: of those others tell.
+    """
+
+    id = "overload"
+    summary = "timers ask for more time than their thread or group has"
+    is_effect = by_culprit = True
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield the timers that come too seldom, if there are few callbacks."""
+        timers = (each for each in view.entities(EntityKind.TIMER) if each.period and not is_models(each))
+        for entity in timers if view.few_entities else ():
+            calls = view.timeline.spans_of(entity.id, Window(0, view.end + 1))[-_LATELY:]
+            window = Window(calls[0].start, calls[-1].start) if len(calls) == _LATELY else Window(0, 0)
+            is_short = 0 < window.length <= _STRETCH
+            if not is_short or (_LATELY - 1) * entity.period > _OFTEN_ENOUGH * window.length:
+                continue
+            asked = asked_by_turns(entity, window, view.timeline)
+            long = any(wait.until - wait.since >= long_for(entity) for wait in view.waits(entity.id))
+            if not long and (size := round(100 * sum(asked.values()))) >= _TOO_MUCH:
+                most = max(asked, key=asked.__getitem__)
+                yield Finding(self, window.start, window.end, entity.id, most, size=size)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        entity, window = entity_of(found, timeline), Window(found.at, found.until)
+        asked = asked_by_turns(entity, window, timeline)
+        threads = threads_for([entity.id], found.until, timeline)
+        one = "one thread runs" if threads == 1 else "a mutually exclusive group lets in"
+        whose = only_thread(timeline) if threads == 1 else group_of(entity.id, timeline)
+        takes = {each: who(each, timeline) for each in asked}
+        shares = [what_it_takes(each, share, timeline) for each, share in asked.items()]
+        comes = f"{(_LATELY - 1) * SECOND / window.length:.3g} Hz in place of {SECOND / entity.period:.3g} Hz"
+        room = room_for(asked, threads, timeline)
+        return Explanation(
+            f"{listed(takes.values())} ask for {found.size} % of the time of {whose}: "
+            f"{takes[entity.id]} comes at {comes}",
+            f"{one} one callback at a time; {listed(shares)}",
+            f"{room.words(timeline)}; or let them take less time, or be due less often",
+            place_of(found.culprit, timeline),
+            remedies=(room,),
+        )
+
+
+_LATELY = 8
+"""The last calls of a timer by which it is judged."""
+_STRETCH = 5 * SECOND
+"""The longest time that these may take: no more events than of that are looked at."""
+_OFTEN_ENOUGH = 0.9
+_TOO_MUCH = 105
+"""Per cent of the time from which on that is too much."""
 
 
 class MeantInMilliseconds(Rule):

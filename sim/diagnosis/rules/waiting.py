@@ -59,7 +59,7 @@ class KeptWaiting(Rule):
             for wait in view.waits(entity.id):
                 parts = wait.because(self.reason)
                 waited = sum(map(wait.length, parts))
-                if waited < _long_for(entity) or _may_wait_for_its_caller(entity, wait, view):
+                if waited < long_for(entity) or _may_wait_for_its_caller(entity, wait, view):
                     continue
                 shares: defaultdict[EntityId, Nanoseconds] = defaultdict(int)
                 for part in parts:
@@ -260,7 +260,7 @@ def _wait_for_its_lock(found: Finding, timeline: Timeline) -> list[EntityId]:
     return [*dict.fromkeys(filter(None, callbacks))]
 
 
-def _long_for(entity: EntityInfo) -> Nanoseconds:
+def long_for(entity: EntityInfo) -> Nanoseconds:
     """Return from which length on a wait is long: for timers, from that at which they miss a tick."""
     if entity.kind is not EntityKind.TIMER:
         return HALF_A_SECOND
@@ -277,7 +277,7 @@ def _others_waiting(found: Finding, reason: Reason, timeline: Timeline) -> list[
         and any(
             wait.holder == found.culprit
             and wait.reason is reason
-            and min(wait.end_at(timeline.end), at.end) - wait.start >= _long_for(entity)
+            and min(wait.end_at(timeline.end), at.end) - wait.start >= long_for(entity)
             for wait in timeline.waits_of(each, at)
         )
     ]
