@@ -325,6 +325,24 @@ def test_a_loop_that_spins_too_rarely_is_told_with_its_line(tmp_path: Path) -> N
     assert str(never.place) == "node.py:8"
 
 
+def test_a_loop_after_a_spin_that_has_returned_spins_no_more(tmp_path: Path) -> None:
+    lines = (
+        "rclpy.init()",
+        "node = rclpy.create_node('n')",
+        "executor = rclpy.executors.SingleThreadedExecutor()",
+        "executor.add_node(node)",
+        "node.create_timer(0.1, lambda: None)",
+        "node.create_timer(0.5, lambda: executor.shutdown())",
+        "executor.spin()",
+        "while rclpy.ok():",
+        "    time.sleep(0.1)",
+    )
+    run = run_lines(tmp_path, *lines, seconds=4.0)
+    [told] = [each.explained(run.timeline) for each in diagnose(run.timeline)]
+    assert told.what.endswith(", and spins no more")
+    assert told.cure.startswith("keep spinning the node: ")
+
+
 def test_messages_that_are_lost_between_two_spins_are_told_with_the_loop(tmp_path: Path) -> None:
     run = run_lines(tmp_path, *RARELY, "    rclpy.spin_once(node)", "    time.sleep(0.2)", seconds=5.0)
     (found,) = diagnose(run.timeline)

@@ -31,7 +31,7 @@ from sim.diagnosis.words import SPIN_ALWAYS, SPIN_BESIDE, SPIN_ONCE, who
 from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import node_name
-from sim.trace.events import NodeId, Reason
+from sim.trace.events import EntityId, NodeId, Reason
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -126,6 +126,8 @@ class NodeNeverSpins(Rule):
         if loop is not None:
             how_often = "spins too rarely" if ever else "comes to no spin()"
             place, cure = loop, how
+            if ever and not _spun_before(found.subject, timeline):
+                how_often, cure = "spins no more", f"keep spinning the node: {how}"
             what = f"the program is in the loop of line {loop.first_line}, and {how_often}"
             remedies = by_edit(loop, "spin the node in a thread beside the loop", spin_node_beside)
         if loop is not None and cure is SPIN_BESIDE:
@@ -166,6 +168,20 @@ class SpinsTooRarely(KeptWaiting):
             cure or SPIN_ALWAYS,
         )
         return replace(told, place=loop or told.place)
+
+
+def _spun_before(entity: EntityId, timeline: Timeline) -> bool:
+    """Whether a callback has waited for somebody to spin lately, and was called then."""
+    waits = timeline.waits_of(entity, Window(0, timeline.end + 1))[-_LATELY:]
+    begun = timeline.calls_begun(entity, Window(0, timeline.end + 1))[:1]
+    return any(
+        each.end is not None and each.reason is Reason.NOBODY_SPINS and each.start > begun[0].start
+        for each in waits
+        if begun
+    )
+
+
+_LATELY = 100
 
 
 def _taken_or_late(what: str, cure: str, place: CodeLocation) -> tuple[str, str, CodeLocation]:
