@@ -128,6 +128,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("no_exercise", "e", "", "Say why there is no exercise here"),
         ("no_hint", "h", "", "Say why there is no hint now"),
         ("no_solution", "H", "", "Say why there is no solution now"),
+        ("no_follow", "f", "", "Say where the log is followed"),
         ("no_compare", "C", "", "Say what can be compared"),
         *((f"no_time('{name}')", key, "", _NO_TIME) for name, key in OWN_TIME.items()),
         ("no_take_over", "W", "", "Say when you can choose which thread goes on"),

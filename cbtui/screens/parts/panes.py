@@ -155,6 +155,11 @@ class PaneLayout(ScreenPart):
         self.show("log")
         self.screen.query_one(LogView).focus_filter()
 
+    def action_no_follow(self) -> None:
+        """Say where the log is followed."""
+        log = self.host.key("show_pane('log')")
+        self.host.tell(f"Only the log is followed or stays: {log} goes there.")
+
     def action_open_source(self) -> None:
         """Open the code in the user's editor, at the diagnosis or the line chosen in the code.
 

@@ -159,6 +159,13 @@ async def test_enter_goes_from_the_code_to_the_lane_and_back() -> None:
         assert code.place.line == timer.first_line
 
 
+async def test_f_says_where_the_log_is_followed_while_another_pane_is_in_front() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "f")
+        [note] = app._notifications
+        assert note.message == f"Only the log is followed or stays: {LOG} goes there."
+
+
 @pytest.mark.slow
 async def test_a_click_on_a_callback_selects_its_lane_and_stays_at_the_code() -> None:
     async with console(WIDE) as (app, pilot):
