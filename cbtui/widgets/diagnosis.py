@@ -141,13 +141,11 @@ def with_worst_problem(
     if worst.at is None:
         return Diagnosis(what, level, at_length=worst.headline, place=explanation.place)
     counts_on = at is not None and worst.finding.count > 1
+    when = "whole run: " if counts_on else f"at {worst.at / 1e9:.1f} s: "
     further = f"; {how_to_continue}" if how_to_continue and explanation.for_ever else ""
-    if counts_on:  # then no time may be left out: the moment's own numbers are others
-        at_length = f"{worst.name} in the whole run: {what}{further}".lstrip()
-        return Diagnosis(f"whole run: {what}", level, at_length=at_length, place=explanation.place)
-    time = f"at {worst.at / 1e9:.1f} s: "
-    at_length = f"{worst.name} {time}{what}{further}".lstrip()
-    return Diagnosis(f"{time}{what}", level, at_length=at_length, time=time, place=explanation.place)
+    at_length = f"{worst.name} {'in the ' if counts_on else ''}{when}{what}{further}".lstrip()
+    time = "" if counts_on else when  # the moment's own numbers are others, so that is never left out
+    return Diagnosis(f"{when}{what}", level, at_length=at_length, time=time, place=explanation.place)
 
 
 def _is_known(found: ExplainedFinding, at: Nanoseconds) -> bool:
