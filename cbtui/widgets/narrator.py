@@ -71,8 +71,9 @@ class Narrator(PaintedWidget):
         self, told: Sequence[str], first: int, here: int, width: int, most: int
     ) -> list[tuple[str, Ink]]:
         lines: list[tuple[str, Ink]] = []
+        decided = self.timeline.neighbour(self.now + 1, -1) or self.now
         for place, text in enumerate(told[first:], first):
-            when = f"{timestamp(self.now)}, decision {place + 1}: " if place == first > 0 else ""
+            when = f"{timestamp(decided)}, decision {place + 1}: " if place == first > 0 else ""
             sign = f" {GLYPHS[self.charset].forth} " if place == here else "   "
             for line in lines_of_text(when + text, width, self.charset, most):
                 lines.append((f"{sign}{line}", _FIRST if place == here else _NEXT))

@@ -316,6 +316,8 @@ def test_each_decision_of_a_moment_has_a_line_of_its_own_and_the_one_looked_at_i
     assert "group A is free (panes show the end of this moment)" in earlier
     narrator.place = 1
     assert "2.000 s, decision 2: MainThread is free: second" in narrator.rows(Size(100, 1))[0][0].text
+    narrator.now, narrator.stepped = ns(2.2), False
+    assert "2.000 s, decision 2: " in narrator.rows(Size(100, 1))[0][0].text, "dated by when it was decided"
 
 
 @pytest.mark.parametrize("more", range(1, 7))

@@ -1,7 +1,7 @@
-"""A tank whose valve stays open because Ctrl-C comes.
+"""A tank that is being filled when Ctrl-C comes.
 
-The callback that fills it sleeps on a worker's thread, where no Ctrl-C
-arrives. When it would close the valve, all that it needs has gone.
+The callback that fills it opens a valve, sleeps on a worker's thread,
+and then publishes that the valve is to be closed.
 """
 
 import os

@@ -1,7 +1,7 @@
-"""An oven whose bread burns because the simulator begins anew.
+"""An oven that goes by a simulator's clock, which is set back.
 
 It remembers when the bread is done, as a time of the simulated clock.
-When that clock is set back, the time lies far in the future.
+While it bakes, the simulator begins anew.
 """
 
 import threading

@@ -1,7 +1,7 @@
-"""One node in two executors, of which one has nothing to do.
+"""One node in two executors, each on a thread of its own.
 
-Each callback group was to have an executor and a thread of its own. But
-an executor takes nodes, not groups, and a node is in one at a time.
+Each callback group was to have an executor and a thread of its own, so
+both executors are given the node.
 """
 
 import threading

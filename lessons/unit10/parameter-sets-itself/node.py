@@ -1,7 +1,7 @@
-"""A belt with a speed limit that does not hold.
+"""A belt with a speed limit.
 
-Its parameter callback sets the very parameter that is being set. What
-was asked for is stored afterwards, and wins.
+Where more is asked for, its parameter callback sets the very parameter
+that is being set, to the limit.
 """
 
 import rclpy

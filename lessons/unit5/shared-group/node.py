@@ -1,7 +1,7 @@
 """Drive to an obstacle and turn away, with one group for all callbacks.
 
-The group and the executor are now written down. They are what rclpy
-takes by itself, so the node behaves as it did without them.
+The group and the executor are now written down: one mutually exclusive
+group, and an executor with one thread.
 """
 
 import math

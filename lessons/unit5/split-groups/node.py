@@ -1,7 +1,7 @@
 """Drive to an obstacle and turn away, with a group for each callback.
 
-Three groups let the three callbacks run at the same time, and four
-threads are there to run them.
+Each of the three groups is mutually exclusive, and the executor has four
+threads.
 """
 
 import math

@@ -1,7 +1,7 @@
-"""A timer that asks a service and waits for the answer: for ever.
+"""A timer that asks a service and waits for the answer.
 
 Two nodes share an executor with four threads. The gripper answers every
-request, and the picker cannot take the answer in.
+request, and the picker waits in its callback until the answer is there.
 """
 
 import time

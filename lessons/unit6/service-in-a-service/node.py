@@ -1,7 +1,7 @@
-"""A service that calls another service of the same node, in vain.
+"""A service that calls another service of the same node.
 
-Both services, the client and the belt are in the default group: while one
-of them runs, none of the others can begin.
+Both services, the client and the belt are in the default group, and the
+executor has two threads.
 """
 
 import time

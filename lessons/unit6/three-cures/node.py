@@ -1,7 +1,7 @@
-"""Three ways to ask a service from a timer, and all get their replies.
+"""Three ways to ask a service from a timer.
 
-They differ in what they keep while the reply is on its way: a thread and
-a group, a group alone, or nothing.
+One leaves the reply to a callback of its own, one awaits it, and one
+waits for it in call().
 """
 
 import time

@@ -1,7 +1,7 @@
-"""A robot that fetches things, and cannot be called back.
+"""A robot that fetches things, and is called back on its way.
 
-It asks before each step whether the goal is cancelled. But the request
-to cancel it waits for the only thread, which is busy with the steps.
+It asks before each step whether the goal is cancelled. One thread runs
+the steps, and whatever else comes for the robot's node.
 """
 
 import threading

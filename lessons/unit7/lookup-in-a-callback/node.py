@@ -1,7 +1,7 @@
 """A crane that asks tf, in a callback, where its hook is just now.
 
-One thread runs both nodes. The lookup waits for the next transform, and
-the listener that would hear it waits for the thread.
+One thread runs both nodes. The lookup waits for the next transform,
+which comes as a message to the tf listener.
 """
 
 import math

@@ -1,7 +1,7 @@
-"""An oven on simulated time, which sleeps in a callback and never wakes.
+"""An oven on simulated time, which sleeps in a callback.
 
-Simulated time comes as messages. The callback that would take them
-waits for the thread, and the thread waits for time to pass.
+Simulated time comes as messages. The oven takes them on the thread that
+runs its other callbacks, too.
 """
 
 import threading

@@ -1,7 +1,7 @@
-"""Show a temperature that never comes.
+"""Show the temperature that a sensor publishes.
 
 The sensor publishes best effort, and the display asks for reliable
-messages. So the two never match, and the program runs on.
+messages. Topic and type are the same.
 """
 
 import rclpy

@@ -1,7 +1,7 @@
 """Decide on pictures that come faster than they can be looked at.
 
-A queue of ten lies between the camera and the node that decides. It is
-always full, and the picture that is next is the oldest in it.
+A queue of ten lies between the camera and the node that decides. A
+decision takes longer than the time between two pictures.
 """
 
 import time

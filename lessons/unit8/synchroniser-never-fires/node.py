@@ -1,6 +1,6 @@
-"""Fuse what a camera and a lidar see at the same time: it never happens.
+"""Fuse what a camera and a lidar see at the same time.
 
-Both send, both are heard. But a TimeSynchronizer wants equal stamps, and
+Both send, both are heard. A TimeSynchronizer wants equal stamps, and
 each sensor stamps the moment at which it measured.
 """
 
