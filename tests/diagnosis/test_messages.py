@@ -83,6 +83,18 @@ def test_messages_lost_during_several_calls_are_not_said_to_be_lost_in_one() -> 
     assert "while its calls ran; each took 600 ms" in early, "the call that is not over has no length yet"
 
 
+def placed(run: Run) -> Timeline:
+    """A run whose callbacks were all made in line 5."""
+    timeline = Timeline()
+    timeline.extend(
+        [
+            replace(each, made_at=("node.py", 5)) if isinstance(each, EntityAppeared) else each
+            for each in run.events
+        ]
+    )
+    return timeline
+
+
 @pytest.mark.parametrize("seen", [True, False], ids=["waits seen", "waits missed by a busy machine"])
 def test_a_loss_between_two_calls_does_not_hide_that_the_callback_is_too_slow(seen: bool) -> None:
     run = Run(clock="real")
@@ -97,13 +109,7 @@ def test_a_loss_between_two_calls_does_not_hide_that_the_callback_is_too_slow(se
         for after in (0.0, 0.05, 0.1, 0.15):
             run.message(hear, at + after)
     run.stop(1.75)
-    timeline = Timeline()
-    timeline.extend(
-        [
-            replace(each, made_at=("node.py", 5)) if isinstance(each, EntityAppeared) else each
-            for each in run.events
-        ]
-    )
+    timeline = placed(run)
     (told,) = (each.explained(timeline) for each in diagnose(timeline) if each.rule.id == "dropped-messages")
     assert ("while its calls ran" in told.what) is seen
     assert "so many at once" not in told.cure
@@ -124,6 +130,20 @@ def test_what_is_lost_while_nobody_spins_is_not_laid_to_the_callback() -> None:
 
 def test_a_queue_that_is_long_enough_loses_nothing() -> None:
     assert "dropped-messages" not in {rule for rule, _ in sensor_and_sleeper(100).told()}
+
+
+@pytest.mark.parametrize("apart", [0.0, 0.00001])
+def test_a_burst_is_what_comes_before_the_callback_runs_again(apart: float) -> None:
+    run = Run()
+    thread = run.thread("MainThread")
+    heard = run.subscription(run.exclusive(run.node("/n")), "/t", "hear", depth=10)
+    for number in range(200):
+        run.message(heard, 0.1 + apart * number)
+    for number in range(10):
+        run.callback(heard, thread, 0.2 + number / 100, 0.001)
+    run.stop(1.0)
+    [found] = diagnose(timeline := placed(run))
+    assert "a queue of 200: its messages come so many at once" in found.explained(timeline).cure
 
 
 def test_a_queue_of_one_is_meant_to_keep_the_newest() -> None:

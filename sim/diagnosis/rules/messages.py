@@ -1,6 +1,6 @@
 """Rules on messages that are lost, stale when used, or never delivered."""
 
-from bisect import bisect_left
+from bisect import bisect, bisect_left
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from itertools import groupby
@@ -100,8 +100,11 @@ class DroppedMessages(Rule):
             because, each_took, room = f" while it waited for {awaited_lock(lock, timeline)}", "", Remedy()
             cure = f"in {lock_taker(lock, timeline)}, {LET_GO}"
         if not waits and not _runs(entity.id, at, timeline) and (made := made_at(entity)):
-            losses = Counter(timeline.losses_of(entity.id, Window(found.at, found.until + 1)))
-            at_once = entity.depth + max(losses.values())
+            lossy = Window(found.at, found.until + 1)
+            starts = [each.start for each in timeline.calls_begun(entity.id, lossy)]
+            # What is lost between two calls came in one burst, however long that took.
+            bursts = Counter(bisect(starts, each) for each in timeline.losses_of(entity.id, lossy))
+            at_once = entity.depth + max(bursts.values())
             cure, place = f"give {subject} a queue of {at_once}", made
             (room,) = by_edit(made, cure, set_depth, at_once)
             cure += ": its messages come so many at once"
