@@ -564,6 +564,14 @@ def test_a_client_is_named_after_the_reply_and_a_service_below_its_node_by_its_n
     ]
 
 
+def test_what_is_lost_before_the_first_call_of_a_run_on_the_real_clock_counts() -> None:
+    drops = [MessageDropped(ns(0.1), 1, 10, 5)] * 9
+    calls = called(1, 1.0, 1.1)
+    one, other = (run([ODOM], [RunStarted(0, "run", "real", 0), *lost, *calls]) for lost in (drops, ()))
+    lost = sections(compare(one, other, Window(0, ns(1.2))))[0].rows[1]
+    assert (lost.label, lost.figures) == ("lost", ("9", "0"))
+
+
 def test_what_differs_by_noise_on_the_real_clock_is_about_the_same() -> None:
     window = Window(0, ns(4.0))
     compared = compare(on_the_real_clock(1.0, 69, wait=0.03), on_the_real_clock(1.0, 74), window)

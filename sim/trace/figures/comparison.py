@@ -160,8 +160,8 @@ def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
     """Compare a window of two runs; callbacks match by node, kind, function and topic or service.
 
     The others match without their node, where that is unambiguous. On the real clock a window from the
-    beginning starts at the first call of each run, and is as long in both. Takes time in proportion to the
-    calls and waits in the window.
+    beginning starts at the first call of each run, and is as long in both; losses before that call count,
+    too. Takes time in proportion to the calls and waits in the window.
     """
     return run_to_end(compare_incrementally(first, second, window))
 
@@ -169,8 +169,8 @@ def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
 def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> Incremental[Comparison]:
     """As ``compare``, step by step. The runs may continue: events after the window have no effect."""
     of_first_run, of_second_run = _windows(first, second, window)
-    of_first = yield from _callbacks_of(first, of_first_run)
-    of_second = yield from _callbacks_of(second, of_second_run)
+    of_first = yield from _callbacks_of(first, of_first_run, window.start)
+    of_second = yield from _callbacks_of(second, of_second_run, window.start)
     partners = _partners(of_first, of_second)
     pairs: list[tuple[CallbackKey, CallbackInRun | None, CallbackInRun | None]] = [
         (key, callback, of_second.get(partners.get(key, key))) for key, callback in of_first.items()
@@ -326,12 +326,15 @@ def _long_name(key: CallbackKey) -> str:
     return f"{_short_name(key)} ({place}{f' #{number}' if number > 1 else ''})"
 
 
-def _callbacks_of(timeline: Timeline, window: Window) -> Incremental[dict[CallbackKey, CallbackInRun]]:
+def _callbacks_of(
+    timeline: Timeline, window: Window, losses_from: Nanoseconds
+) -> Incremental[dict[CallbackKey, CallbackInRun]]:
     callbacks: dict[CallbackKey, CallbackInRun] = {}
     for key, entity in _entities_of(timeline).items():
         waits = yield from _wait_figures(entity, timeline, window)
         figures = yield from statistics_incrementally(timeline, entity, window)
-        callbacks[key] = CallbackInRun(figures, waits)
+        drops = timeline.drops_of(entity, Window(losses_from, window.end))
+        callbacks[key] = CallbackInRun(replace(figures, drops=drops), waits)
     return callbacks
 
 
