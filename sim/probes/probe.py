@@ -140,10 +140,10 @@ class Probe:
         if entity.traced:
             self._sink(events.EntityReady(self._now(), entity.trace_id, depth, message))
 
-    def timer_cancelled(self, entity: TracedEntity) -> None:
-        """Record that a timer was cancelled."""
+    def timer_cancelled(self, entity: TracedEntity, over: bool = False) -> None:
+        """Record that a timer was cancelled, or that this is ``over``: it was reset."""
         if entity.traced:
-            self._sink(events.TimerCancelled(self._now(), entity.trace_id))
+            self._sink((events.TimerReset if over else events.TimerCancelled)(self._now(), entity.trace_id))
 
     def dropped(self, entity: TracedEntity, depth: int, message: int) -> None:
         """Record that a queue lost a message: the oldest of a full queue, or one that expired."""

@@ -59,8 +59,8 @@ class RunStores:
         self.positions = Positions(spill)
         self.queues: defaultdict[EntityId, QueueHistory] = defaultdict(lambda: QueueHistory(spill))
         self.dropped_at = IntegerTable(spill, 1)
-        self.cancels: defaultdict[EntityId, History[ev.TimerCancelled]] = defaultdict(
-            lambda: History(attrgetter("t"), ev.TimerCancelled, spill)
+        self.cancels: defaultdict[EntityId, History[ev.TimerCancelled | ev.TimerReset]] = defaultdict(
+            lambda: History(attrgetter("t"), ev.TimerCancelled | ev.TimerReset, spill)
         )
         self.publications = Publications(spill)
         self.calls = ServiceCalls(spill)
@@ -147,6 +147,7 @@ class RunStores:
             ev.EntityGone: self._entity_gone,
             ev.EntityReady: self._ready,
             ev.TimerCancelled: self._timer_cancelled,
+            ev.TimerReset: self._timer_reset,
             ev.MessageDropped: self._message_dropped,
             ev.WaitStarted: self.waiting.start,
             ev.WaitEnded: self._wait_ended,
@@ -204,6 +205,9 @@ class RunStores:
     def _timer_cancelled(self, event: ev.TimerCancelled) -> None:
         self.cancels[event.entity].add(event)
         self.makings.release(event.entity)
+
+    def _timer_reset(self, event: ev.TimerReset) -> None:
+        self.cancels[event.entity].add(event)
 
     def _ready(self, event: ev.EntityReady) -> None:
         self.queues[event.entity].arrive(event.t, event.depth, event.message)

@@ -315,9 +315,9 @@ class Timeline:
         return min(times, default=None) if step > 0 else max(times, default=None)
 
     def cancelled_since(self, timer: EntityId, since: Nanoseconds, at: Nanoseconds) -> bool:
-        """Whether a timer was cancelled between two moments, these included."""
+        """Whether a timer was cancelled between two moments, these included, and not reset by the second."""
         latest = self._run.cancels[timer].latest(at)
-        return latest is not None and latest.t >= since
+        return isinstance(latest, ev.TimerCancelled) and latest.t >= since
 
     @property
     def names_sent(self) -> Collection[str]:

@@ -71,6 +71,7 @@ def test_golden_lines() -> None:
         '"since":1.502,"workers_busy":true}',
         f'{{"t":1.502,"event":"message_drop",{about},"depth":10,"message_id":6}}',
         f'{{"t":1.502,"event":"timer_cancel",{about}}}',
+        f'{{"t":1.502,"event":"timer_reset",{about}}}',
         f'{{"t":2.0,"event":"wait_end",{about}}}',
         f'{{"t":2.0,"event":"callback_start",{about},"thread":"talker-1 MainThread",'
         '"depth":0,"age":0.5,"message_id":7}',

@@ -109,7 +109,7 @@ class BeltPainter:
     def _boxes(self, belt: Belt) -> int:
         """Return the preferred columns of a belt's boxes."""
         if belt.tick is not None:
-            return _TICK_TRACK if belt.wait is None else 1
+            return 1 if belt.wait or belt.tick.is_cancelled else _TICK_TRACK
         return min(_MOST_BOXES, max(belt.entity.depth, 0) or _MOST_BOXES)
 
     def _track(self, belt: Belt, line: int, at: int, box: Ink) -> None:

@@ -82,6 +82,7 @@ class TimerTick:
 
     due: Nanoseconds | None
     late: Nanoseconds
+    is_cancelled: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -315,10 +316,12 @@ class _SceneBuilder:
             return TimerTick(waits.since, 0)
         period = timer.period
         spans = self._timeline.spans_of(timer.id, Window(self._now - 2 * period, self._now + 1))
+        if self._timeline.cancelled_since(timer.id, spans[-1].start if spans else 0, self._now):
+            return TimerTick(None, 0, is_cancelled=True)
         if not spans or period <= 0:
             return TimerTick(None, 0)
         last = spans[-1]
-        if self._is_over or self._timeline.cancelled_since(timer.id, last.start, self._now):
+        if self._is_over:
             return TimerTick(None, last.age)
         due = last.start - last.age + period
         if due < last.start:

@@ -170,6 +170,8 @@ def belt_details(belt: Belt, now: Nanoseconds) -> list[tuple[str, bool]]:
     if belt.queue.dropped:
         found.append((f"lost {belt.queue.dropped}", True))
     if belt.tick is not None and belt.wait is None:
+        if belt.tick.is_cancelled:
+            found.append(("cancelled", False))
         if belt.tick.late >= max(belt.entity.period // 10, _LATE_AT_LEAST):
             found.append((f"was {duration(belt.tick.late)} late", True))
         if belt.tick.due is not None:

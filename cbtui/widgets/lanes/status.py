@@ -125,13 +125,16 @@ class LaneStatus:
         if wait is not None:
             lasted = self.moment.at - wait.since
             return TextRun(f"late {duration(lasted)}" if lasted else "is due", WARN)
+        since = 0 if latest is None else latest.start
+        if self.timeline.cancelled_since(timer.id, since, self.moment.at):
+            return TextRun("cancelled", FAINT)
         if latest is None:
             return TextRun("", PLAIN)
         if is_late(latest, timer):
             return TextRun(f"was late {duration(latest.age)}", WARN)
         quiet = self.moment.at - latest.start
         if latest.end is not None and quiet > max(2 * timer.period, _QUIET_AT_LEAST):
-            return TextRun(f"last {duration(quiet)} ago", FAINT)  # cancelled, or by a clock that stands still
+            return TextRun(f"last {duration(quiet)} ago", FAINT)  # as by a clock that stands still
         return TextRun("on time", FAINT)
 
     def _client(self, client: EntityInfo) -> TextRun:

@@ -117,6 +117,8 @@ class Timer(Entity):
         self.require_alive()
         with self._host.lock:
             self.reset_unheard = True
+            if self._canceled:
+                self.node.context.probe.timer_cancelled(self, over=True)
             self._start()
 
     def _start(self) -> None:

@@ -49,6 +49,12 @@ class TimerCancelled(TraceEvent, frozen=True, tag="timer_cancel"):
     entity: EntityId
 
 
+class TimerReset(TraceEvent, frozen=True, tag="timer_reset"):
+    """A cancelled timer was reset: it falls due again one period later."""
+
+    entity: EntityId
+
+
 class MessageDropped(TraceEvent, frozen=True, tag="message_drop"):
     """A queue lost a message.
 

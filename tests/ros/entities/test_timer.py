@@ -10,7 +10,8 @@ from sim.ros.exceptions import RCLError, ROSInterruptException
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.trace.events import TimerCancelled
+from sim.trace.events import TimerCancelled, TimerReset
+from tests.support.builder import ns
 from tests.support.simulation import Simulation, Trace, simulate
 
 
@@ -120,6 +121,10 @@ def test_a_cancelled_timer_rests_until_it_is_reset() -> None:
     trace = simulate(program, until=2.0)
     assert trace.times("tick") == [0.1, 0.85]
     assert [event.t for event in trace.of(TimerCancelled)] == [100_000_000, 850_000_000]
+    assert [event.t for event in trace.of(TimerReset)] == [750_000_000]
+    timeline, tick = trace.timeline(), trace.of(TimerCancelled)[0].entity
+    told = [timeline.cancelled_since(tick, 0, ns(at)) for at in (0.05, 0.7, 0.8, 1.0)]
+    assert told == [False, True, False, True]
 
 
 def test_a_reset_puts_off_the_next_call_by_a_whole_period() -> None:

@@ -358,6 +358,8 @@ def test_a_timer_that_was_cancelled_has_no_next_tick_until_it_is_called_again() 
         return None if belt.tick is None else belt.tick.due
 
     assert [due(at) for at in (1.02, 1.06, 2.5, 3.5)] == [ns(2.0), None, None, ns(4.0)]
+    pictures = [plain(FactoryPainter().paint(timeline, ns(at), 78, 14)) for at in (1.02, 2.5, 3.5)]
+    assert ["cancelled" in each for each in pictures] == [False, True, False]
 
 
 def test_a_thread_whose_callback_raised_and_whose_node_nobody_spins_waits_for_no_work() -> None:

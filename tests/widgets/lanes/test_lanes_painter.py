@@ -9,7 +9,7 @@ from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.lanes import LanePainter, wanted_rows
 from cbtui.widgets.lanes.painter import INTERVALS_PER_FRAME
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
-from sim.trace.events import Reason
+from sim.trace.events import Reason, TimerCancelled, TimerReset
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.properties import examples
@@ -192,6 +192,16 @@ def test_a_timer_that_comes_no_more_though_nothing_keeps_it_is_not_on_time(until
     tick = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
     for at in (1.0, 2.0):
         run.callback(tick, run.thread("MainThread"), at, 0.01)
+    assert f"│ {status} " in plain(LanePainter().paint(told(run, until=until), *last(10, until), 80, 8).rows)
+
+
+@pytest.mark.parametrize(("until", "status"), [(1.3, "cancelled"), (1.6, "on time"), (7.5, "last 6.5 s ago")])
+def test_a_timer_is_cancelled_until_it_is_reset(until: float, status: str) -> None:
+    run = Run()
+    tick = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.callback(tick, run.thread("MainThread"), 1.0, 0.01)
+    run.add(TimerCancelled(ns(1.005), tick))
+    run.add(TimerReset(ns(1.5), tick))
     assert f"│ {status} " in plain(LanePainter().paint(told(run, until=until), *last(10, until), 80, 8).rows)
 
 
