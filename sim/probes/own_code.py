@@ -95,6 +95,12 @@ def place_of_caller() -> str:
     return place_of(sys._getframe(1))
 
 
+def line_of_caller() -> tuple[str, int]:
+    """The file and line of the learner's code on the calling thread; "" and 0 if none of its frames is."""
+    frame = own_frame(sys._getframe(1))
+    return ("", 0) if frame is None else (frame.f_code.co_filename, frame.f_lineno)
+
+
 def raised_at(error: BaseException) -> tuple[str, int]:
     """The file and line of the innermost frame of the learner's own code, else of the innermost frame."""
     found = ("", 0)

@@ -6,7 +6,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from sim.diagnosis import Explanation, Weight
+from sim.diagnosis import CodeLocation, Explanation, Weight
 from sim.diagnosis.diagnoses import diagnose
 from sim.diagnosis.edits.flags import event_setters
 from sim.engine.watchdogs import hung_callbacks, outside_time
@@ -46,6 +46,14 @@ def test_what_is_wrong_and_what_to_do_are_fields_of_the_notice() -> None:
     fields = ("it waits; its own lock", "let; go")
     notice = Notice(1, Severity.WARN, "words", 1, False, NoticeKind.DEADLOCK, *fields)
     assert explained(notice) == [("odom_callback is in a deadlock: it waits; its own lock", "let; go")]
+
+
+def test_the_line_of_a_wait_is_the_one_that_its_notice_names() -> None:
+    notice = Notice(2, Severity.WARN, "words", 1, kind=NoticeKind.ENDLESS_WAIT, place=("node.py", 63))
+    timeline = Timeline()
+    timeline.extend([*CAST, CallbackStarted(1, 1, 1, 0, 0, 0), notice])
+    [found] = [each for each in diagnose(timeline) if each.rule.id == "endless-wait"]
+    assert found.explained(timeline).place == CodeLocation("node.py", 63, 63)
 
 
 def test_a_recording_without_these_fields_is_told_in_the_words_of_its_notice() -> None:

@@ -69,7 +69,8 @@ class EndlessWait(Rule):
         if notice.kind is NoticeKind.NO_PROGRESS and at:
             doing = f"waits for {awaited_lock(at[-1], timeline)}," if at[-1].lock else doing_of(at[-1])
             what = f" {doing} and {_how_long(found, timeline)}"
-        place, kept = line_of(found.subject, _moment(found), timeline), kept_waiting(found, timeline)
+        place = line_location(*notice.place) or line_of(found.subject, _moment(found), timeline)
+        kept = kept_waiting(found, timeline)
         ends = _enders(found.subject, at[-1] if at else None, timeline)
         what += f"; {listed(ends)} would end it" if ends else ""
         cure = "wait with a timeout, and make sure that it comes" if ends else notice.advice or _ADVICE

@@ -25,7 +25,7 @@ from sim.engine.stdio.polling import Polling
 from sim.engine.stdio.pseudo_terminal import PseudoTerminal
 from sim.engine.watchdogs.wait_descriptions import WaitProblem
 from sim.interpreter.function_marks import waits_for_keyboard
-from sim.probes.own_code import place_of_caller
+from sim.probes.own_code import line_of_caller, place_of_caller
 from sim.quantities.nanoseconds import wait_ns
 from sim.ros.middleware.process import Process, current_process
 from sim.trace.events import AnyEvent, KeyboardAsked, Notice, Reading, Severity, Typed
@@ -178,7 +178,7 @@ class Terminal:
         if entity and without_end:
             problem = f"a callback waits for the keyboard ({place_of_caller()})"
             problem += ": its thread serves nothing else meanwhile"
-            wait = WaitProblem(problem, "read in a thread of its own", is_deadlock=False)
+            wait = WaitProblem(problem, "read in a thread of its own", False, line_of_caller())
             self._record_once(wait.notice(self._clock.now(), entity))
         if not process.has_keyboard:
             text = "which ros2 launch gives to no program; run this one by itself, with cbtui run or ros2 run"

@@ -14,7 +14,7 @@ from sim.interpreter.function_marks import calls_the_program
 from sim.probes import own_code
 from sim.probes.own_code import is_own, outwards, own_frame, place_text
 from sim.quantities.durations import timestamp
-from sim.trace.events import EntityId, Notice, NoticeKind, Severity
+from sim.trace.events import EntityId, Notice, NoticeKind, Severity, SourcePlace
 
 _AWAITS = threading.Condition.wait.__code__
 """The function in which every wait of Python's library ends that is not for a lock."""
@@ -24,15 +24,19 @@ _RESULT = "Future.result"
 
 @dataclass(frozen=True, slots=True)
 class WaitProblem:
-    """The problem of a wait, and advice on it. ``is_deadlock``: whether it can never end."""
+    """The problem of a wait, and advice on it. ``is_deadlock``: whether it can never end.
+
+    ``place`` is the line of the wait if the positions of threads may not tell it.
+    """
 
     problem: str
     advice: str
     is_deadlock: bool
+    place: SourcePlace = ("", 0)
 
     def notice(self, t: int, entity: EntityId) -> Notice:
         """Return the notice of the problem; ``entity`` is the callback that waits (0: none)."""
-        text, fields = f"{self.problem}; {self.advice}", (self.problem, self.advice)
+        text, fields = f"{self.problem}; {self.advice}", (self.problem, self.advice, self.place)
         if self.is_deadlock:
             text = f"deadlock: {text}"
             return Notice(t, Severity.ERROR, text, entity, False, NoticeKind.DEADLOCK, *fields)

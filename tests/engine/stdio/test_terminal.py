@@ -222,6 +222,7 @@ def test_a_callback_that_waits_for_the_keyboard_is_named(tmp_path: Path) -> None
     assert notices[0].text.startswith("a callback waits for the keyboard (node.py:13, in tick)")
     assert notices[0].entity
     assert notices[0].t == SECOND // 2
+    assert notices[0].place == (str(tmp_path / "node.py"), 13)
 
 
 LAUNCH = """
