@@ -123,15 +123,17 @@ def never_raises() -> Check:
     return Check("no callback raises", judge)
 
 
-def raises(callback: str) -> Check:
-    """A callback ends with an exception."""
+def raises(*callbacks: str) -> Check:
+    """One of some callbacks ends with an exception."""
     expected = "an exception"
 
     def judge(run: Timeline) -> Verdict:
-        spans = [span for span in spans_of(run, callback) if span.error]
-        return Verdict(bool(spans), expected, spans[0].error or "" if spans else "none")
+        seen = [
+            f"{each} raised {span.error}" for each in callbacks for span in spans_of(run, each) if span.error
+        ]
+        return Verdict(bool(seen), expected, seen[0] if seen else "none")
 
-    return Check(f"{callback} raises", judge)
+    return Check(f"{' or '.join(callbacks)} raises", judge)
 
 
 def uses_threads(at_least: int) -> Check:

@@ -19,8 +19,8 @@ SECONDS = 0.19
 class Goal(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The goal of a puzzle: one of these fields."""
 
-    raises: str = ""
-    """A callback that has to raise."""
+    raises: tuple[str, ...] = ()
+    """Callbacks of which one has to raise."""
     says: str = ""
     """A text that has to be in the log."""
     deadlock: bool = False
@@ -30,7 +30,7 @@ class Goal(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         from lessons.checks import gets_stuck, log_says, raises  # not needed by the menu
 
         if self.raises:
-            return raises(self.raises)
+            return raises(*self.raises)
         return log_says(self.says) if self.says else gets_stuck()
 
 

@@ -73,7 +73,7 @@ class Choices(ScreenPart):
             return
         verdict = puzzle.goal.check().judge(run.timeline)
         if verdict.passed:
-            self.reached = f" {puzzle.goal.raises} raised {verdict.seen}." if puzzle.goal.raises else ""
+            self.reached = f" {verdict.seen}." if puzzle.goal.raises else ""
             if self.solution is None:
                 self.host.console.progress.passes(puzzle.id)
             if self.question is not None:
