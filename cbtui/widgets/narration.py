@@ -182,6 +182,8 @@ def returning(span: Span, timeline: Timeline) -> str:
     if timeline.processes_ended.get(timeline.threads[span.thread].process) == span.end:
         return f"{name} does not return: its process ends, {lasted} after it began"
     freed = group or ("" if _around(span, timeline) else short_thread(timeline.threads[span.thread].name))
+    if span.error:
+        return f"{name} raises after {lasted}: {span.error}"
     return f"{name} returns after {lasted}{f', {freed} is free' if freed else ''}"
 
 
@@ -251,7 +253,7 @@ def _begun(span: Span, deed: Deed, timeline: Timeline, *, returns: bool) -> Iter
         return
     thread, around = short_thread(timeline.threads[span.thread].name), _around(span, timeline)
     is_free = f"{thread} spins inside {around}" if around else f"{thread} is free"
-    end = ", and returns at once" if returns else ""
+    end = f", and {f'raises at once: {span.error}' if span.error else 'returns at once'}" if returns else ""
     if deed is Deed.RESUMED:
         yield f"{is_free}: {entity.spoken_name} goes on after its await{end}"
         return

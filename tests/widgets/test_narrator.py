@@ -74,6 +74,19 @@ def test_a_callback_that_takes_no_time_is_told_to_have_returned_where_its_thread
     assert narration(told(run, until=1.5), ns(1.0))[0].endswith("→ runs, and returns at once")
 
 
+@pytest.mark.parametrize(
+    ("lasted", "said"),
+    [(0.5, "1.500 s: tick raises after 500 ms: E"), (0.0, "→ runs, and raises at once: E")],
+)
+def test_a_callback_that_raises_is_not_said_to_return(lasted: float, said: str) -> None:
+    run = Run()
+    thread, tick = run.thread("MainThread"), run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.start(tick, thread, 1.0)
+    run.fail(tick, thread, 1.0 + lasted, "E")
+    run.end(tick, thread, 1.0 + lasted)
+    assert narration(told(run, until=2.5), ns(1.0 + lasted))[0].endswith(said)
+
+
 def test_a_step_to_a_moment_without_a_decision_is_told_at_its_time() -> None:
     run = Run()
     group = run.exclusive(run.node("/n"))
