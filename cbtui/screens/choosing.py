@@ -107,7 +107,9 @@ class ChoosingScreen(RunScreen[LiveRun]):
 
     def _choose_in_the_present(self, option: int) -> None:
         """Choose an option; whoever looks back is first brought to the moment that the question is about."""
-        if self.navigation.playhead.at is None or not self.runs.run.alive:
+        if self.runs.run.alive and not self._choices.was_asked:
+            self.tell("Nothing is asked yet.")
+        elif self.navigation.playhead.at is None or not self.runs.run.alive:
             self._choices.choose(option)
         else:
             self.navigation.action_live()

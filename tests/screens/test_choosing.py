@@ -165,6 +165,34 @@ async def test_a_key_that_is_too_early_is_taken_back_before_a_choice_is() -> Non
         assert news(app) == "Choice 2, 0 moves. Who goes on?"
 
 
+@pytest.mark.parametrize("looks_back", [False, True])
+async def test_a_number_after_the_end_is_told_that_the_run_is_over(looks_back: bool) -> None:
+    app = console(Asking())
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        await pilot.press("1", "1")
+        await settle(pilot)
+        await pilot.press(*["left_square_bracket"] * looks_back, "5")
+        await settle(pilot)
+        assert [note.message for note in app._notifications] == ["The run is over: r begins again."]
+
+
+async def test_nothing_is_chosen_before_the_first_question_is_on_screen() -> None:
+    sessions = Asking()
+    app = console(sessions)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        choosing, asked = choices_of(app), choices_of(app).question
+        assert asked is not None
+        choosing.question, choosing.was_asked = None, False
+        await pilot.press("1")
+        await settle(pilot)
+        choosing.take([asked])
+        await settle(pilot)
+        assert not sessions.latest.commands
+        assert [note.message for note in app._notifications] == ["Nothing is asked yet."]
+
+
 async def test_of_a_held_key_few_are_kept_and_a_choice_that_is_not_there_ends_them() -> None:
     sessions = Asking(questions=20)
     app = console(sessions)

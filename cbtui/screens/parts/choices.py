@@ -37,6 +37,8 @@ class Choices(ScreenPart):
     puzzle: Puzzle | None = None
     question: ChoiceAsked | None = None
     """The current question."""
+    was_asked: bool = False
+    """Whether a question was asked, in this run or one before."""
     made: dict[int, int] = field(default_factory=dict)
     """The chosen options by the numbers of the choices."""
     solution: Moves | None = None
@@ -61,7 +63,7 @@ class Choices(ScreenPart):
         """Receive events of the run, questions among them."""
         for event in events:
             if isinstance(event, ChoiceAsked):
-                self.question = event
+                self.question, self.was_asked = event, True
                 self.check_goal()
                 if self.early and self.question is not None:
                     self.choose(self.early.pop(0))
@@ -110,7 +112,9 @@ class Choices(ScreenPart):
             self.early += [option][: _EARLY - len(self.early)]
         elif self.question is None or option >= len(self.question.threads):
             self.early.clear()
-            self.host.tell(f"There is no thread {option + 1} to choose now.")
+            none = f"There is no thread {option + 1} to choose now."
+            over = f"The run is over: {self.host.key('run_again')} begins again."
+            self.host.tell(none if self.runs.run.alive else over)
         else:
             self.made[self.question.number] = option
             self.question = None
