@@ -119,9 +119,9 @@ def choose_lanes(
 ) -> list[Lane]:
     """Return the most important lanes of ``window`` that fit, in their order.
 
-    The selected lane and its neighbours stay, so that moving through the lanes scrolls the view. The
-    callbacks ``kept`` come next, by rank, with ``kept_thread``, then lanes with work or long waits; idle ones
-    are dropped first, and threads beyond half of the room before callbacks that are called: one thread works
+    The selected lane, ``kept_thread`` and the neighbours stay, so that moving through the lanes scrolls the
+    view. The callbacks ``kept`` come next, by rank, then lanes with work or long waits; idle ones are
+    dropped first, and threads beyond half of the room before callbacks that are called: one thread works
     like another, but the busiest stays. The cursor's moment does not count: the choice would flicker.
     """
     if len(lanes) <= room:
@@ -134,13 +134,12 @@ def choose_lanes(
         value[place] = min(value[place], _SPARE)
     for place in threads[:1]:
         value[place] = _BUSIEST
+    middle = lanes.index(selected) if selected in lanes else -_FAR
+    distance = [min(abs(place - middle), _FAR) for place in range(len(lanes))]
     for place, lane in enumerate(lanes):
         if isinstance(lane, ThreadLane) and lane.thread.id == kept_thread:
-            value[place] = _KEPT
-    middle = lanes.index(selected) if selected in lanes else -_FAR
-    places = sorted(
-        range(len(lanes)), key=lambda place: (min(abs(place - middle), _FAR), -value[place], place)
-    )
+            value[place], distance[place] = _KEPT, min(distance[place], 1)
+    places = sorted(range(len(lanes)), key=lambda place: (distance[place], -value[place], place))
     return [lanes[place] for place in sorted(places[: max(room, 0)])]
 
 

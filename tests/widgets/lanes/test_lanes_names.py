@@ -170,6 +170,10 @@ def test_the_thread_that_the_picture_is_about_keeps_its_lane() -> None:
     lanes = choose_lanes(every, 4, timeline, window, kept={callbacks[-1]: 0}, kept_thread=threads[-1])
     assert about in lanes
     assert callbacks[-1] in {lane.entity.id for lane in lanes if isinstance(lane, MemberLane | SoleLane)}
+    selected = next(lane for lane in every if isinstance(lane, SoleLane) and lane.entity.id == callbacks[2])
+    beside = choose_lanes(every, 3, timeline, window, selected, {callbacks[2]: 0}, threads[-1])
+    assert about in beside
+    assert selected in beside
 
 
 def test_a_callback_that_the_picture_is_about_keeps_its_lane_though_it_is_idle() -> None:
