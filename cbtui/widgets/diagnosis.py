@@ -216,7 +216,7 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
     since, for_itself = min(((since, entity) for entity, since in turns.items()), default=(moment.at, 0))
     stuck = _stuck(moment, timeline)
     own = timeline.own_threads_at(moment.at)
-    threads, briefly = _threads_needed(timeline, peak, has_own=bool(own))
+    threads, briefly = _threads_needed(moment.at, timeline, peak, has_own=bool(own))
     pending = unanswered(LatestCalls(timeline).latest, moment.at)
     if moment.at - since < WORTH_TELLING:
         ready = [f"{name_of(each, timeline)} is ready" for each in (*moment.waiting, *turns)]
@@ -388,8 +388,8 @@ _POOL = "MultiThreadedExecutor"
 """The executor whose number of threads can be chosen."""
 
 
-def _threads_needed(timeline: Timeline, peak: int, *, has_own: bool) -> tuple[str, str]:
-    """How many threads were needed, in full and in short; ``has_own``: the program has threads of its own."""
+def _threads_needed(at: Nanoseconds, timeline: Timeline, peak: int, *, has_own: bool) -> tuple[str, str]:
+    """How many threads were needed by a moment, in full and short; ``has_own``: the program has its own."""
     count = thread_count(timeline)
     if count == 1 and peak and any(each.kind == _POOL for each in timeline.executors.values()):
         return ("1 of 1 threads needed",) * 2
@@ -397,4 +397,4 @@ def _threads_needed(timeline: Timeline, peak: int, *, has_own: bool) -> tuple[st
         return ("one thread runs all callbacks" if has_own else "one thread does all the work",) * 2
     if not peak:
         return ("no callback has run yet",) * 2
-    return threads_needed(peak, count, timeline), f"{peak} of {count} threads needed"
+    return threads_needed(peak, count, at, timeline), f"{peak} of {count} threads needed"

@@ -110,10 +110,10 @@ def until_when(ends: Nanoseconds, timeline: Timeline) -> str:
     return f" until {ends / SECOND:.1f} s" if ends > timeline.end else ""
 
 
-def threads_needed(peak: int, count: int, timeline: Timeline) -> str:
-    """Return how many threads ran callbacks at once, in words that hold while the run goes on."""
+def threads_needed(peak: int, count: int, at: Nanoseconds, timeline: Timeline) -> str:
+    """Return how many threads ran callbacks at once up to a moment, in words that say nothing of later."""
     was = "was" if peak == 1 else "were"
-    if timeline.ended is None:
+    if timeline.ended is None or at < timeline.end:
         return f"so far {peak} of {count} threads {was} needed at once"
     return f"{peak} of {count} threads {was} ever needed at once"
 

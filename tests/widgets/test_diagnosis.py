@@ -215,8 +215,9 @@ def test_the_threads_of_a_run_that_is_over_were_ever_needed() -> None:
     ended = Run()
     ended.over(1.0, "its time was up", failed=False)
     timeline = timeline_of(ended, 1.0)
-    assert threads_needed(1, 4, timeline) == "1 of 4 threads was ever needed at once"
-    assert threads_needed(2, 4, timeline) == "2 of 4 threads were ever needed at once"
+    assert threads_needed(1, 4, ns(1.0), timeline) == "1 of 4 threads was ever needed at once"
+    assert threads_needed(2, 4, ns(1.0), timeline) == "2 of 4 threads were ever needed at once"
+    assert threads_needed(2, 4, ns(0.9), timeline) == "so far 2 of 4 threads were needed at once"
 
 
 def test_a_timer_that_outlasts_its_period_waits_for_nobody_else() -> None:
