@@ -17,6 +17,7 @@ from sim.trace.events import (
     AnyEvent,
     CallbackAt,
     CallbackEnded,
+    CallbackFailed,
     CallbackResumed,
     CallbackStarted,
     CallbackSuspended,
@@ -156,6 +157,7 @@ def test_what_is_told_of_any_moment_follows_the_trace(events: list[AnyEvent]) ->
     callers: dict[int, EntityId] = {
         each.call: each.entity for each in events if isinstance(each, CallBlocked)
     }
+    raised = {(each.t, each.thread) for each in events if isinstance(each, CallbackFailed)}
     open_groups = [each.letter for each in timeline.groups.values() if each.kind is GroupKind.REENTRANT]
     for at in {event.t for event in events}:
         lines = narration(timeline, at)
@@ -165,7 +167,8 @@ def test_what_is_told_of_any_moment_follows_the_trace(events: list[AnyEvent]) ->
                 continue
             entity = callers[event.call] if isinstance(event, CallUnblocked) else getattr(event, "entity", 0)
             name = f"callback{entity}" if entity else "the program"
-            says = re.compile(rf"{name}\b.* ?{SAID[type(event)]}")
+            raises = isinstance(event, CallbackEnded) and (event.t, event.thread) in raised
+            says = re.compile(rf"{name}\b.* ?{'raises' if raises else SAID[type(event)]}")
             place = next(number for number in range(place, len(lines)) if says.search(lines[number]))
         assert not any(f"group {letter} is free" in line for letter in open_groups for line in lines)
 
