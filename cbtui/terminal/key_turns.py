@@ -12,9 +12,12 @@ from typing import Any
 from textual.app import App
 from textual.events import Key
 from textual.message import Message
+from textual.message_pump import MessagePump
 
 PATIENCE = 0.5
-"""Seconds after which the next key is handled though the last one's end is unknown: its widget has gone."""
+"""Seconds after which the next key is handled if the widget of the last one has gone: its end is unknown."""
+_BUSY_POLLS = 6
+"""So many times ``PATIENCE`` a widget that is still there may take for a key."""
 
 
 class KeyHandled(Message, namespace="app"):
@@ -58,9 +61,18 @@ class KeyTurns:
                 return
             target = self._app.focused or self._app.screen
             if target.post_message(KeyHandled(self._turn)):
-                asyncio.get_running_loop().call_later(PATIENCE, self._app.call_later, self._next, self._turn)
+                self._wait(target, self._turn, _BUSY_POLLS)
             else:
                 self._app.call_later(self._next, self._turn)
+
+    def _wait(self, target: MessagePump, turn: int, polls: int) -> None:
+        """Begin the next turn after a while, unless the key of this one is handled before."""
+        if turn != self._turn:
+            return
+        if polls and target.is_running:
+            asyncio.get_running_loop().call_later(PATIENCE, self._wait, target, turn, polls - 1)
+        else:
+            self._app.call_later(self._next, turn)
 
 
 def _apart(key: Key) -> Iterable[Key]:

@@ -12,12 +12,14 @@ from textual.events import Click, Event, Key, MouseDown, MouseUp
 from textual.geometry import Region
 from textual.pilot import Pilot
 from textual.widget import Widget
+from textual.widgets import Input
 
 from cbtui.keys.action import Scope
 from cbtui.keys.actions import actions_of
 from cbtui.keys.bindings import perform
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.windows.setup import SetupScreen
+from cbtui.terminal import key_turns
 from cbtui.terminal.ending import EndingApp
 from cbtui.terminal.pending_keys import MOUNT_TIMEOUT
 from cbtui.terminal.textual_internals import SafeCommandPalette, is_being_removed
@@ -54,7 +56,7 @@ class Slow(Widget):
 class Console(EndingApp):
     """One that notes keys."""
 
-    BINDINGS: ClassVar[list[BindingType]] = [("x", "note", "")]
+    BINDINGS: ClassVar[list[BindingType]] = [("x", "note", ""), ("o", "open", "")]
 
     def __init__(self) -> None:
         super().__init__()
@@ -71,6 +73,25 @@ class Console(EndingApp):
     def action_note(self) -> None:
         """Note that the key took effect."""
         self.noted += 1
+
+    async def action_open(self) -> None:
+        """Open a line to type into, as slowly as on a busy machine."""
+        await asyncio.sleep(3 * key_turns.PATIENCE)
+        line = Input()
+        await self.query_one(Vertical).mount(line)
+        line.focus()
+
+
+async def test_what_is_typed_behind_a_key_that_opens_a_line_slowly_goes_to_the_line(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(key_turns, "PATIENCE", 0.3)
+    app = Console()
+    async with app.run_test() as pilot:
+        for key in "ox2":
+            app.post_message(Key(key, key))
+        await until(pilot, lambda: bool(app.query(Input)) and app.query_one(Input).value == "x2")
+        assert not app.noted
 
 
 async def until_told_to_end(app: Console) -> None:
