@@ -146,11 +146,11 @@ class Counting(Rule):
     def __init__(self, clock: "Clock", takes: float = 0.0) -> None:
         self.asked = 0
         self._clock = clock
-        self._takes = takes
+        self.takes = takes
 
     def check(self, look: TimelineView) -> Iterator[Finding]:
         self.asked += 1
-        self._clock.now += self._takes
+        self._clock.now += self.takes
         yield Finding(self, 1, look.end + 2, size=self.asked)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
@@ -202,12 +202,21 @@ def test_what_the_engine_reports_is_looked_at_at_once() -> None:
     assert at_frames(watch, clock, [100.1, 100.2]) == [True, False]
 
 
-def test_after_a_dear_look_the_rules_rest_a_hundred_times_as_long() -> None:
+def test_after_dear_looks_the_rules_rest_a_hundred_times_as_long() -> None:
     clock = Clock()
     watch, rule = watched(clock, takes=0.05)
-    assert at_frames(watch, clock, [100.0, 101.5, 104.9]) == [True, False, False]
+    assert at_frames(watch, clock, [99.0, 100.0, 101.5, 104.9]) == [True, True, False, False]
     assert at_frames(watch, clock, [105.06]) == [True]
-    assert rule.asked == 2
+    assert rule.asked == 3
+
+
+def test_what_is_dear_once_does_not_put_off_the_next_look() -> None:
+    clock = Clock()
+    watch, rule = watched(clock, takes=0.2)
+    at_frames(watch, clock, [100.0])
+    rule.takes = 0.0
+    at_frames(watch, clock, [100.6, 101.2])
+    assert rule.asked == 3
 
 
 def test_a_look_that_waits_for_a_processor_does_not_put_off_the_next() -> None:

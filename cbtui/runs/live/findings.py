@@ -87,7 +87,7 @@ class FindingsMonitor:
         self._diagnoses = diagnoses or Diagnoses()
         self._clock = clock
         self._computed = computed
-        self._due = 0.0
+        self._due = self._cost = 0.0
         self.looked_to: Nanoseconds = 0
         """The end of the run at the last update."""
         self._notices = 0
@@ -157,8 +157,9 @@ class FindingsMonitor:
         timeline = self._timeline
         self.looked_to, self._notices = timeline.end, len(timeline.notices)
         self.findings = tuple(_explained(found, timeline) for found in self._diagnoses.update(timeline))
-        cost = self._computed() - computed
-        self._due = max(began + _MIN_INTERVAL, self._clock() + cost / _TIME_SHARE)
+        before, self._cost = self._cost, self._computed() - computed
+        usual = min(before, self._cost)  # what is dear once only, as the first look is, does not put it off
+        self._due = max(began + _MIN_INTERVAL, self._clock() + usual / _TIME_SHARE)
 
 
 def _explained(found: Finding, timeline: Timeline) -> ExplainedFinding:
