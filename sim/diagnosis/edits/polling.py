@@ -23,7 +23,7 @@ def look_again(source: SourceEditor, line: int) -> None:
         return
     missing, meanwhile = _condition(source, wait)
     before = [each for body, inside in path for each in body[: body.index(inside)]]
-    if any(_stores(part) & _attributes(wait) for part in before):
+    if any(_stores(part) & _attributes(ast.parse(f"({missing})")) for part in before):
         raise NotSimpleError  # it would start again at each call
     local = {each.id for each in source.nodes(ast.Name, callback) if isinstance(each.ctx, ast.Store)}
     used = {each.id for each in source.nodes(ast.Name, wait)}

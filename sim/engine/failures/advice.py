@@ -25,7 +25,7 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
             missing = text.split("'")[1]
             advice = on_missing_name(module, missing) or _nearest(missing, dir(sys.modules[module]))
         case NameError(name=str(name)) if frame is not None:
-            advice = _misplaced_in(frame, name) or _nearest(name, _names_of(frame))
+            advice = _misplaced_in(frame, name) or _unimported(name) or _nearest(name, _names_of(frame))
         case AttributeError(name=str(name), obj=ModuleType() as module):
             advice = on_missing_name(module.__name__, name) or _nearest(name, dir(module))
         case AttributeError(name=str(name), obj=obj):
@@ -60,6 +60,16 @@ def _parameters_of(node: object) -> Iterable[str]:
 def _nearest(name: str, known: Iterable[str]) -> str:
     close = get_close_matches(name, [each for each in known if not each.startswith("_")], n=1, cutoff=0.7)
     return f"did you mean {close[0]!r}?" if close else ""
+
+
+def _unimported(name: str) -> str:
+    """Return advice on a class of rclpy that the program has not imported."""
+    homes = {}
+    for module, known in [*sys.modules.items()]:
+        found = getattr(known, "__dict__", {}).get(name)
+        if re.fullmatch(r"rclpy\.[a-z]\w*", module) and isinstance(found, type):
+            homes[module] = found.__module__.rpartition(".")[2] != module.rpartition(".")[2], len(module)
+    return f"write from {min(homes, key=homes.__getitem__)} import {name}" if homes else ""
 
 
 def _names_of(frame: FrameType) -> list[str]:

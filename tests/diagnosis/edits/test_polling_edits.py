@@ -78,8 +78,15 @@ def test_a_loop_that_does_more_than_to_wait_stays(wait: str) -> None:
     assert changed(node(f"def tick(self):\n{indent(wait, '    ')}"), look_again) is None
 
 
-def test_what_would_begin_anew_at_each_call_is_not_looked_at_again() -> None:
-    methods = "def tick(self):\n    self.answer = None\n    while self.answer is None:  # here\n        pass"
+@pytest.mark.parametrize(
+    "wait",
+    [
+        "while self.answer is None:  # here\n    pass",
+        "while True:  # here\n    if self.answer is not None:\n        break",
+    ],
+)
+def test_what_would_begin_anew_at_each_call_is_not_looked_at_again(wait: str) -> None:
+    methods = f"def tick(self):\n    self.answer = None\n{indent(wait, '    ')}"
     assert changed(node(methods), look_again) is None
 
 

@@ -128,6 +128,11 @@ FILES = {
         "import rclpy\nrcipy.shutdown()",
         f"node.py:2: {RAISED} NameError: name 'rcipy' is not defined; did you mean 'rclpy'?",
     ),
+    "a class that is not imported": Bad(
+        "from rclpy.executors import SingleThreadedExecutor\nMultiThreadedExecutor()",
+        f"node.py:2: {RAISED} NameError: name 'MultiThreadedExecutor' is not defined; write from "
+        "rclpy.executors import MultiThreadedExecutor",
+    ),
     "raises in __init__": Bad(
         HEAD + "class A(Node):\n    def __init__(self):\n        super().__init__('a')\n"
         "        self.x = self.y\n\ndef main():\n    rclpy.init()\n    rclpy.spin(A())",
