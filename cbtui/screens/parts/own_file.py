@@ -104,5 +104,7 @@ class OwnFile(ScreenPart):
 
     async def run_anew(self, saved: str, edit: str = "") -> None:
         """Run the file again after one of the program's files was saved; replaces an edited copy."""
-        self.host.tell(f"{saved} was saved: it runs again.")
-        await self.restarts.again(replace(self.restarts.changes, texts={}), edit=edit or f"{saved} was saved")
+        changes = replace(self.restarts.changes, texts={})
+        changed = f", still changed: {changes.words}" if changes.words else ""
+        self.host.tell(f"{saved} was saved: it runs again{changed}.")
+        await self.restarts.again(changes, edit=edit or f"{saved} was saved")

@@ -5,7 +5,9 @@ from pathlib import Path
 import pytest
 
 from cbtui.app import CbtuiApp
+from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import of_processes
+from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.parts.own_file import FileRead
 from cbtui.widgets.key_bar import KeyBar
 from sim.engine.commands import CallService, Pause
@@ -147,6 +149,21 @@ async def test_a_file_is_run_again_when_it_is_saved_and_only_then(tmp_path: Path
         await pilot.press("C")
         names = ("my_node.py, before line 1 changed", "my_node.py, after line 1 changed")
         await until(pilot, lambda: all(name in text_of(app) for name in names))
+
+
+async def test_a_file_that_is_saved_keeps_the_changes_to_its_run_and_says_which(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("before = 1\n")
+    engines = FakeEngines(dummy_server_run().events, ns(5.2))
+    app = CbtuiApp(start_file=(file, [], "real"), open_session=engines)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        assert isinstance(app.screen, LessonScreen)
+        app.screen.restarts.changes = Changes(threads=2)
+        app.screen.post_message(FileRead(b"after = 2\n"))
+        await until(pilot, lambda: len(engines.sessions) == 2)
+        told = [each.message for each in app._notifications]
+        assert "my_node.py was saved: it runs again, still changed: 2 threads." in told
 
 
 async def test_it_is_run_again_when_a_module_with_its_callbacks_is_saved(tmp_path: Path) -> None:
