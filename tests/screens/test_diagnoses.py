@@ -5,7 +5,9 @@ from contextlib import asynccontextmanager
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from threading import Event
 from time import monotonic
+from typing import Any
 
 import pytest
 from msgspec import structs
@@ -19,6 +21,7 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.live.findings import ExplainedFinding, FindingsMonitor
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.linear.narrative import told_finding
+from cbtui.screens.parts.cures import CureTrial
 from cbtui.screens.replay import ReplayScreen
 from cbtui.screens.windows.diagnoses import (
     DiagnosesScreen,
@@ -146,7 +149,16 @@ async def test_a_run_without_problems_says_so_and_offers_no_way() -> None:
         assert "go there" not in text_of(app)
 
 
-async def test_a_key_that_does_nothing_in_the_window_says_why_until_another_row_is_chosen() -> None:
+async def test_a_key_that_does_nothing_in_the_window_says_why_until_another_row_is_chosen(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    looked, judge = Event(), CureTrial.judge
+
+    def judge_once_looked(trial: CureTrial, *asked: Any) -> Any:
+        looked.wait(30.0)
+        return judge(trial, *asked)
+
+    monkeypatch.setattr(CureTrial, "judge", judge_once_looked)
     async with console(seconds=3.0) as (app, pilot):
         await press(pilot, "d", "enter")
         assert "the list is empty" in text_of(app)
@@ -156,6 +168,7 @@ async def test_a_key_that_does_nothing_in_the_window_says_why_until_another_row_
         await press(pilot, "down", "t")
         assert chosen != app.screen.query_one(OptionList).highlighted
         assert "no cure of this has proved to help so far" in text_of(app)
+        looked.set()
         await until(pilot, lambda: "tried, it helps" in text_of(app))  # a cure of the row before
         assert "no cure of this has proved to help so far" in text_of(app)
         await press(pilot, "up")

@@ -78,6 +78,7 @@ def factory_signs(charset: Charset) -> SignList:
             "an area that is open to all: a reentrant group",
         ),
         (glyphs.belt * 4, "the belt of a callback, which brings its messages"),
+        (shared.back, "the belt of a client brings replies: it has the name of its service"),
         (glyphs.box, "messages that wait on a belt"),
         ("1.2s".join(glyphs.seat), "a message that waits on a belt, and its age"),
         (glyphs.slot, "a free place on a belt: room in the queue"),
