@@ -138,7 +138,7 @@ async def test_the_keys_of_the_log_are_offered_on_the_log_and_when_they_mean_som
         assert "go there" not in lines_of(app)[-1]
         await press(pilot, "up")
         assert "f follow  ↑ ↓ line  ⏎ go there  y copy  esc clear" in lines_of(app)[-1]
-        await press(pilot, "escape", "f")
+        await press(pilot, "escape")
         assert "f stay  ↑ ↓ line  y copy" in lines_of(app)[-1]
 
 
