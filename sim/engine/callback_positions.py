@@ -70,7 +70,10 @@ class CallbackPositions:
             self._seen[ident] = now
 
     def look_back(self) -> None:
-        """Record where the calling thread has waited, if no sample has found that; it is about to go on."""
+        """Record where the calling thread has waited, if no sample has found that; it is about to go on.
+
+        Thread-safe: a sample that is taken meanwhile may show the wait until the next one or the call's end.
+        """
         ident, top, now = threading.get_ident(), sys._getframe(1), self._clock.now()
         running = self._probe.running()
         callback = running.get(ident)
