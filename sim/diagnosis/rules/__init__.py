@@ -12,6 +12,7 @@ from sim.diagnosis.rules.errors import (
     SpinRaised,
     ThreadRaised,
 )
+from sim.diagnosis.rules.feedback import FeedbackLoop
 from sim.diagnosis.rules.incomplete import GapsInTrace
 from sim.diagnosis.rules.leaks import NeverDestroyed
 from sim.diagnosis.rules.locks import LockHeldLong, LocksInTurn
@@ -73,6 +74,7 @@ RULES: tuple[Rule, ...] = (
     MisspeltTopic(),
     SentTooEarly(),
     NeverSynchronised(),
+    FeedbackLoop(),
     TimesKept(),
     ParameterOverruled(),
     Slip(),

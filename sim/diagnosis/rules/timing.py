@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+from sim.diagnosis.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.edits.profiles import set_depth
 from sim.diagnosis.edits.replies import go_on_in_done_callback
 from sim.diagnosis.edits.shared_data import guards_what_it_changes
@@ -20,7 +21,6 @@ from sim.diagnosis.rule import (
     place_of,
     positions_of_call,
 )
-from sim.diagnosis.rules.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.rules.edits import edits_for_rounds
 from sim.diagnosis.rules.locks import weight_beside_lock
 from sim.diagnosis.rules.waiting import long_for

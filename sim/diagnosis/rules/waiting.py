@@ -4,6 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterator
 from typing import ClassVar
 
+from sim.diagnosis.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.cures import Remedy, remedy_for_waits, who_moves
 from sim.diagnosis.edits.flags import event_setters
 from sim.diagnosis.rule import (
@@ -15,7 +16,6 @@ from sim.diagnosis.rule import (
     line_of,
     place_of,
 )
-from sim.diagnosis.rules.awaits import awaits_in_vain, awaits_in_vain_since, let_complete
 from sim.diagnosis.rules.locks import LET_GO, let_return, weight_beside_lock
 from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import (

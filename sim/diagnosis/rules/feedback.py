@@ -1,0 +1,71 @@
+"""The rule on subscriptions that hear their own messages, and so never come to rest."""
+
+from bisect import bisect_left
+from collections.abc import Iterator
+from operator import attrgetter
+
+from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
+from sim.diagnosis.timeline_view import TimelineView
+from sim.diagnosis.words import listed, who
+from sim.quantities.durations import duration
+from sim.quantities.nanoseconds import SECOND
+from sim.trace.events import EntityKind
+from sim.trace.model import Nanoseconds, Span, Window
+from sim.trace.timeline import Timeline
+
+_OFTEN = 20
+"""Calls within the threshold from which on their causes are looked for: other callbacks cost nothing."""
+_IN_A_ROW = 200
+
+
+class FeedbackLoop(Rule):
+    """Calls of subscriptions cause one another: each publishes the message that leads to the next.
+
+    Nothing but the time that the calls take paces such a loop.
+    """
+
+    id = "feedback-loop"
+    summary = "subscriptions hear what they publish themselves, and never come to rest"
+    threshold: Nanoseconds = SECOND
+    """In which so many calls cause one another that nothing else can pace them."""
+
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield for each loop the subscription that was made first."""
+        for each in view.entities(EntityKind.SUBSCRIPTION):
+            for last in view.spans(each.id)[-1:]:
+                recent = Window(last.start - self.threshold, last.start + 1)
+                if view.timeline.calls_of(each.id, recent) >= _OFTEN:
+                    causes = _causes(last, view.timeline)
+                    is_loop = len(causes) == _IN_A_ROW and causes[-1].start >= recent.start
+                    if is_loop and each.id == min(cause.entity for cause in causes):
+                        yield Finding(self, causes[-1].start, last.start, each.id)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        last = timeline.spans_of(found.subject, Window(found.until, found.until + 1))[-1]
+        causes = _causes(last, timeline)
+        members = sorted({each.entity for each in causes})
+        names = listed(who(each, timeline) for each in members)
+        topics = listed(sorted({timeline.entities[each].name for each in members}))
+        took = last.start - causes[-1].start
+        is_one = len(members) == 1
+        return Explanation(
+            f"{names} {'hears its' if is_one else 'hear their'} own messages on {topics}: {len(causes)} "
+            f"calls in a row led to one another {f'in {duration(took)}' if took else 'at one moment'}",
+            "a message goes to all subscriptions of its topic, also to those of the node that publishes it",
+            f"publish on another topic than {names} hear{'s' * is_one}, or only what has changed",
+            place_of(found.subject, timeline),
+        )
+
+
+def _causes(call: Span, timeline: Timeline) -> list[Span]:
+    """Return a call of a subscription, the one that published its message, and so on, the latest first."""
+    causes, latest = list[Span](), call
+    while len(causes) < _IN_A_ROW and timeline.entities[latest.entity].kind is EntityKind.SUBSCRIPTION:
+        causes.append(latest)
+        sent = timeline.sent_on(timeline.entities[latest.entity].name)
+        place = bisect_left(sent, latest.message, key=attrgetter("id"))
+        sender = sent[place].sender if place < len(sent) and sent[place].id == latest.message else None
+        if sender is None:
+            break
+        latest = sender
+    return causes
