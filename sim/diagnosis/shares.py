@@ -5,8 +5,8 @@ from collections.abc import Iterable, Mapping
 from sim.diagnosis.cures import Remedy
 from sim.diagnosis.words import thread_of, threads_for, who
 from sim.quantities.durations import duration
-from sim.trace.events import EntityId, GroupKind
-from sim.trace.model import EntityInfo, Window
+from sim.trace.events import EntityId, EntityKind, GroupKind
+from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _WORTH_TELLING = 0.02
@@ -15,8 +15,8 @@ _WORTH_TELLING = 0.02
 def asked_by_turns(entity: EntityInfo, window: Window, timeline: Timeline) -> dict[EntityId, float]:
     """Return the share of the time for which each callback asks that takes turns with a timer.
 
-    That is what a timer would take if it came as often as it is due, and what others took. Empty if they do
-    not take turns, or a call of a timer takes longer than its period.
+    That is what a timer would take if it came as often as it is due, and so would a subscription that hears
+    one; what others took. Empty if they do not take turns, or a call of a timer takes longer than its period.
     """
     thread = thread_of(entity.id, window.end, timeline)
     every: Iterable[EntityInfo] = timeline.entities.values()
@@ -30,17 +30,29 @@ def asked_by_turns(entity: EntityInfo, window: Window, timeline: Timeline) -> di
         if not calls or (thread is not None and calls[-1].thread != thread.id):
             continue
         took = sum(call.end_at(window.end) - call.start for call in calls)
-        share = took / len(calls) / each.period if each.period else took / window.length
-        if share >= 1 or each.id in timeline.ever_suspended:
+        beat = beat_of(each, window.end, timeline)
+        beats = timeline.calls_of(beat.id, window)
+        share = took / beats / beat.period if beat.period and beats else took / window.length
+        if (share >= 1 and beat is each) or each.id in timeline.ever_suspended:
             return {}
         if share >= _WORTH_TELLING:
             asked[each.id] = share
     return asked
 
 
-def what_it_takes(entity: EntityId, share: float, timeline: Timeline) -> str:
-    """Say what a callback asks for: ``left takes 70 ms every 100 ms``."""
-    period = timeline.entities[entity].period
+def beat_of(entity: EntityInfo, at: Nanoseconds, timeline: Timeline) -> EntityInfo:
+    """Return the timer that published what a subscription ran for last; else the entity itself."""
+    last = (
+        timeline.spans_of(entity.id, Window(0, at + 1))[-1:] if entity.kind is EntityKind.SUBSCRIPTION else ()
+    )
+    sent = next((timeline.publication(each.message) for each in last), None)
+    beat = timeline.entities.get(sent.entity) if sent else None
+    return beat if beat and beat.period else entity
+
+
+def what_it_takes(entity: EntityId, share: float, at: Nanoseconds, timeline: Timeline) -> str:
+    """Say what a callback asks for at a time: ``left takes 70 ms every 100 ms``."""
+    period = beat_of(timeline.entities[entity], at, timeline).period
     how_often = f"{duration(round(share * period))} every {duration(period)}" if period else f"{share:.0%}"
     return f"{who(entity, timeline)} takes {how_often.replace('%', ' %')}"
 

@@ -505,8 +505,8 @@ def two_timers(
     ("apart", "threads", "whose", "cure"),
     [
         (False, None, "the only thread", "give right a callback group of its own, and spin with "),
-        (True, None, "the only thread", "spin with MultiThreadedExecutor(num_threads=2); or let them"),
-        (False, 4, "group A", "give right a callback group of its own; or let them take less time"),
+        (True, None, "the only thread", "spin with MultiThreadedExecutor(num_threads=2); or let left"),
+        (False, 4, "group A", "give right a callback group of its own; or let left and right take less time"),
     ],
 )
 def test_timers_that_ask_for_more_than_all_of_the_time_are_told_with_what_they_ask_for(
@@ -518,6 +518,38 @@ def test_timers_that_ask_for_more_than_all_of_the_time_are_told_with_what_they_a
     assert told.what.startswith(f"left and right ask for 130 % of the time of {whose}: ")
     assert told.what.endswith(" Hz in place of 10 Hz")
     assert told.why.endswith("; left takes 60 ms every 100 ms and right takes 70 ms every 100 ms")
+    assert told.cure.startswith(cure)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "what", "cure"),
+    [
+        ((0.06, 0.07), "tick and hear ask for 130 %", "give hear a callback group of its own, and spin "),
+        ((0.0, 0.12), "hear asks for 120 %", "let hear take less time, or timers be due less often"),
+    ],
+)
+def test_a_subscription_that_hears_a_timer_asks_for_as_much_as_at_each_of_its_calls(
+    lengths: tuple[float, float], what: str, cure: str
+) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        publisher = node.create_publisher(Int32, "/n", 10)
+
+        def tick() -> None:
+            simulation.sleep(lengths[0])
+            publisher.publish(Int32(data=1))
+
+        def hear(_: object) -> None:
+            simulation.sleep(lengths[1])
+
+        node.create_timer(0.1, tick)
+        node.create_subscription(Int32, "/n", hear, 10)
+        spin(node, None)
+
+    run = diagnosed(program)
+    assert {rule for rule, _ in run.problems()} == {"overload"}
+    told = run.explained("overload")
+    assert told.what.startswith(f"{what} of the time of the only thread: tick comes at ")
     assert told.cure.startswith(cure)
 
 

@@ -263,17 +263,18 @@ class Overload(Rule):
         threads = threads_for([entity.id], found.until, timeline)
         one = "one thread runs" if threads == 1 else "a mutually exclusive group lets in"
         whose = only_thread(timeline) if threads == 1 else group_of(entity.id, timeline)
-        takes = {each: who(each, timeline) for each in asked}
-        shares = [what_it_takes(each, share, timeline) for each, share in asked.items()]
+        asking = listed(who(each, timeline) for each in asked)
+        shares = [what_it_takes(each, share, found.until, timeline) for each, share in asked.items()]
         comes = f"{(_LATELY - 1) * SECOND / window.length:.3g} Hz in place of {SECOND / entity.period:.3g} Hz"
-        room = room_for(asked, threads, timeline)
+        rooms = (room_for(asked, threads, timeline),) if max(asked.values()) < 1 else ()
+        less = f"let {asking} take less time, or timers be due less often"
         return Explanation(
-            f"{listed(takes.values())} ask for {found.size} % of the time of {whose}: "
-            f"{takes[entity.id]} comes at {comes}",
+            f"{asking} ask{'s' * (len(asked) == 1)} for {found.size} % of the time of {whose}: "
+            f"{who(entity.id, timeline)} comes at {comes}",
             f"{one} one callback at a time; {listed(shares)}",
-            f"{room.words(timeline)}; or let them take less time, or be due less often",
+            "; or ".join([*(room.words(timeline) for room in rooms), less]),
             place_of(found.culprit, timeline),
-            remedies=(room,),
+            remedies=rooms,
         )
 
 
