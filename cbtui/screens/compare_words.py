@@ -15,6 +15,7 @@ from sim.quantities.durations import timestamp
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import executor_label
 from sim.trace.figures.comparison_rows import RUNS
+from sim.trace.figures.losses import all_losses
 from sim.trace.model import Nanoseconds
 
 _GAP = "   "
@@ -29,7 +30,8 @@ def about(number: int, side: ComparedSide, width: int, charset: Charset) -> tupl
     """
     timeline = side.timeline
     state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
-    lost = f"lost {timeline.dropped(timeline.end)}"
+    losses = all_losses(timeline, timeline.end)
+    lost = f"lost {'-' if losses is None else losses}"
     ended = timeline.ended
     name = f" {RUNS[number]}  {side.name}"
     failure = ended.reason if ended is not None and ended.failed else ""

@@ -17,6 +17,7 @@ from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.quantities.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
 from sim.trace.events import NoticeKind
+from sim.trace.figures.losses import all_losses
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -38,9 +39,9 @@ class RunStatus:
     """The content of the status line.
 
     ``pace`` names the clock and the speed, ``brief_pace`` the speed alone on virtual time. ``back`` is the
-    distance of the moment on screen from the end, 0 for live; ``recorded`` how many events
-    have been recorded, None if nothing is being recorded, ``unrecorded`` how many came too fast for that,
-    ``recorded_bytes`` how large the recording is;
+    distance of the moment on screen from the end, 0 for live; ``dropped`` is None where losses are not known;
+    ``recorded`` how many events have been recorded, None if nothing is being recorded, ``unrecorded`` how
+    many came too fast for that, ``recorded_bytes`` how large the recording is;
     ``exported`` is how many per cent of an export are done, None if there is none.
     """
 
@@ -51,7 +52,7 @@ class RunStatus:
     at: Nanoseconds
     back: Nanoseconds
     executor: str
-    dropped: int
+    dropped: int | None
     lost: int
     recorded: int | None = None
     unrecorded: int = 0
@@ -105,7 +106,7 @@ def status_of(
         at=at,
         back=timeline.end - at if playhead.at is not None else 0,
         executor=executor_label(timeline) or usual_executor,
-        dropped=timeline.dropped(at),
+        dropped=all_losses(timeline, at),
         lost=timeline.lost,
         recorded=None if recording is None else recording.count,
         unrecorded=0 if recording is None else recording.lost,
@@ -250,7 +251,8 @@ def _recording(status: RunStatus) -> list[TextRun]:
 
 
 def _losses(status: RunStatus) -> list[TextRun]:
-    losses = [TextRun(f"lost {status.dropped}", _WARN if status.dropped else _FAINT)]
+    known = "-" if status.dropped is None else status.dropped
+    losses = [TextRun(f"lost {known}", _WARN if status.dropped else _FAINT)]
     if status.lost:
         losses += [_GAP, TextRun(f"trace lost {status.lost}", _WARN)]
     return losses

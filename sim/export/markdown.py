@@ -124,7 +124,7 @@ def _row(each: CallbackStatistics, about: CallbackFigures | None) -> Sequence[st
         *_four(each.duration),
         *_four(each.wait),
         *_two(each.jitter),
-        str(each.drops) if each.entity.depth else "-",
+        "-" if each.drops is None or not each.entity.depth else str(each.drops),
         *_two(each.age or each.late),
         str(each.errors),
     )

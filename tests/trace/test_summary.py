@@ -3,7 +3,7 @@
 import pytest
 
 from sim.quantities.nanoseconds import SECOND
-from sim.trace.events import Reason, RunEnded
+from sim.trace.events import Published, Reason, RunEnded
 from sim.trace.figures.summary import Summary, robot_incrementally, summarise
 from sim.trace.figures.summary_text import plain_text
 from sim.trace.incremental import run_to_end
@@ -262,3 +262,21 @@ def test_lost_events_are_admitted() -> None:
     run, _, _, _ = small_run()
     run.lost(12, 1.0)
     assert "The trace lost 12 events, so some figures below are too small.\n" in plain_text(summary_of(run))
+
+
+@pytest.mark.parametrize(
+    ("missing", "clock", "lost"), [(0, "real", "0"), (2, "real", "-"), (2, "virtual", "0")]
+)
+def test_losses_on_real_ros_2_are_not_known_where_messages_came_nowhere(
+    missing: int, clock: str, lost: str
+) -> None:
+    run = Run("small", clock)
+    thread = run.thread("MainThread")
+    odom = run.subscription(run.exclusive(run.node("/node")), "/odom", "odom_callback")
+    for each in range(missing):
+        run.add(Published(each, 100 + each, "/odom", 0, 0))
+    run.message(odom, 1.0)
+    run.callback(odom, thread, 1.0, 0.1)
+    run.message(odom, 1.5)
+    row = plain_text(summary_of(run)).split("\n\n")[1].splitlines()[1]
+    assert row.split()[-2:] == [lost, "0"]

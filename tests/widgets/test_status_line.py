@@ -37,6 +37,11 @@ def line(status: RunStatus, width: int) -> str:
         ),
         (LIVE, 80, "| 2/6 One shared group              ● LIVE  virtual ×1.0   t 12.480 s   lost 412 |"),
         (
+            replace(LIVE, dropped=None),
+            80,
+            "| 2/6 One shared group                ● LIVE  virtual ×1.0   t 12.480 s   lost - |",
+        ),
+        (
             replace(LIVE, exported=35),
             100,
             "| 2/6 One shared group                    ● LIVE  virtual ×1.0   t 12.480 s   EXPORT 35 %   "

@@ -234,8 +234,10 @@ def _reasons_differ(name: str, one: _Calls, other: _Calls) -> Iterator[Differenc
 
 
 def _losses_differ(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
-    fewer, more = sorted((one, other), key=lambda calls: calls.figures.figures.drops)
+    fewer, more = sorted((one, other), key=lambda calls: calls.figures.figures.drops or 0)
     lost, kept = more.figures.figures.drops, fewer.figures.figures.drops
+    if lost is None or kept is None:
+        return
     if lost - kept > 2 + _begun_between(fewer, more) + lost // 20:
         text = f"on {more.run} {name} loses {counted(lost, 'message')}, on {fewer.run} {kept}"
         yield Difference(more.timeline.losses_of(more.figures.figures.entity.id, more.window)[0], text)

@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeAlias
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.figures.concurrency import threads_incrementally
+from sim.trace.figures.losses import losses
 from sim.trace.figures.statistics import CallbackStatistics, statistics_incrementally, with_calls_at_start
 from sim.trace.figures.summary import RobotFigures, robot_incrementally, trail_in_parts
 from sim.trace.figures.waiting import waited_by
@@ -333,7 +334,7 @@ def _callbacks_of(
     for key, entity in _entities_of(timeline).items():
         waits = yield from _wait_figures(entity, timeline, window)
         figures = yield from statistics_incrementally(timeline, entity, window)
-        drops = timeline.drops_of(entity, Window(losses_from, window.end))
+        drops = losses(timeline, timeline.entities[entity], Window(losses_from, window.end))
         callbacks[key] = CallbackInRun(replace(figures, drops=drops), waits)
     return callbacks
 

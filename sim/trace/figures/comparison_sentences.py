@@ -242,7 +242,7 @@ def _most(values: Distribution | None) -> float:
 
 _DECIDING: tuple[tuple[int, str, Callable[[CallbackInRun], float], Wording, float], ...] = (
     (0, "errors", lambda side: side.figures.errors, ERRORS, 1),
-    (2, _LOST, lambda side: side.figures.drops, LOSSES, 1),
+    (2, _LOST, lambda side: side.figures.drops or 0, LOSSES, 1),
     (3, "longest wait", lambda side: side.longest_wait, WAITS, _NOTABLE),
     (4, "worst lateness", lambda side: _most(side.figures.late), LATENESS, _NOTABLE),
     (5, "oldest data", lambda side: _most(side.figures.age), AGES, _NOTABLE),

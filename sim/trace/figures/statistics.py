@@ -16,6 +16,7 @@ import numpy as np
 
 from sim.trace.events import EntityId, EntityKind, ThreadId
 from sim.trace.figures.concurrency import threads_at_once
+from sim.trace.figures.losses import losses
 from sim.trace.figures.waiting import waited_by
 from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end, split
 from sim.trace.model import EntityInfo, Nanoseconds, Wait, Window
@@ -48,7 +49,7 @@ class CallbackStatistics:
     - ``jitter``: absolute deviations. Timers: time between the starts of consecutive calls less the period.
       Subscriptions: time between the publications of consecutive messages less the median of these times.
       None for other entities.
-    - ``drops``: messages that its queue lost in the window.
+    - ``drops``: messages that its queue lost in the window; None if it is not known.
     - ``age``: age of the message, request or reply at the start of each call; None for timers.
     - ``late``: the lateness of each call of a timer; None for others.
     - Of both, the call that still waits as the window ends counts as far as it is known by then, if it is
@@ -61,7 +62,7 @@ class CallbackStatistics:
     duration: Distribution | None
     wait: Distribution | None
     jitter: Distribution | None
-    drops: int
+    drops: int | None
     age: Distribution | None
     late: Distribution | None
     errors: int = 0
@@ -126,7 +127,7 @@ def statistics_incrementally(
         duration=(yield from _distributed(lengths)),
         wait=(yield from _waited(timeline, entity, starts, window)),
         jitter=(yield from _jitter(known, starts, ages)),
-        drops=timeline.drops_of(entity, window),
+        drops=losses(timeline, known, window),
         age=None if is_timer else of_ages,
         late=of_ages if is_timer else None,
         errors=errors,

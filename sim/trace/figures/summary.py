@@ -8,6 +8,7 @@ from itertools import groupby, pairwise
 from sim.trace.descriptions import node_name, silent_topics, why_waiting
 from sim.trace.events import EntityId, NoticeKind, RobotMoved, VelocityCommanded
 from sim.trace.figures.concurrency import threads_at_once
+from sim.trace.figures.losses import losses
 from sim.trace.figures.statistics import pending_age
 from sim.trace.figures.waiting import waited_by
 from sim.trace.incremental import Incremental, collect, run_to_end, split
@@ -41,7 +42,8 @@ class CallbackFigures:
     running: float
     longest_wait: WaitInRun | None
     late: Nanoseconds
-    drops: int
+    drops: int | None
+    """None if it is not known."""
     errors: int
 
 
@@ -123,7 +125,7 @@ def _callbacks(timeline: Timeline, whole: Window) -> Iterator[CallbackFigures]:
     for entity in timeline.entities.values():
         spans = timeline.spans_of(entity.id, whole)
         waits = timeline.waits_of(entity.id, whole)
-        drops = timeline.drops_of(entity.id, whole)
+        drops = losses(timeline, entity, whole)
         if not (entity.callback or spans or waits or drops):
             continue
         group = timeline.groups.get(entity.group)

@@ -53,7 +53,8 @@ def _together(callbacks: Sequence[CallbackFigures]) -> Iterator[CallbackFigures]
             running=sum(each.running for each in same),
             longest_wait=max(waits, key=lambda wait: wait.length, default=None),
             late=max(each.late for each in same),
-            drops=sum(each.drops for each in same),
+            drops=sum(each.drops or 0 for each in same)
+            or (None if None in {each.drops for each in same} else 0),
             errors=sum(each.errors for each in same),
         )
 
@@ -76,7 +77,7 @@ def _cells(figures: CallbackFigures) -> tuple[str, ...]:
         str(figures.calls),
         f"{figures.running:.1%}",
         duration(figures.late) if figures.calls or figures.late else "-",
-        str(figures.drops) if figures.entity.depth else "-",
+        "-" if figures.drops is None or not figures.entity.depth else str(figures.drops),
         str(figures.errors),
     )
 
