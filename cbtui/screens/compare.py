@@ -45,9 +45,9 @@ from sim.trace.figures.comparison_sentences import (
     extent,
     is_tie,
     notable,
-    stretch,
     verdict,
 )
+from sim.trace.figures.comparison_wording import stretch
 from sim.trace.incremental import Incremental, within
 from sim.trace.model import Nanoseconds, Window
 

@@ -125,7 +125,7 @@ def test_of_a_run_that_fails_before_anything_runs_is_told_that_it_did_and_the_ot
     failing.write_text(_ENDS_BY_ITSELF.replace("0.5, tick", "0.5, tock"))
     done = cbtui("compare", str(failing), str(well), "--to", "5")
     assert "\nat 0 s; run B is 5 s long\nGone in run B: exception. Run A ended at 0 s with" in done.stdout
-    assert done.stdout.endswith("whole program\n  no callback runs in either\n")
+    assert done.stdout.endswith("whole program\n  no callback runs in either, at 0 s\n")
 
 
 @pytest.mark.slow

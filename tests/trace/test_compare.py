@@ -253,7 +253,7 @@ def test_a_robot_that_stands_still_in_both_runs_has_no_figures() -> None:
 
 def test_of_runs_in_which_nothing_ran_no_threads_are_counted() -> None:
     *_, whole = sections(compare(run([ODOM], []), run([], []), Window(0, ns(4.0))))
-    assert (whole.rows, whole.notes) == ((), ("no callback runs in either",))
+    assert (whole.rows, whole.notes) == ((), ("no callback runs in either, 0 to 4 s",))
 
 
 def test_an_exception_that_ends_a_run_belongs_to_what_is_compared_of_it() -> None:

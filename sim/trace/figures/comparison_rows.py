@@ -21,6 +21,7 @@ from sim.trace.figures.comparison_wording import (
     WAITS,
     Wording,
     metres,
+    stretch,
 )
 from sim.trace.figures.statistics import Distribution
 from sim.trace.figures.summary import RobotFigures
@@ -84,7 +85,7 @@ def sections(comparison: Comparison) -> tuple[Section, ...]:
         key=lambda each: (each[1].is_even, not (each[0].is_unlike and each[0].first and each[0].second))
     )
     whole = tuple(_whole(comparison.first, comparison.second))
-    notes = () if whole else ("no callback runs in either",)
+    notes = () if whole else (f"no callback runs in either, {stretch(comparison.window)}",)
     return (*(section for _, section in told), Section("whole program", whole, notes))
 
 

@@ -8,7 +8,17 @@ from typing import NamedTuple
 from sim.trace.events import EntityId
 from sim.trace.figures.comparison import CallbackInRun, Comparison, RunFigures
 from sim.trace.figures.comparison_rows import RUNS
-from sim.trace.figures.comparison_wording import AGES, ERRORS, FLAWS, LATENESS, LOSSES, WAITS, Wording
+from sim.trace.figures.comparison_wording import (
+    AGES,
+    ERRORS,
+    FLAWS,
+    LATENESS,
+    LOSSES,
+    WAITS,
+    Wording,
+    in_seconds,
+    stretch,
+)
 from sim.trace.figures.statistics import Distribution
 from sim.trace.model import Nanoseconds, Window
 
@@ -49,12 +59,12 @@ def ended_early(comparison: Comparison, *ends: Nanoseconds) -> str:
     ends = ends or (runs[0].end, runs[1].end)
     for place, run in enumerate(runs):
         other = runs[1 - place]
-        is_shorter = run.end <= comparison.window.end and _seconds(run.end) != _seconds(ends[1 - place])
+        is_shorter = run.end <= comparison.window.end and in_seconds(run.end) != in_seconds(ends[1 - place])
         if run.crashes and not other.crashes and is_shorter:
-            told = f"{RUNS[place]} ended at {_seconds(run.end)} s with an exception"
-            beside = f"; {RUNS[1 - place]} has none up to {_seconds(ends[1 - place])} s"
+            told = f"{RUNS[place]} ended at {in_seconds(run.end)} s with an exception"
+            beside = f"; {RUNS[1 - place]} has none up to {in_seconds(ends[1 - place])} s"
             if other.fails:
-                beside = f", and {RUNS[1 - place]} at {_seconds(other.end)} s with one"
+                beside = f", and {RUNS[1 - place]} at {in_seconds(other.end)} s with one"
             return capitalised(told + beside)
     return ""
 
@@ -256,16 +266,6 @@ def extent(window: Window, *ends: Nanoseconds, is_real: bool = False) -> str:
     if is_real and not window.start:
         parts.append("each from its first call on")
     for name, end in zip(RUNS, ends, strict=True):
-        if end > window.end and _seconds(end) != _seconds(window.end):
-            parts.append(f"{name} is {_seconds(end)} s long")
+        if end > window.end and in_seconds(end) != in_seconds(window.end):
+            parts.append(f"{name} is {in_seconds(end)} s long")
     return "; ".join(parts)
-
-
-def stretch(window: Window) -> str:
-    """A window as text: ``0 to 12.4 s``, or ``at 0 s`` for a moment."""
-    start, end = _seconds(window.start), _seconds(window.end)
-    return f"at {start} s" if start == end else f"{start} to {end} s"
-
-
-def _seconds(nanoseconds: int) -> str:
-    return f"{round(nanoseconds / 1e9, 3):g}" if nanoseconds < 100_000_000_000 else f"{nanoseconds / 1e9:.1f}"

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from sim.quantities.durations import duration
+from sim.trace.model import Nanoseconds, Window
 
 
 class Wording(NamedTuple):
@@ -52,3 +53,14 @@ LATENESS = WAITS._replace(higher="later", lower="sooner")
 RUNNING = WAITS._replace(more_is_worse=False, noise=10_000_000)
 DISTANCES = Wording(metres, "farther", "less far")
 ANGLES = Wording("{:.1f} rad".format, "more", "less")
+
+
+def stretch(window: Window) -> str:
+    """A window as text: ``0 to 12.4 s``, or ``at 0 s`` for a moment."""
+    start, end = in_seconds(window.start), in_seconds(window.end)
+    return f"at {start} s" if start == end else f"{start} to {end} s"
+
+
+def in_seconds(nanoseconds: Nanoseconds) -> str:
+    """Nanoseconds as a number of seconds: ``12.4``."""
+    return f"{round(nanoseconds / 1e9, 3):g}" if nanoseconds < 100_000_000_000 else f"{nanoseconds / 1e9:.1f}"
