@@ -5,7 +5,7 @@ from itertools import islice
 
 from sim.quantities.durations import duration
 from sim.trace.events import Doing, EntityId, EntityKind, NodeId, Reason
-from sim.trace.model import AWAIT, Call, Position, Wait, Window
+from sim.trace.model import AWAIT, Call, EntityInfo, Nanoseconds, Position, Queue, Wait, Window
 from sim.trace.participants import Participants
 from sim.trace.timeline import Timeline
 
@@ -102,6 +102,14 @@ def nothing_came(silent: Sequence[str]) -> str:
     """Say that nothing came on topics, of which the first are named; empty for none."""
     more = ", …" if len(silent) > _MOST_TOPICS else ""
     return f"nothing has come on {', '.join(silent[:_MOST_TOPICS])}{more}" if silent else ""
+
+
+def mismatch_of(entity: EntityInfo, queue: Queue, timeline: Timeline, at: Nanoseconds) -> str:
+    """Say that a publisher does not match a subscription that has heard nothing: ``QoS mismatch``; or ""."""
+    found = timeline.unmatched.get(entity.id)
+    if found is None or found.t > at or queue.depth or timeline.calls_of(entity.id, Window(0, at + 1)):
+        return ""
+    return "type mismatch" if found.policy == "TYPE" else "QoS mismatch"
 
 
 _MOST_TOPICS = 3

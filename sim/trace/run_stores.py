@@ -72,6 +72,7 @@ class RunStores:
         self.shell: History[ShellEvent] = History(attrgetter("t"), ShellEvent, spill)
         self.notices: History[ev.Notice] = History(attrgetter("t"), ev.Notice, spill)
         self.mismatches: History[ev.QosMismatched] = History(attrgetter("t"), ev.QosMismatched, spill)
+        self.unmatched: dict[EntityId, ev.QosMismatched] = {}
         self.synchronisers: dict[tuple[str, int], ev.SynchroniserJudged] = {}
         self.times_kept: dict[ev.NodeId, ev.TimesKept] = {}
         self.spin_clashes: History[ev.SpinClashed] = History(attrgetter("t"), ev.SpinClashed, spill)
@@ -163,7 +164,7 @@ class RunStores:
             ev.CallbackFailed: self._callback_failed,
             ev.ExceptionSurfaced: self.surfaced.add,
             ev.Published: self._published,
-            ev.QosMismatched: self.mismatches.add,
+            ev.QosMismatched: self._qos_mismatched,
             ev.SynchroniserJudged: self._judged,
             ev.ServiceCalled: self._service_called,
             ev.ServiceReplied: self._service_replied,
@@ -258,6 +259,10 @@ class RunStores:
         entity = self.participants.entities.get(event.entity)
         who = entity.spoken_name if entity else "a callback"
         self.marks.add(AxisMark(event.t, AxisMarkKind.ERROR, f"{who} raised {event.error}"))
+
+    def _qos_mismatched(self, event: ev.QosMismatched) -> None:
+        self.mismatches.add(event)
+        self.unmatched.setdefault(event.entity, event)
 
     def _published(self, event: ev.Published) -> None:
         self.publications.add(event)

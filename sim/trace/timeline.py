@@ -83,8 +83,8 @@ class Timeline:
         """The choices among threads of a schedule that is played, and where a machine stalls, in order."""
         self.conflicts: Sequence[ev.AccessesConflicted] = run.conflicts
         """The accesses to shared data that nothing kept apart, in order."""
-        self.mismatches: Sequence[ev.QosMismatched] = run.mismatches
-        """The incompatible publishers and subscriptions, in order."""
+        self.mismatches, self.unmatched = run.mismatches, run.unmatched
+        """The incompatible publishers and subscriptions, in order, and the first of each subscription."""
         self.synchronisers: Mapping[tuple[str, int], ev.SynchroniserJudged] = run.synchronisers
         """The latest judgement of each synchroniser that had to be judged, by where it is made."""
         self.times_kept: Mapping[ev.NodeId, ev.TimesKept] = run.times_kept

@@ -15,6 +15,7 @@ from cbtui.widgets.choice import kept_of
 from cbtui.widgets.code.marks import marks_at
 from cbtui.widgets.code.source_files import SourceFiles
 from cbtui.widgets.diagnosis import DiagnosisLevel, diagnosis_at
+from cbtui.widgets.factory.painter import FactoryPainter
 from cbtui.widgets.factory.scene import FactoryScene, scene_of
 from cbtui.widgets.factory.texts import belt_details, headlines, wait_texts
 from cbtui.widgets.lanes.details import details_of
@@ -35,6 +36,7 @@ from sim.trace.events import (
     ChoiceAsked,
     EntityReady,
     GroupId,
+    QosMismatched,
     Reason,
     WaitEnded,
     WaitStarted,
@@ -377,3 +379,20 @@ def assert_headline_agrees(scene: FactoryScene) -> None:
     assert sum(map(int, counts)) == sum(area.waiting for area in scene.areas)
     if "no callback waits" in headlines(scene)[0].text:
         assert all("its last call" in text for text in waits)
+
+
+@pytest.mark.parametrize(("at", "told_then"), [(0.5, False), (1.5, True), (2.5, False)])
+@pytest.mark.parametrize("width", [58, 78])
+@pytest.mark.parametrize(("policy", "word"), [("RELIABILITY", "QoS mismatch"), ("TYPE", "type mismatch")])
+def test_lane_and_factory_tell_of_a_publisher_that_does_not_match_until_something_comes(
+    policy: str, word: str, at: float, told_then: bool, width: int
+) -> None:
+    run = Run()
+    hear = run.subscription(run.exclusive(run.node("/n")), "/t", "hear")
+    run.add(QosMismatched(ns(1.0), "/t", 1, hear, policy))
+    run.message(hear, 2.0)
+    run.callback(hear, run.thread("MainThread"), 2.0, 0.1)
+    timeline = told(run)
+    lanes = plain(LanePainter().paint(timeline, Window(0, ns(10)), ns(at), 80, 8).rows)
+    factory = plain(FactoryPainter().paint(timeline, ns(at), width, 14))
+    assert [word in each for each in (lanes, factory)] == [told_then] * 2

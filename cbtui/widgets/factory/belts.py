@@ -68,6 +68,8 @@ class BeltPainter:
         if belt.tick is not None:
             text, ink = f"{self._glyphs.clock} {duration(belt.entity.period)}", PLAIN
             width = len(text)
+        elif belt.mismatch and at + len(belt.mismatch) < self._door:
+            text, ink, width = belt.mismatch, WARN, len(belt.mismatch)
         else:
             text = queue_level(belt)
             ink = WARN if belt.full else PLAIN if belt.queue.depth else FAINT

@@ -17,6 +17,7 @@ from cbtui.widgets.lanes.rows import (
     never_ran,
 )
 from sim.diagnosis.words import thread_count
+from sim.trace.descriptions import mismatch_of
 from sim.trace.events import EntityKind, GroupKind, Reason, ThreadId
 from sim.trace.figures.waiting import wait_told
 from sim.trace.model import (
@@ -94,6 +95,8 @@ class Belt:
     wait: Wait | None
     """Only if it is worth telling."""
     tick: TimerTick | None
+    mismatch: str = ""
+    """Why nothing comes: the publisher does not match; "" for nothing of the kind."""
 
     @property
     def waits_for_others(self) -> bool:
@@ -308,7 +311,7 @@ class _SceneBuilder:
         wait = wait_told(entity.id, self._moment, self._timeline)
         tick = self._tick(entity) if entity.kind is EntityKind.TIMER else None
         queue = self._moment.queues.get(entity.id, _NO_QUEUE)
-        return Belt(entity, queue, wait, tick)
+        return Belt(entity, queue, wait, tick, mismatch_of(entity, queue, self._timeline, self._now))
 
     def _tick(self, timer: EntityInfo) -> TimerTick:
         """Compute a timer's next due time from its last call, as rcl does: missed ticks are dropped."""

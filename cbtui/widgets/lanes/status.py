@@ -17,6 +17,7 @@ from cbtui.widgets.lanes.rows import (
 )
 from cbtui.widgets.lanes.service_calls import LatestCalls
 from sim.quantities.durations import duration
+from sim.trace.descriptions import mismatch_of
 from sim.trace.events import EntityKind, GroupKind
 from sim.trace.figures.waiting import wait_told, waits_for_others
 from sim.trace.model import EntityInfo, GroupInfo, Moment, Span, ThreadInfo, Window
@@ -147,6 +148,9 @@ class LaneStatus:
 
     def _queue(self, entity: EntityInfo, latest: Span | None) -> TextRun:
         queue = self.timeline.queue(entity.id, self.moment.at)
+        mismatch = mismatch_of(entity, queue, self.timeline, self.moment.at)
+        if mismatch and len(mismatch) < self.width:
+            return TextRun(mismatch, WARN)
         full = entity.depth and queue.depth >= entity.depth
         level = f"{queue.depth}/{entity.depth}{'!' if full else ''}"
         lost = f" lost {_count(queue.dropped)}" if queue.dropped else ""
