@@ -234,3 +234,19 @@ def test_a_callback_that_awaits_is_told_with_the_group_that_it_keeps(tmp_path: P
     assert told_by_browser(dom)["later"] == "awaits for 200 ms"
     assert "C exclusive: kept by later, which awaits for 500 ms from 1.100 s" in dom
     assert "later: awaits for 500 ms from 1.100 s" in dom
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(PROGRAM is None, reason="there is no Chromium")
+@pytest.mark.parametrize(
+    ("replied", "drawn"),
+    [(2.01, "×2"), (None, "2 calls, the first called from outside, no reply by the end")],
+)
+def test_one_mark_of_two_calls_tells_their_number(replied: float | None, drawn: str, tmp_path: Path) -> None:
+    run = Run("twice")
+    run.thread("MainThread")
+    for _ in range(2):
+        run.call("/gripper", 2.0, replied)
+    run.over(9.0)
+    texts = [text for text, *_ in drawn_by_browser(page(timeline_of(run.events)), tmp_path, 900)]
+    assert drawn in texts
