@@ -71,7 +71,6 @@ class LanePainter:
     ) -> None:
         self.charset, self.service = charset, service
         self.call_key, self.more_key = call_key, more_key
-        self.kept_thread: ThreadId | None = None
         self.looks, self.threads_last = looks, threads_last
         self.cache = LaneCache(Timeline())
 
@@ -87,6 +86,7 @@ class LanePainter:
         path: Sequence[ChainStep] = (),
         told: Nanoseconds | None = None,
         kept: Mapping[EntityId, int] = NONE_KEPT,
+        kept_thread: ThreadId | None = None,
         end: Nanoseconds | None = None,
     ) -> LanePicture:
         """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells.
@@ -105,7 +105,7 @@ class LanePainter:
             return LanePicture(((TextRun(" " * width, PLAIN),),) * height, (), layout, scale)
         room = height - 1 - (whole > 0)
         chosen = None if selection is None else selection.lane
-        lanes = choose_lanes(every, room, timeline, scale.window, chosen, kept, self.kept_thread)
+        lanes = choose_lanes(every, room, timeline, scale.window, chosen, kept, kept_thread)
         moment = timeline.moment(now if told is None else told)
         known = timeline.end if end is None else end
         frame = _LaneFrame(self, timeline, scale, layout, now, moment, selection, path, known, lanes)

@@ -220,7 +220,6 @@ class Lanes(PaintedWidget, can_focus=True):
         selection = self.selection_now
         described = self._rows_told(size) if selection is not None else 0
         height = size.height - described
-        self._painter.kept_thread = self.kept_thread
         picture = self._painter.paint(
             self.timeline,
             self.window,
@@ -232,6 +231,7 @@ class Lanes(PaintedWidget, can_focus=True):
             self.path,
             self.told,
             self.kept,
+            self.kept_thread,
             self._end,
         )
         self._picture = picture

@@ -1,6 +1,7 @@
 import pytest
 
 from cbtui.widgets.lanes.names import group_name, more_lanes, service_name, shortened, thread_name, told_apart
+from cbtui.widgets.lanes.painter import LanePainter
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, ThreadLane, all_lanes, choose_lanes
 from sim.trace.events import EntityAppeared, EntityKind, GroupKind, Reason
 from sim.trace.model import GroupInfo, ThreadInfo, Window
@@ -173,6 +174,7 @@ def test_the_thread_that_the_picture_is_about_keeps_its_lane() -> None:
     selected = next(lane for lane in every if isinstance(lane, SoleLane) and lane.entity.id == callbacks[2])
     beside = choose_lanes(every, 3, timeline, window, selected, {callbacks[2]: 0}, threads[-1])
     assert about in beside
+    assert about in LanePainter().paint(timeline, window, ns(5.0), 80, 5, kept_thread=threads[-1]).lanes
     assert selected in beside
 
 
