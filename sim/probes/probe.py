@@ -14,8 +14,8 @@ from sim.interpreter.exception_text import error_line
 from sim.interpreter.function_marks import sends_responses
 from sim.probes.on_path.cbtui_probe.naming import written_at
 from sim.probes.on_path.cbtui_probe.own_lines import awaiting_frames
-from sim.probes.own_code import call_into_ros, has_timeout, is_own, place_of_caller, raised_at
-from sim.probes.traced import MessageContents, TracedEntity, name_of
+from sim.probes.own_code import call_into_ros, has_timeout, is_own, raised_at
+from sim.probes.traced import MessageContents, TracedEntity
 from sim.probes.usage_warnings import UsageWarnings
 from sim.trace import events
 from sim.trace.events import AnyEvent, CallbackEnded, CallbackStarted, GroupKind, Reason, Severity
@@ -140,10 +140,15 @@ class Probe:
         if entity.traced:
             self._sink(events.EntityReady(self._now(), entity.trace_id, depth, message))
 
-    def timer_cancelled(self, entity: TracedEntity, over: bool = False) -> None:
-        """Record that a timer was cancelled, or that this is ``over``: it was reset."""
+    def timer_cancelled(self, entity: TracedEntity) -> None:
+        """Record that a timer was cancelled."""
         if entity.traced:
-            self._sink((events.TimerReset if over else events.TimerCancelled)(self._now(), entity.trace_id))
+            self._sink(events.TimerCancelled(self._now(), entity.trace_id))
+
+    def timer_reset(self, entity: TracedEntity) -> None:
+        """Record that a cancelled timer was reset."""
+        if entity.traced:
+            self._sink(events.TimerReset(self._now(), entity.trace_id))
 
     def dropped(self, entity: TracedEntity, depth: int, message: int) -> None:
         """Record that a queue lost a message: the oldest of a full queue, or one that expired."""
@@ -203,31 +208,6 @@ class Probe:
     def threads(self) -> dict[int, int]:
         """The ids of the recorded threads, by identifier; any thread may call this."""
         return {ident: here.get("thread", 0) for ident, here in list(self._everywhere.items())}
-
-    def node_destroyed_by_itself(self, name: str, entity: TracedEntity) -> None:
-        """Warn that the callback on the calling thread destroys its own node."""
-        self._warn(
-            f"{name} destroyed itself in its own callback {name_of(entity)} ({place_of_caller()}): this call "
-            "goes on to its end, and no callback of the node runs again; to end the program, call "
-            "rclpy.shutdown() there"
-        )
-
-    def parameter_overruled(self, name: str) -> None:
-        """Warn that a parameter callback on the calling thread sets a parameter that is being set."""
-        problem = f"a parameter callback sets '{name}' while that is being set ({place_of_caller()})"
-        advice = "return the value from a pre-set callback, or refuse what was asked for"
-        told = {"kind": events.NoticeKind.OVERRULED, "problem": problem, "advice": advice}
-        self._warn(f"{problem}: what was asked for is stored last; {advice}", self._here.entity, **told)
-
-    def cancel_ignored(self, entity: TracedEntity, seconds: int) -> None:
-        """Warn that an execute callback has gone on so long after the cancel of its goal was accepted."""
-        problem = (
-            f"{name_of(entity)} goes on {seconds} s after the cancel of its goal was accepted, and has not "
-            "looked at is_cancel_requested"
-        )
-        advice = "look at it in each round, and if it is set, call canceled() and return a result"
-        told = {"kind": events.NoticeKind.CANCEL_IGNORED, "problem": problem, "advice": advice}
-        self._warn(f"{problem}; {advice}", entity.trace_id, **told)
 
     def _warn(self, text: str, entity: int = 0, **more: Any) -> None:
         self._sink(events.Notice(self._now(), Severity.WARN, text, entity, **more))

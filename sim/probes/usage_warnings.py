@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 from sim.probes.loop_variables import SharedVariables
 from sim.probes.own_code import call_into_ros, is_result_dropped, is_written, place_of_caller
+from sim.probes.traced import TracedEntity, name_of
 from sim.trace.events import NoticeKind
 
 _AT_ONCE = 10_000_000
@@ -118,6 +119,31 @@ class UsageWarnings:
         problem = "the result of a goal is asked for that the server rejected: it is empty, with status 0"
         advice = "look at goal_handle.accepted first, and return if it is False"
         self._tell(("get_result", "get_result_async"), NoticeKind.REJECTION_OVERLOOKED, problem, advice)
+
+    def node_destroyed_by_itself(self, name: str, entity: TracedEntity) -> None:
+        """Warn that the callback on the calling thread destroys its own node."""
+        self._warn(
+            f"{name} destroyed itself in its own callback {name_of(entity)} ({place_of_caller()}): this call "
+            "goes on to its end, and no callback of the node runs again; to end the program, call "
+            "rclpy.shutdown() there"
+        )
+
+    def parameter_overruled(self, name: str) -> None:
+        """Warn that a parameter callback on the calling thread sets a parameter that is being set."""
+        problem = f"a parameter callback sets '{name}' while that is being set ({place_of_caller()})"
+        advice = "return the value from a pre-set callback, or refuse what was asked for"
+        told = {"kind": NoticeKind.OVERRULED, "problem": problem, "advice": advice}
+        self._warn(f"{problem}: what was asked for is stored last; {advice}", self._here.entity, **told)
+
+    def cancel_ignored(self, entity: TracedEntity, seconds: int) -> None:
+        """Warn that an execute callback has gone on so long after the cancel of its goal was accepted."""
+        problem = (
+            f"{name_of(entity)} goes on {seconds} s after the cancel of its goal was accepted, and has not "
+            "looked at is_cancel_requested"
+        )
+        advice = "look at it in each round, and if it is set, call canceled() and return a result"
+        told = {"kind": NoticeKind.CANCEL_IGNORED, "problem": problem, "advice": advice}
+        self._warn(f"{problem}; {advice}", entity.trace_id, **told)
 
     def many_made(self, number: int, kind: str) -> None:
         """Warn that callbacks keep creating entities of one kind; the node has ``number`` of them."""

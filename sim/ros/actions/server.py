@@ -294,7 +294,7 @@ class ActionServer(ActionWaitable):
 
     def notify_cancel_ignored(self, seconds: int) -> None:
         """An execute callback has not asked for so long for its cancel. Called with the host's lock held."""
-        self._node.context.probe.cancel_ignored(self._execution, seconds)
+        self._node.context.probe.usage.cancel_ignored(self._execution, seconds)
 
     # Results
 

@@ -118,7 +118,7 @@ class Timer(Entity):
         with self._host.lock:
             self.reset_unheard = True
             if self._canceled:
-                self.node.context.probe.timer_cancelled(self, over=True)
+                self.node.context.probe.timer_reset(self)
             self._start()
 
     def _start(self) -> None:

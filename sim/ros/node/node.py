@@ -82,7 +82,7 @@ class Node:
         self._parameter_store = ParameterStore(
             [*overrides, *(parameter_overrides or ())],
             self._publish_parameter_change,
-            self._context.probe.parameter_overruled,
+            self._context.probe.usage.parameter_overruled,
             self._context.probe.usage.refused,
             allow_undeclared=allow_undeclared_parameters,
         )
@@ -297,7 +297,7 @@ class Node:
         here = probe.callback_here()
         running = (each for each in self._agenda.entities if each.trace_id == here)
         if here and (entity := next(running, None)) is not None:
-            probe.node_destroyed_by_itself(self._node_names.full_name, entity)
+            probe.usage.node_destroyed_by_itself(self._node_names.full_name, entity)
 
     def _callback_overrides(self) -> NodeOverrides | None:
         """The run's overrides for the node; only a node on the trace can have some."""
