@@ -1,4 +1,4 @@
-"""Shows the progress of reading a recording on a terminal."""
+"""Shows the progress of reading a recording."""
 
 import time
 from collections.abc import Iterator
@@ -14,7 +14,7 @@ _PERIOD = 0.2
 
 
 def batches_with_progress(recording: Recording) -> Iterator[list[AnyEvent]]:
-    """Yield the events of a recording in batches, and show the progress where standard error is a terminal.
+    """Yield the events of a recording in batches, and show the progress.
 
     Raises what the recording raises.
     """
