@@ -5,7 +5,7 @@ import pytest
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.events import Published, Reason, RunEnded
 from sim.trace.figures.summary import Summary, robot_incrementally, summarise
-from sim.trace.figures.summary_text import plain_text
+from sim.trace.figures.summary_text import NOT_KNOWN, plain_text
 from sim.trace.incremental import run_to_end
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
@@ -278,5 +278,6 @@ def test_losses_on_real_ros_2_are_not_known_where_messages_came_nowhere(
     run.message(odom, 1.0)
     run.callback(odom, thread, 1.0, 0.1)
     run.message(odom, 1.5)
-    row = plain_text(summary_of(run)).split("\n\n")[1].splitlines()[1]
+    _, row, *rest = plain_text(summary_of(run)).split("\n\n")[1].splitlines()
     assert row.split()[-2:] == [lost, "0"]
+    assert (NOT_KNOWN in rest) == (lost == "-")

@@ -14,6 +14,7 @@ HEADS = ("callback", "group", "calls", "running", "late by", "lost", "errors")
 _MANY = 5
 """From so many callbacks on that are alike but for their figures, they have one row."""
 LATE_BY = "late by: its oldest message, taken or waiting, or how late its timer was"
+NOT_KNOWN = "lost -: real ROS 2 does not tell what became of messages that never came"
 
 
 def plain_text(summary: Summary) -> str:
@@ -68,6 +69,8 @@ def _callback_table(callbacks: Sequence[CallbackFigures]) -> Iterator[str]:
         right = (cell.rjust(width) for cell, width in zip(figures, widths[2:], strict=True))
         yield "  ".join((name.ljust(widths[0]), group.ljust(widths[1]), *right))
     yield LATE_BY
+    if any(each.drops is None for each in callbacks):
+        yield NOT_KNOWN
 
 
 def _cells(figures: CallbackFigures) -> tuple[str, ...]:
