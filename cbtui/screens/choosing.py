@@ -22,9 +22,11 @@ from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.run import RunScreen
 from cbtui.widgets.choice import ChoiceOptions, ChoiceView
-from cbtui.widgets.code import CodeView
+from cbtui.widgets.code import CodeView, StandingThread
 from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
+from cbtui.widgets.lanes.names import short_thread
 from lessons.puzzles import Puzzle
+from sim.trace.events import ChoiceAsked
 
 _PUZZLE_SPAN = 200_000_000
 """Nanoseconds that the lanes show of a puzzle: all of its run."""
@@ -76,13 +78,27 @@ class ChoosingScreen(RunScreen[LiveRun]):
         if isinstance(pane, ChoiceView):
             self._choices.check_goal()  # first, as the sheet says that a finished run has missed the goal
             pane.show(self._choices.sheet)
-        else:
-            super().draw_pane(pane)
+            return
+        if isinstance(pane, CodeView):
+            pane.standing = tuple(self._standing())
+        super().draw_pane(pane)
+
+    def _standing(self) -> Iterator[StandingThread]:
+        """Yield the threads that may be chosen at the moment on screen."""
+        asked = self._open_question
+        for thread, place in zip(asked.threads, asked.places, strict=True) if asked else ():
+            yield StandingThread(short_thread(thread), *place)
+
+    @property
+    def _open_question(self) -> ChoiceAsked | None:
+        """The question about the moment on screen."""
+        is_present = self.runs.run.alive and self.navigation.playhead.at is None
+        return self._choices.question if is_present else None
 
     def diagnosis(self) -> Diagnosis:
         """Return the diagnosis; at an open choice a thread may wait that the trace does not tell of yet."""
-        told, is_open = super().diagnosis(), self._choices.question and self.navigation.playhead.at is None
-        if not is_open or told.level is not DiagnosisLevel.FINE:
+        told = super().diagnosis()
+        if self._open_question is None or told.level is not DiagnosisLevel.FINE:
             return told
         return Diagnosis("time stands still until you choose who goes on", DiagnosisLevel.PENDING)
 

@@ -77,6 +77,23 @@ async def test_the_help_has_in_brackets_what_the_pane_with_the_focus_uses_for_so
         assert re.search(r" \(1-6\) +Go to a pane", rows)
 
 
+async def test_the_code_marks_the_line_of_each_thread_that_may_be_chosen_now() -> None:
+    def marked() -> list[str]:
+        return [line for line in lines_of(app) if "20 ▶ " in line]
+
+    app = console(Asking())
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        [line] = marked()
+        assert "▶ 1 Pool-0_0" in line
+        await pilot.press("left_square_bracket")
+        await settle(pilot)
+        assert not marked()  # in the past nothing is chosen
+        await pilot.press("0", "space")
+        await settle(pilot)
+        assert not marked()
+
+
 @pytest.mark.parametrize("key", ["t", "s", "full_stop", "h"])
 async def test_a_key_without_effect_on_a_puzzle_says_why(key: str) -> None:
     app = console(Asking())

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from operator import attrgetter, itemgetter
 from pathlib import Path
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.text.cells import fit
@@ -72,6 +72,14 @@ class LineMark:
     texts: tuple[str, ...]
     number: int = 0
     fault: bool = False
+
+
+class StandingThread(NamedTuple):
+    """A thread that may go on, and its next line; 0 outside of the program."""
+
+    thread: str
+    file: str
+    line: int
 
 
 LineMarks: TypeAlias = dict[int, LineMark]
@@ -157,6 +165,19 @@ def _at_line(
         where = f"line {line}" if taken == position.file else f"{Path(taken).name}:{line}"
         yield f"{doing}, taken at {where}, {duration(lasted)}"
     yield from (full, f"▶ {duration(lasted)}", "▶")
+
+
+def standing_at(options: Sequence[StandingThread], files: SourceFiles) -> dict[SourceFile, LineMarks]:
+    """Return the lines in front of which the threads stand that may be chosen, with their numbers, from 1."""
+    found: defaultdict[SourceFile, defaultdict[int, list[str]]] = defaultdict(lambda: defaultdict(list))
+    for number, option in enumerate(options, start=1):
+        file = files.of(option.file) if option.line else None
+        if file is not None:
+            found[file][option.line].append(f"{number} {option.thread}")
+    return {
+        file: {line: LineMark((f"▶ {', '.join(each)}", "▶"), -1) for line, each in lines.items()}
+        for file, lines in found.items()
+    }
 
 
 def fault_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, LineMarks]:

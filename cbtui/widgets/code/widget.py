@@ -26,10 +26,12 @@ from cbtui.widgets.code.marks import (
     CallbackMark,
     LineMark,
     LineMarks,
+    StandingThread,
     changed_lines,
     fault_at,
     lines_at,
     marks_at,
+    standing_at,
     text_beside,
 )
 from cbtui.widgets.code.signs import CODE_SIGNS
@@ -110,6 +112,8 @@ class CodeView(InkedView):
         self._lines: dict[SourceFile, LineMarks] = {}
         self._follower = CallbackFollower()
         self.step: Step | None = None
+        self.standing: Sequence[StandingThread] = ()
+        """The threads that may be chosen, in the order of their numbers."""
         self._told_fault = False
         self._changed = False
         self._drawn: dict[int, Strip] = {}
@@ -118,8 +122,10 @@ class CodeView(InkedView):
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
         """Mark the callbacks' activities at a moment, and scroll to one that has run for a while."""
         fault = fault_at(timeline, now, self._files)
-        lines, lines_before = lines_at(timeline, now, self._files) | fault, self._here
-        self._lines = lines
+        lines, lines_before = lines_at(timeline, now, self._files), self._here
+        for file, standing in standing_at(self.standing, self._files).items():
+            lines[file] = lines.get(file, {}) | standing
+        self._lines = lines = lines | fault
         for line in {*lines_before, *self._here}:
             if lines_before.get(line) != self._here.get(line):
                 self.refresh_lines(line - 1)
