@@ -1,6 +1,7 @@
 """The widget of the lanes: draws what its painter paints, and reports what the pointer picks."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from operator import itemgetter
 
 from textual.events import Click, MouseScrollDown, MouseScrollUp
 from textual.geometry import Offset, Size
@@ -138,14 +139,20 @@ class Lanes(PaintedWidget, can_focus=True):
         return self._last_on(lanes[max(0, min(place, len(lanes) - 1))])
 
     def bar_beside(self, step: int) -> Selection | None:
-        """Return the selected lane's next bar after the cursor (``step`` > 0) or the last before it."""
-        lane = self._lane_to_go_along()
-        bar = None if lane is None else neighbouring_bar(self.timeline, lane, self.now, step)
-        return None if lane is None or bar is None else Selection(lane, bar)
+        """Return the selected lane's next bar after the cursor (``step`` > 0) or the last before it.
 
-    def _lane_to_go_along(self) -> Lane | None:
+        Without a selection the lane of the cursor's bar counts; if it has none, the nearest on screen.
+        """
         selection = self.selection or self.here()
-        return None if selection is None else selection.lane
+        found = None if selection is None else self._beside([selection.lane], step)
+        if self.selection is None and self._picture is not None:
+            found = found or self._beside(self._picture.lanes, step)
+        return found
+
+    def _beside(self, lanes: Sequence[Lane], step: int) -> Selection | None:
+        bars = ((lane, neighbouring_bar(self.timeline, lane, self.now, step)) for lane in lanes)
+        found = [(abs(start_of(bar) - self.now), Selection(lane, bar)) for lane, bar in bars if bar]
+        return min(found, key=itemgetter(0), default=(0, None))[1]
 
     def _last_on(self, lane: Lane) -> Selection:
         if self._picture is None:

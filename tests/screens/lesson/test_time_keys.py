@@ -171,6 +171,23 @@ async def test_where_no_lane_has_a_bar_the_way_to_one_says_so(key: str, which: s
         assert [note.message for note in app._notifications] == [f"There is no {which} bar here."]
 
 
+async def test_without_a_selection_the_way_to_a_bar_leads_to_the_nearest_lane_that_has_one() -> None:
+    run = Run()
+    first, second = run.thread("one"), run.thread("two")
+    a, b = (run.timer(run.exclusive(run.node(f"/n{name}")), name, 1.0) for name in "ab")
+    run.callback(a, first, 1.0, 2.0)
+    run.callback(b, second, 4.0, 5.0)
+    run.log("later", 8.0)
+    app = RecordedConsole("shared-group", run.events, 8.0)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        app.lesson_screen.navigation.seek(ns(1.5))
+        await press(pilot, "right_curly_bracket")
+        assert app.lesson_screen.navigation.now == ns(4.0)
+        await press(pilot, "right_curly_bracket")  # now its lane is selected, and has no other one
+        assert [note.message for note in app._notifications] == ["There is no later bar here."]
+
+
 async def test_why_a_key_does_nothing_is_said_no_longer_than_it_is_so() -> None:
     async with console() as (app, pilot):
         await press(pilot, "u", "0")
