@@ -219,8 +219,11 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
     threads, briefly = _threads_needed(moment.at, timeline, peak, has_own=bool(own))
     pending = unanswered(LatestCalls(timeline).latest, moment.at)
     if moment.at - since < WORTH_TELLING:
-        ready = [f"{name_of(each, timeline)} is ready" for each in (*moment.waiting, *turns)]
-        waits = stuck or _no_reply(pending, moment.at, timeline) or next(iter(ready), "")
+        first = next(iter((*moment.waiting, *turns)), 0)
+        ready = f"{name_of(first, timeline)} is ready" if first else ""
+        if is_held_by_own_call(first, moment, timeline):
+            ready = _overdue(timeline.entities[first], moment, timeline, turns.get(first, moment.at))
+        waits = stuck or _no_reply(pending, moment.at, timeline) or ready
         level = DiagnosisLevel.PENDING if waits else DiagnosisLevel.FINE
         none = "no callback waits" if any(each.doing is Doing.WAITS for each in own) else "nothing waits"
         return Diagnosis(stuck or f"{waits or none}; {threads}", level)
@@ -384,14 +387,11 @@ def _busy_threads(wait: Wait, moment: Moment, timeline: Timeline) -> str:
     return f"{every} threads are busy with {' and '.join(names)}"
 
 
-_POOL = "MultiThreadedExecutor"
-"""The executor whose number of threads can be chosen."""
-
-
 def _threads_needed(at: Nanoseconds, timeline: Timeline, peak: int, *, has_own: bool) -> tuple[str, str]:
     """How many threads were needed by a moment, in full and short; ``has_own``: the program has its own."""
     count = thread_count(timeline)
-    if count == 1 and peak and any(each.kind == _POOL for each in timeline.executors.values()):
+    kinds = {each.kind for each in timeline.executors.values()}
+    if count == 1 and peak and "MultiThreadedExecutor" in kinds:  # its number of threads can be chosen
         return ("1 of 1 threads needed",) * 2
     if count <= 1:
         return ("one thread runs all callbacks" if has_own else "one thread does all the work",) * 2

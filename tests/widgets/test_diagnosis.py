@@ -121,6 +121,11 @@ def test_a_hand_over_is_neither_a_wait_nor_nothing_that_waits() -> None:
     assert diagnosis_row(told, (), "", 80)[0].text.startswith(" · ")
 
 
+def test_a_timer_that_is_just_due_again_during_its_call_is_not_told_as_ready() -> None:
+    told = said(split_groups_run(), 4.506)
+    assert told.text.startswith("timer_callback still runs, due ")
+
+
 def test_a_callback_that_waits_for_a_lock_is_not_told_as_nothing_waits() -> None:
     run = Run()
     tick = run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
