@@ -162,6 +162,8 @@ class SetUpKeys(ScreenPart):
 
     def _open_set_up(self, first: Callable[[SettingRow], bool], heading: str = SetupScreen.heading) -> None:
         screen = SetupScreen(self._changeable, self.restarts.changes, first, self.host.charset)
+        if not callbacks_of(self.runs.timeline):
+            heading = f"{SetupScreen.heading}: there is no callback{' yet' if self.runs.run.alive else ''}"
         screen.heading = heading
         self.host.ask(screen, self._run_with)
 

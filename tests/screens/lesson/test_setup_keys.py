@@ -115,6 +115,13 @@ async def test_the_group_in_force_is_highlighted_and_p_gives_the_program_s_again
         assert notes(app)[-1] == "everything is back to what the program says"
 
 
+@pytest.mark.parametrize("key", ["g", "p"])
+async def test_the_set_up_says_that_there_is_no_callback_yet(key: str) -> None:
+    async with console(events=Run().events, seconds=0.0) as (app, pilot):
+        await press(pilot, key)
+        assert "Set-up: there is no callback yet" in text_of(app)
+
+
 @pytest.mark.slow
 async def test_g_without_a_selected_callback_lets_one_be_chosen_first() -> None:
     async with console() as (app, pilot):
