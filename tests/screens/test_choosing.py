@@ -158,9 +158,14 @@ async def test_the_key_bar_offers_choosing_only_while_something_is_asked() -> No
     async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)
         assert "1-9 choose" in lines_of(app)[-1]
+        assert "show_pane" not in {each.name for each in app.screen.query_one(KeyBar).offered}
         await pilot.press("space")
         await settle(pilot)
         assert "choose" not in lines_of(app)[-1]
+        assert "show_pane" not in {each.name for each in app.screen.query_one(KeyBar).offered}
+        await pilot.press("tab")
+        await settle(pilot)
+        assert "show_pane" in {each.name for each in app.screen.query_one(KeyBar).offered}
 
 
 async def test_a_key_that_is_too_early_is_taken_back_before_a_choice_is() -> None:

@@ -100,8 +100,11 @@ class OfferedKeys:
         on_lanes = (*_ON_LANES, "enlarge") if lanes.has_focus and not framed else ()
         on_pane = (labels for kind, labels in _FIRST_ON.items() if isinstance(self.screen.focused, kind))
         bar.first = next(on_pane, on_lanes or self.first())
-        asked = not isinstance(self.screen.focused, ChoiceOptions) or self.screen.focused.option_count > 0
-        bar.offered = tuple(each for each in bar.working() if asked or each.name != "choose")
+        options = self.screen.focused
+        hidden = {"show_pane"} if isinstance(options, ChoiceOptions) else set()  # there digits choose
+        if isinstance(options, ChoiceOptions) and not options.option_count:
+            hidden.add("choose")
+        bar.offered = tuple(each for each in bar.working() if each.name not in hidden)
         of_screen = (action for action in bar.offered if action.scope is Scope.LESSON)
         lanes.hint = hint([action for action in of_screen if action.label in _ON_LANES], self.charset)
 
