@@ -12,7 +12,7 @@ from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.rows import NONE_KEPT
 from cbtui.widgets.narration import decided_about, decisions_at
 from cbtui.widgets.narrator import Narrator
-from sim.trace.events import ThreadId
+from sim.trace.events import EntityId, ThreadId
 
 
 def was_stepped(run: ShownRun, navigation: TimeNavigation) -> bool:
@@ -51,26 +51,33 @@ class Narration(ScreenPart):
             and self.runs.run.state is RunState.LIVE
         ):
             self._show(False)
-        (step, thread), screen = self._step, self.panes.screen
+        (step, about), screen = self._step, self.panes.screen
         screen.query_one(CodeView).step = step
         lanes = screen.query_one(Lanes)
-        lanes.kept = NONE_KEPT if step is None else {step.about: 0}
-        lanes.kept_thread = thread
+        lanes.kept = NONE_KEPT if about is None else {about[0]: 0}
+        lanes.kept_thread = None if about is None else about[1]
         if self.widget.display:
             self.widget.stepped = was_stepped(self.runs.run, self.navigation)
             self.widget.place = self.navigation.place
             self.widget.now, self.widget.timeline = self.navigation.now, self.runs.timeline
 
     @property
-    def _step(self) -> tuple[Step | None, ThreadId | None]:
-        """The decision to which a step led, while it is told, and the thread that it is about."""
+    def _step(self) -> tuple[Step | None, tuple[EntityId, ThreadId | None] | None]:
+        """The decision to which a step led, while it is told, and the callback and thread that are told of.
+
+        Between two decisions the last one is told.
+        """
         was_live = was_stepped(self.runs.run, self.navigation)
         if not self.widget.display or not (was_live or self.navigation.playhead.at is not None):
             return None, None
         now, place = self.navigation.now, self.navigation.place
         place = -1 if was_live or place is None else place
-        about = decided_about(self.runs.timeline, now, place)
-        return (None, None) if about is None else (Step(now, place, about[0]), about[1])
+        timeline = self.runs.timeline
+        about = decided_about(timeline, now, place)
+        if about is None and not was_live:
+            last = timeline.neighbour(now + 1, -1)
+            return None, None if last is None else decided_about(timeline, last, -1)
+        return None if about is None else Step(now, place, about[0]), about
 
     def action_narrate(self) -> None:
         """Show or hide it."""

@@ -106,6 +106,11 @@ async def test_the_lane_of_the_callback_that_a_step_is_about_is_among_the_last_t
         app.lesson_screen.navigation.seek(ns(2.0))
         await press(pilot, "comma")
         assert lanes.kept_thread in app.lesson_screen.runs.timeline.threads, "one ran a callback then"
+        decided = lanes.kept, lanes.kept_thread
+        app.lesson_screen.navigation.seek(app.lesson_screen.navigation.now + 1)  # the narrator still tells it
+        await settle(pilot)
+        assert (lanes.kept, lanes.kept_thread) == decided
+        assert app.screen.query_one(CodeView).step is None
         await press(pilot, "0", "space")
         assert not lanes.kept, "time flows"
         assert lanes.kept_thread is None
