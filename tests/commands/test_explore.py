@@ -21,9 +21,7 @@ from cbtui.runs.judged.shards import Shard
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
 from tests.commands.exploring_files import (
-    AT_THE_OVEN,
     IN_ONE_GROUP,
-    JUST_IN_TIME,
     LOCK_ORDER,
     LOOPS,
     LOST_UPDATE,
@@ -64,29 +62,6 @@ def test_an_order_that_fails_is_found_and_the_simplest_that_does_is_told_and_run
     assert command.endswith(" --seed moves:1=1")
     again = cbtui(*shlex.split(command)[1:])
     assert "AssertionError: 1" in again.stdout + again.stderr
-
-
-@pytest.mark.slow
-def test_only_a_busy_machine_shows_what_is_done_just_in_time(file: Path) -> None:
-    file.write_text(JUST_IN_TIME)
-    words = ("explore", str(file), "--schedules", "12", "--for", "0.4")
-    assert "none failed" in cbtui(*words, "--strategy", "random").stdout
-    explored = cbtui(*words, "--strategy", "busy")
-    assert "brew raised AssertionError\n      cold water" in explored.stdout
-    command = next(line for line in explored.stdout.splitlines() if "cbtui run" in line)
-    assert " --seed busy:" in command
-    again = cbtui(*shlex.split(command)[1:])
-    assert "AssertionError: cold water" in again.stdout + again.stderr
-
-
-@pytest.mark.slow
-def test_only_a_busy_machine_stalls_while_a_callback_could_go_on_and_it_is_told(file: Path) -> None:
-    file.write_text(AT_THE_OVEN)
-    words = ("explore", str(file), "--schedules", "24", "--for", "0.4")
-    assert "none failed" in cbtui(*words).stdout
-    explored = " ".join(cbtui(*words, "--strategy", "busy").stdout.split())
-    assert "bake raised AssertionError raw dough 1. 0." in explored
-    assert re.search(r"s the machine is slow: \d+ ms pass before \S+ \(mine.py:\d+, in knead\)", explored)
 
 
 @pytest.mark.slow
