@@ -285,6 +285,15 @@ def test_a_callback_that_sleeps_by_a_rate_alone_in_its_group_needs_only_a_thread
     assert told.remedies[-1].own_groups == ()
 
 
+@pytest.mark.parametrize("more", ["", "\n        self.destroy_rate(rate)"])
+def test_a_callback_that_makes_its_rate_and_keeps_it_is_told_to_destroy_it(tmp_path: Path, more: str) -> None:
+    program = (PROGRAMS / "rate_sleep.py").read_text().replace("self.rate.sleep()", f"rate.sleep(){more}")
+    program = program.replace("for number", "rate = self.create_rate(10)\n        for number")
+    timeline = run_program(tmp_path, program, 2.0).timeline
+    told = diagnose(timeline)[0].explained(timeline)
+    assert (", let tick end with destroy_rate(), and spin with " in told.cure) == (not more)
+
+
 def test_the_timer_of_a_rate_has_one_name_in_sentences_and_tables() -> None:
     timeline = run_to_end(program_setup(PROGRAMS / "rate_sleep.py", 2.0)).timeline
     assert "rate's timer" in {each.spoken_name for each in timeline.entities.values() if each.period}

@@ -59,6 +59,7 @@ def test_a_timer_that_is_made_in_each_call_is_told_with_its_line_and_their_numbe
         (lambda node: node.create_client(SetBool, "lamp"), "client"),
         (lambda node: node.create_service(SetBool, "lamp", lambda _, response: response), "service"),
         (lambda node: node.create_publisher(Int32, "numbers", 10), "publisher"),
+        (lambda node: node.create_rate(2.0), "rate"),
     ],
 )
 def test_so_are_other_things_with_their_own_word(make: Make, kind: str) -> None:
@@ -95,6 +96,11 @@ def test_a_callback_that_destroys_the_former_one_is_well() -> None:
         made.append(node.create_timer(0.3, late))
 
     assert not is_told(making(replace))
+
+
+def test_a_rate_is_kept_unless_its_node_destroys_it() -> None:
+    assert not is_told(making(lambda node: node.destroy_rate(node.create_rate(2.0))))
+    assert is_told(making(lambda node: node.create_rate(2.0).destroy()))
 
 
 def test_timers_that_cancel_themselves_are_well_be_they_many_before_the_first_is_called() -> None:

@@ -1,4 +1,4 @@
-"""Edits of timers that are never due, or always."""
+"""Edits of timers that are never due, or always, and whether the timer of a rate stays."""
 
 import ast
 
@@ -14,6 +14,17 @@ def keep_the_fraction(source: SourceEditor, line: int) -> None:
     if len(whole) != 1:
         raise NotSimpleError
     source.replace(whole[0], f"{source.code_of(whole[0].left)} / {source.code_of(whole[0].right)}")
+
+
+@asked_of_file
+def keeps_rate(source: SourceEditor, line: int) -> bool:
+    """Return whether the function around a line makes a rate, and does not destroy it."""
+    try:
+        calls = source.nodes(ast.Call, source.function_at(line))
+    except NotSimpleError:
+        return False
+    called = {ast.unparse(each.func).rpartition(".")[2] for each in calls}
+    return "create_rate" in called and "destroy_rate" not in called
 
 
 @asked_of_file

@@ -17,6 +17,7 @@ from sim.diagnosis.edits.locks import (
     take_together,
 )
 from sim.diagnosis.edits.program_file import asked_of_file
+from sim.diagnosis.edits.timers import keeps_rate
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
@@ -87,6 +88,8 @@ class SelfMadeDeadlock(Rule):
         if about == WaitedFor.RATE:
             keep = apart if _shares_group(found.subject, timeline) else "keep it"
             cure = f"remove sleep(), and have a timer of its period do one step at each call; or {keep}"
+            is_kept = keeps_rate(stands[-1].file, stands[-1].line)
+            cure += f", let {subject} end with destroy_rate()" if is_kept else ""
         elif about == WaitedFor.CLOCK:
             cure = f"return, and let a timer of the node's clock do what comes later; or {apart}"
         elif about == WaitedFor.THREAD:

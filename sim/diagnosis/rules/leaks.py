@@ -7,7 +7,7 @@ from sim.diagnosis.rule import Explanation, Finding, Rule, is_models, line_locat
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import who
 from sim.trace.events import EntityId, EntityKind, Notice, NoticeKind
-from sim.trace.model import Window
+from sim.trace.model import EntityInfo, Window
 from sim.trace.timeline import Timeline
 
 _WHY = {
@@ -40,11 +40,8 @@ class NeverDestroyed(Rule):
                 continue
             first = next(iter(calls))
             repeats = making.kind is not EntityKind.TIMER or _calls(first, timeline) > 1
-            if (
-                repeats
-                and len({*calls.values()}) >= self.threshold
-                and not is_models(timeline.entities[first])
-            ):
+            is_programs = not is_models(timeline.entities[first]) or _is_rate(timeline.entities[first])
+            if repeats and len({*calls.values()}) >= self.threshold and is_programs:
                 about, begun = f"{making.file}:{making.line}", min(calls.values())
                 yield Finding(self, begun, view.end, making.maker, first, about, size=len(calls))
         yield from self._publishers(view)
@@ -67,7 +64,8 @@ class NeverDestroyed(Rule):
             kind, why, (file, line) = "publisher", _WHY_NO_PUBLISHER, found.event.place
         else:
             maker = timeline.entities[found.culprit]
-            kind, why, (file, line) = maker.kind.value, _WHY[maker.kind], maker.made_at
+            kind = "rate" if _is_rate(maker) else maker.kind.value
+            why, (file, line) = _WHY[maker.kind], maker.made_at
         always = found.size == _calls(found.subject, timeline)
         often = "each time it runs" if always else "again and again"
         return Explanation(
@@ -77,6 +75,11 @@ class NeverDestroyed(Rule):
             f"make it once, in __init__, or destroy_{kind}() the former one",
             line_location(file, line),
         )
+
+
+def _is_rate(entity: EntityInfo) -> bool:
+    """Whether it is the timer of a rate: the only one that rclpy makes where the program asks for another."""
+    return entity.kind is EntityKind.TIMER and is_models(entity)
 
 
 def _calls(entity: EntityId, timeline: Timeline) -> int:
