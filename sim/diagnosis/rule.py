@@ -47,6 +47,7 @@ class WaitedFor(StrEnum):
     CLOCK = "the simulated time"
     LOCK = "a lock"
     THREAD = "the end of a thread"
+    FUTURE = "a future"
 
 
 REPORT_IT = "please report this fault of cbtui, with the recording if you may; what else is told holds"

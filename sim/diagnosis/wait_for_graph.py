@@ -3,10 +3,10 @@
 A callback that is blocked in ``Client.call``, or suspended in ``await``, needs a reply, and so does one that
 waits for the reply in a loop or for an event. The reply needs the service's callback, then the client, then a
 worker for the future's done-callback. ``Rate.sleep`` needs the rate's timer, ``Clock.sleep_for`` on simulated
-time the subscription of ``/clock``, a lock its holder, and ``Thread.join`` the thread. Each of these can wait
-for other callbacks: those that hold its group, those that occupy the threads, or the service's callback,
-which may be blocked itself. A callback is stuck if all callbacks that it waits for are stuck. With a timeout
-it is stuck until that is over.
+time the subscription of ``/clock``, a lock its holder, ``Thread.join`` the thread, and an awaited future the
+callbacks that complete it. Each of these can wait for other callbacks: those that hold its group, those that
+occupy the threads, or the service's callback, which may be blocked itself. A callback is stuck if all
+callbacks that it waits for are stuck. With a timeout it is stuck until that is over.
 
 Source: the usual test of a wait-for graph in which a request for one of several equal resources waits for
 all their owners to be stuck (Holt, "Some Deadlock Properties of Computer Systems", 1972).
@@ -17,36 +17,16 @@ from collections.abc import Iterator
 from operator import attrgetter
 from pathlib import Path
 
+from sim.diagnosis.edits.flags import completers
+from sim.diagnosis.lasting_waits import lasting_awaits, stands
 from sim.diagnosis.rule import WaitedFor, is_models
 from sim.diagnosis.time_limits import ends_by_itself, time_limit
 from sim.diagnosis.timeline_view import pool_of
 from sim.diagnosis.waiters import Obstacle, OnThread, StuckCallback, Suspended, Waiter, thread_name
 from sim.diagnosis.words import awaited_lock, group_of, listed, threads_for, who
-from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, NoticeKind, Reason, ThreadId
+from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, Reason, ThreadId
 from sim.trace.model import Call, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.timeline import Timeline
-
-SETTLES: Nanoseconds = 100_000_000
-"""How long a callback must have been at its line, or in its loop, until that counts as a wait."""
-
-
-def stands(position: Position, timeline: Timeline, at: Nanoseconds) -> bool:
-    """Return whether a callback has been at its line, or in the loop around it, for ``SETTLES`` at ``at``.
-
-    Virtual time stands still while a loop computes: then the engine tells that it does not come back.
-    """
-    if at - position.start >= SETTLES or _stops_time(position, timeline):
-        return True
-    before = timeline.positions_on(position.thread, Window(max(0, at - SETTLES), at + 1))
-    is_here = ((each.entity, each.loop) == (position.entity, position.loop) for each in before)
-    return position.loop[0] != "" and before[0].start <= at - SETTLES and all(is_here)
-
-
-def _stops_time(position: Position, timeline: Timeline) -> bool:
-    return any(
-        each.kind is NoticeKind.NO_PROGRESS and each.entity == position.entity and each.t >= position.start
-        for each in timeline.notices
-    )
 
 
 class WaitForGraph:
@@ -134,6 +114,9 @@ class WaitForGraph:
             kept = [each for each in obstacles if each is not None]
             if kept and len(kept) == len(obstacles) >= self._suspended_in(entity):
                 yield Suspended(entity), StuckCallback(Suspended(entity), entity, calls[-1].sent, kept[-1])
+            for each in () if calls else lasting_awaits(entity, self._at, self._timeline):
+                if (obstacle := self._completion_obstacle(each)) is not None:
+                    yield Suspended(entity), StuckCallback(Suspended(entity), entity, each.start, obstacle)
 
     def _suspended(self) -> list[EntityId]:
         holders = {entity for holding in self._moment.holders.values() for entity in holding}
@@ -249,6 +232,24 @@ class WaitForGraph:
             return None
         needs = f"{who(sender.entity, self._timeline)}, which publishes on /clock,"
         return self._admission_obstacle(sender.entity, WaitedFor.CLOCK, needs)
+
+    def _completion_obstacle(self, position: Position) -> Obstacle | None:
+        """The callbacks that complete an awaited future, all in groups that keep others out just now."""
+        known, ends = self._timeline.entities, completers(position.file, position.line)
+        node, by, clauses = known[position.entity].node, list[Waiter](), list[str]()
+        waiting = (each for each, wait in self._moment.waiting.items() if wait.reason is Reason.GROUP_HELD)
+        closed = {known[each].group for each in waiting}
+        for function, call, line in ends:
+            mine = [each for each in known.values() if (each.node, each.spoken_name) == (node, function)]
+            if len(mine) != 1 or mine[0].group not in closed:
+                return None
+            holders = self._moment.holders[mine[0].group]
+            by += (waiter for each in holders for waiter in self._waiters(each))
+            group, file = group_of(mine[0].id, self._timeline), Path(position.file).name
+            keepers = listed(who(each, self._timeline) for each in holders)
+            clauses.append(f"{call}() in {function} ({file}:{line}) needs {group}, which {keepers} holds")
+        name = ends[0][1].removesuffix(".set_result") if ends else ""
+        return Obstacle(WaitedFor.FUTURE, "; ".join(clauses), (*by,), group=group, name=name) if by else None
 
     def _waiting_action(self, call: Call) -> EntityId | None:
         """The action server or client that a request or reply waits for; their queues are not traced."""

@@ -60,9 +60,9 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ),
         (
             "await_in_vain",
-            "group-starvation",
+            "self-made-deadlock",
             "await self.ready",
-            "give tick a callback group of its own, and let on_start complete it",
+            "go on in future.add_done_callback(), or give tick a callback group of its own",
         ),
         ("await_in_own_group", "overrun-timer", "await self.ready", "let on_start complete it"),
         ("type_mismatch", "qos-mismatch", "create_subscription(String", "the same message type"),
@@ -243,9 +243,35 @@ def test_a_beginners_mistake_is_one_problem_at_its_line(
     assert cure in told.cure
 
 
-@pytest.mark.parametrize("program", ["await_in_vain", "await_in_own_group"])
-def test_an_await_in_vain_is_told_with_what_is_awaited(program: str) -> None:
-    timeline = run_to_end(program_setup(PROGRAMS / f"{program}.py", 4.0)).timeline
+def test_a_future_that_only_a_callback_of_the_same_group_completes_is_a_deadlock() -> None:
+    timeline = run_to_end(program_setup(PROGRAMS / "await_in_vain.py", 4.0)).timeline
+    [told] = [each.explained(timeline) for each in diagnose(timeline)]
+    assert told.what == (
+        "deadlock: tick waits for self.ready for ever; self.ready.set_result() in on_start "
+        "(await_in_vain.py:24) needs group A, which tick holds"
+    )
+    assert told.for_ever
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        "Thread(target=self.on_start)",  # a thread asks no group
+        "self.ready.cancel()",
+        "other = self.ready",
+        "self.create_timer(1.0, lambda: self.ready.set_result(1), callback_group=None)",
+    ],
+)
+def test_it_is_none_where_something_else_may_complete_it(tmp_path: Path, more: str) -> None:
+    program, send = (PROGRAMS / "await_in_vain.py").read_text(), "    def send(self):"
+    program = program.replace(send, f"    def other(self):\n        {more}\n\n{send}")
+    timeline = run_program(tmp_path, program, 4.0).timeline
+    [told] = [each.explained(timeline) for each in diagnose(timeline)]
+    assert "tick awaits self.ready, which has not come so far, since 0.500 s" in told.what
+
+
+def test_an_await_in_vain_is_told_with_what_is_awaited() -> None:
+    timeline = run_to_end(program_setup(PROGRAMS / "await_in_own_group.py", 4.0)).timeline
     [told] = [each.explained(timeline) for each in diagnose(timeline)]
     assert "tick awaits self.ready, which has not come so far, since 0.500 s" in told.what
     assert "let on_start complete it" in told.cure

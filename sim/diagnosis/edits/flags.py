@@ -92,11 +92,39 @@ def never_completed(source: SourceEditor, line: int) -> tuple[str, int]:
 
     "" and 0 if something may, as what it is handed on to, or if the file does not make it.
     """
+    future, makers = _future(source, line, ())
+    return (future, makers[0].lineno) if makers else ("", 0)
+
+
+@asked_of_file
+def completers(source: SourceEditor, line: int) -> tuple[tuple[str, str, int], ...]:
+    """Return what completes the future that a line awaits, as ``enders``, if nothing else of the file may.
+
+    The program hands these functions over once each, as callbacks may be, and does not call them.
+    """
+    completes = [each for each in source.nodes(ast.Call) if ast.unparse(each.func).endswith(".set_result")]
+    future, makers = _future(source, line, [each.func for each in completes])
+    last = future.rpartition(".")[2]
+    found = []
+    with suppress(NotSimpleError):
+        for each in completes if makers else ():
+            call = ast.unparse(each.func)
+            if call.rpartition(".")[0].rpartition(".")[2] == last:
+                function = source.uncalled_at(each.lineno)
+                if len(source.uses_of(function)) != 1:
+                    raise NotSimpleError
+                found.append((function.name, call, each.lineno))
+        return tuple(found)
+    return ()
+
+
+def _future(source: SourceEditor, line: int, calls: Iterable[ast.expr]) -> tuple[str, list[ast.Assign]]:
+    """Return the future that a line awaits, and what makes it, if all else asks, awaits, or ``calls`` it."""
     future = _awaited(source, line)
     idle = [each.value for each in source.nodes(ast.Await)]
+    idle += [each.value for each in calls if isinstance(each, ast.Attribute)]
     asking = ("done", "result", "cancelled", "exception", "add_done_callback")
-    makers = _makers(source, future.rpartition(".")[2], ("Future", "create_future"), asking, idle)
-    return (future, makers[0].lineno) if makers else ("", 0)
+    return future, _makers(source, future.rpartition(".")[2], ("Future", "create_future"), asking, idle)
 
 
 @asked_of_file

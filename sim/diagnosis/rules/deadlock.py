@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from sim.diagnosis.cures import Remedy
+from sim.diagnosis.deadlock_search import deadlocks
 from sim.diagnosis.edits.locks import (
     keeps_lock,
     let_go_during_wait,
@@ -32,7 +33,6 @@ from sim.diagnosis.rule import (
 )
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_rounds, edits_for_steps
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.wait_for_graph import SETTLES, WaitForGraph, stands
 from sim.diagnosis.waiters import StuckCallback
 from sim.diagnosis.words import (
     awaiting,
@@ -44,8 +44,8 @@ from sim.diagnosis.words import (
     who,
     with_threads,
 )
-from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
-from sim.trace.model import AWAIT, Blocked, Nanoseconds, Window
+from sim.trace.events import EntityId, EntityKind, GroupKind
+from sim.trace.model import AWAIT, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 
@@ -64,7 +64,7 @@ class SelfMadeDeadlock(Rule):
         """Yield each cycle."""
         return (
             _found(self, deadlock, until, stuck, view.timeline)
-            for deadlock, until, stuck in _deadlocks(view)
+            for deadlock, until, stuck in deadlocks(view)
             if not _lacks_worker(deadlock)
         )
 
@@ -154,7 +154,7 @@ class NeedsOneMoreWorker(Rule):
         """Yield each set of callbacks that block all threads of an executor."""
         return (
             _found(self, deadlock, until, stuck, view.timeline)
-            for deadlock, until, stuck in _deadlocks(view)
+            for deadlock, until, stuck in deadlocks(view)
             if _lacks_worker(deadlock)
         )
 
@@ -190,6 +190,7 @@ _WHY = {
         "simulated time goes on when the executor takes the messages of /clock, which needs a group that "
         "lets it in and a thread"
     ),
+    WaitedFor.FUTURE: "a callback keeps its group while it awaits, and what completes the future needs it",
     WaitedFor.THREAD: "the thread waits for what comes only once the callback that joins it has returned",
     WaitedFor.LOCK: "each keeps its lock while it waits for the other's, so neither lets go",
     _LOCK_AND_CALL: "the lock is held during a call, and whoever has to answer needs it",
@@ -312,48 +313,6 @@ def _explanation(
         until=found.ends if lasts else 0,
         remedies=remedies,
     )
-
-
-def _deadlocks(
-    view: TimelineView,
-) -> Iterator[tuple[Sequence[StuckCallback], Nanoseconds, frozenset[EntityId]]]:
-    """Yield the sets of callbacks that wait for each other, the ends of their waits, and all stuck ones."""
-    seen: set[tuple[tuple[EntityId, Nanoseconds], ...]] = set()
-    for moment, until in _moments(view):
-        graph = WaitForGraph(view.timeline, moment)
-        stuck = frozenset(each.entity for each in graph.stuck.values() if each.entity)
-        for deadlock in graph.deadlocks():
-            key = tuple((each.entity, each.since) for each in deadlock)
-            if key not in seen:
-                seen.add(key)
-                yield deadlock, until, stuck
-
-
-def _moments(view: TimelineView) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
-    """Yield the moments to check, with the ends of the waits: now, and just before a blocked call ended.
-
-    The latest comes first, since it shows how long a cycle lasted.
-    """
-    blocked = any(each.end is None and _is_long(each, view.end) for each in view.blocked)
-    still = any(stands(each, view.timeline, view.end) for each in view.positions)
-    if blocked or still or _call_waits_for_group(view):
-        yield view.end, view.end
-    ended = {each.end for each in view.blocked if each.end is not None and _is_long(each, each.end)}
-    yield from ((end - 1, end) for end in sorted(ended, reverse=True))
-
-
-def _is_long(blocked: Blocked, until: Nanoseconds) -> bool:
-    return until - blocked.start >= SETTLES
-
-
-def _call_waits_for_group(view: TimelineView) -> bool:
-    """Whether a request or reply waits for a group, as behind a callback of that group that awaits it."""
-    for entity in view.entities(EntityKind.CLIENT, EntityKind.SERVICE, EntityKind.WAITABLE):
-        for wait in view.waits(entity.id)[-1:]:
-            held = wait.parts[-1].reason is Reason.GROUP_HELD
-            if wait.is_open and held and wait.until - wait.since >= SETTLES:
-                return True
-    return False
 
 
 def _lacks_worker(deadlock: Sequence[StuckCallback]) -> bool:

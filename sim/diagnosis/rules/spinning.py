@@ -13,6 +13,7 @@ from sim.diagnosis.edits.spins import (
     spin_past,
     starving_loop,
 )
+from sim.diagnosis.lasting_waits import SETTLES
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
@@ -25,7 +26,6 @@ from sim.diagnosis.rule import (
 )
 from sim.diagnosis.rules.edits import edits_for_reply, edits_for_spinning, not_reached
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.wait_for_graph import SETTLES
 from sim.diagnosis.words import (
     SPIN_ONCE,
     awaiting,
