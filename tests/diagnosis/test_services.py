@@ -13,7 +13,7 @@ from sim.engine.setup import ProgramSetup
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, spin
-from tests.support.engine_runs import program_setup, run_to_end
+from tests.support.engine_runs import program_setup, run_program, run_to_end
 from tests.support.simulation import Simulation
 
 
@@ -195,6 +195,17 @@ def test_a_service_that_the_waiting_callback_keeps_from_being_created_is_told_wi
         "pick waits in wait_for_service() for /grip, which nobody has offered so far; setup would create it "
         "at line 20, and can run only when the wait is over"
     )
+
+
+def test_a_request_before_its_service_is_created_is_told_with_both_lines(tmp_path: Path) -> None:
+    program = (Path(__file__).parent / "beginners" / "service_created_later.py").read_text()
+    timeline = run_program(tmp_path, program.replace("self.client.wait_for_service()", ""), 0.9).timeline
+    [told] = [each.explained(timeline) for each in diagnose(timeline)]
+    assert told.what == (
+        "pick called /grip, which nobody offered: no reply will come; setup would create it at line 20"
+    )
+    assert told.cure == "create /grip in __init__, or ask service_is_ready() first, and return without it"
+    assert str(told.place) == "node.py:16"
 
 
 @pytest.mark.parametrize("before", ["", "other = node.create_client(Trigger, 'grip')\n"])

@@ -40,6 +40,19 @@ def made_for(source: SourceEditor, line: int) -> tuple[int, ...]:
     return tuple(each.value.lineno for each in made)
 
 
+@asked_of_file
+def asked_within(source: SourceEditor, first: int, last: int, made: int) -> int:
+    """Return the only line from one to another that calls the client which a line makes; 0 for none."""
+    makes = (each for each in source.nodes(ast.Assign) if each.value.lineno == made)
+    names = {f"{ast.unparse(target)}.{way}" for each in makes for target in each.targets for way in _ASKS}
+    calls = (each for each in source.nodes(ast.Call) if first <= each.lineno <= last)
+    lines = {each.lineno for each in calls if ast.unparse(each.func) in names}
+    return lines.pop() if len(lines) == 1 else 0
+
+
+_ASKS = ("call", "call_async")
+
+
 def _rename(source: SourceEditor, calls: Iterable[ast.Call], name: str, new: str) -> None:
     texts = [each for call in calls for each in _naming(call, name)]
     if len(texts) != 1:

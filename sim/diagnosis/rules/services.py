@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 from sim.diagnosis.cures import Remedy, remedy_for_waits
 from sim.diagnosis.edits.functions import return_response
-from sim.diagnosis.edits.names import made_for, served_at
+from sim.diagnosis.edits.names import asked_within, made_for, served_at
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
@@ -14,6 +14,7 @@ from sim.diagnosis.rule import (
     Weight,
     by_edit,
     entity_of,
+    line_location,
     line_of,
     made_at,
     place_of,
@@ -150,6 +151,10 @@ class NobodyOffers(Rule):
         caller = f"{who(found.subject, timeline)} called" if found.subject else "somebody called"
         client = _client_of(found, timeline)
         differs, cure, remedies = ("", "", ()) if client is None else offer(client, timeline)
+        made = None if client is None else made_at(client)
+        place = place_of(found.subject, timeline)
+        maker, line = served_at(made.file, found.about) if made else ("", 0)
+        asked, later = _asked_at_line(place, made), ""
         why = "a request is not kept for a service that comes later"
         if differs:
             why = "a client and a service meet only if they have the same name and the same type"
@@ -158,18 +163,29 @@ class NobodyOffers(Rule):
             for each in timeline.entities.values()
         ):
             cure = "call wait_for_service() first"
+        elif not cure and maker not in ("", "__init__", "the program"):
+            later = f"; {maker} would create it at line {line}"
+            cure = f"create {found.about} in __init__, or ask service_is_ready() first, and return without it"
         elif not cure:
             cure = (
                 "check the service's name, start the node that offers it, and call wait_for_service() first"
             )
         return Explanation(
             f"{caller} {found.about}{f' {differs}' if differs else ', which nobody offered'}: "
-            f"no reply will come{often(found.count)}",
+            f"no reply will come{often(found.count)}{later}",
             why,
             cure,
-            (client and made_at(client)) or place_of(found.subject, timeline),
+            (made if differs else asked) or made or place,
             remedies=remedies,
         )
+
+
+def _asked_at_line(place: CodeLocation | None, made: CodeLocation | None) -> CodeLocation | None:
+    """Return the line of a callback at which it calls the client that is made at another; None if unknown."""
+    if place is None or made is None or place.file != made.file:
+        return None
+    line = asked_within(place.file, place.first_line, place.last_line, made.first_line)
+    return line_location(place.file, line)
 
 
 def _client_of(found: Finding, timeline: Timeline) -> EntityInfo | None:
