@@ -231,12 +231,19 @@ def sleeps(source: SourceEditor, line: int) -> bool:
 
 
 def _set_by(source: SourceEditor, function: ast.FunctionDef) -> set[str]:
-    """Return the attributes and global variables that a function sets."""
+    """Return the attributes and global variables that a function sets, or changes by an item or a method."""
     shared = {name for each in source.nodes(ast.Global, function) for name in each.names}
     stored = (
         each for each in source.nodes(ast.expr, function) if isinstance(vars(each).get("ctx"), ast.Store)
     )
-    return {name for name in map(ast.unparse, stored) if "." in name or name in shared}
+    items = (each.value if isinstance(each, ast.Subscript) else each for each in stored)
+    calls = (each.func for each in source.nodes(ast.Call, function))
+    changed = (each.value for each in calls if isinstance(each, ast.Attribute) and each.attr in _CHANGES)
+    return {name for name in map(ast.unparse, (*items, *changed)) if "." in name or name in shared}
+
+
+_CHANGES = ("add", "append", "extend", "put", "put_nowait", "set", "set_result", "update")
+"""The methods that change what a loop may ask."""
 
 
 def sleep_in_loop(source: SourceEditor, line: int) -> None:

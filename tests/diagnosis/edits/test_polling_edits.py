@@ -358,6 +358,10 @@ def test_a_loop_that_sleeps_or_works_is_left_as_it_is(loop: str) -> None:
         ("not done", "global done\n    done = True", ("on_done",)),
         ("not done", "done = True", ()),
         ("self.last is None or self.last.data == 0", "self.last, self.n = 1, 2", ("on_done",)),
+        ("'base' not in self.poses", "self.poses['base'] = 1", ("on_done",)),
+        ("not self.jobs", "self.jobs.append(1)", ("on_done",)),
+        ("not self.opened.done()", "self.opened.set_result(1)", ("on_done",)),
+        ("not self.jobs", "print(self.jobs.count(1))", ()),
     ],
 )
 def test_it_is_known_who_sets_what_a_loop_asks(
