@@ -222,7 +222,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
             "give send a callback group",
         ),
         ("goal_in_timer", "self-made-deadlock", "self.client.send_goal(", "add_done_callback"),
-        ("call_in_parameter_callback", "self-made-deadlock", "self.client.call(", "use call_async()"),
+        (
+            "call_in_parameter_callback",
+            "self-made-deadlock",
+            "self.client.call(",
+            "ask by call_async() in a callback of add_post_set_parameters_callback(), or give tune a",
+        ),
         ("lock_held_long", "lock-held-long", "time.sleep(1.2)", "sleep, wait and compute outside"),
         ("held_group", "group-starvation", "time.sleep(0.8)", "a callback group of its own"),
         ("sleep_in_service", "group-starvation", "time.sleep(1.5)", "num_threads=2"),

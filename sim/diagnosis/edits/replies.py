@@ -4,6 +4,7 @@ import ast
 from contextlib import suppress
 
 from sim.diagnosis.edits.groups import give_own_group
+from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.source_editor import Function, NotSimpleError, SourceEditor, indentation
 
 _SPIN = "spin_until_future_complete"
@@ -99,6 +100,20 @@ def _done_callback(source: SourceEditor, callback: ast.FunctionDef, future: str,
         "",
         f"{indentation(callback)}def {name}({me}, {future}):",
     ]
+
+
+@asked_of_file
+def decides_on_parameters(source: SourceEditor, line: int) -> bool:
+    """Return whether a line is in a callback that accepts parameters or not: rclpy does not await it."""
+    names = {
+        ast.unparse(argument).rpartition(".")[2]
+        for call in source.nodes(ast.Call)
+        if ast.unparse(call.func).endswith(".add_on_set_parameters_callback")
+        for argument in call.args
+    }
+    with suppress(NotSimpleError):
+        return source.function_at(line).name in names
+    return False
 
 
 def await_reply(source: SourceEditor, line: int, made: int) -> None:

@@ -18,6 +18,7 @@ from sim.diagnosis.edits.locks import (
     take_together,
 )
 from sim.diagnosis.edits.program_file import asked_of_file
+from sim.diagnosis.edits.replies import decides_on_parameters
 from sim.diagnosis.edits.timers import keeps_rate
 from sim.diagnosis.rule import (
     CodeLocation,
@@ -101,7 +102,7 @@ class SelfMadeDeadlock(Rule):
             cure = apart if answers else later + apart
             if _keeps_lock(stands[-1].file, stands[-1].line):
                 cure = f"let go of the lock before the await, and {apart}"
-        cure = apart if len(both) > 1 else cure
+        cure = apart if len(both) > 1 else cure or _outside_parameters(found, apart, timeline)
         if not cure and answers:
             later = awaiting(subject).replace("the future", "the future of call_async()", 1)
             cure = f"{apart} and let it wait as it does, or {later}"
@@ -273,6 +274,14 @@ def _need_own_groups(found: Finding, timeline: Timeline) -> tuple[EntityId, ...]
     )
     is_exclusive = timeline.groups[other.group].kind is GroupKind.EXCLUSIVE
     return (found.subject, other.id) if keeps and is_exclusive else (found.subject,)
+
+
+def _outside_parameters(found: Finding, apart: str, timeline: Timeline) -> str:
+    """Return the cure of a callback that accepts parameters and asks a service about them; "" for others."""
+    place = _line_of(found.subject, found, timeline)
+    if place is None or not decides_on_parameters(place.file, place.first_line):
+        return ""
+    return f"ask by call_async() in a callback of add_post_set_parameters_callback(), or {apart}"
 
 
 def _shares_group(entity: EntityId, timeline: Timeline) -> bool:

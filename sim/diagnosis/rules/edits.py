@@ -11,7 +11,7 @@ from sim.diagnosis.edits.polling import (
     one_round_a_call,
     step_by_step,
 )
-from sim.diagnosis.edits.replies import await_reply, go_on_in_done_callback
+from sim.diagnosis.edits.replies import await_reply, decides_on_parameters, go_on_in_done_callback
 from sim.diagnosis.edits.spins import spin_together, spins_in_turn
 from sim.diagnosis.rule import CodeLocation, by_edit, made_at
 from sim.diagnosis.words import must_answer, threads_for, who
@@ -21,6 +21,8 @@ from sim.trace.timeline import Timeline
 
 def edits_for_reply(place: CodeLocation | None, entity: EntityId, timeline: Timeline) -> tuple[Remedy, ...]:
     """Return edits of a callback that waits for a reply at a place."""
+    if place is not None and decides_on_parameters(place.file, place.first_line):
+        return ()
     subject, made = who(entity, timeline), made_at(timeline.entities[entity])
     later: tuple[Remedy, ...] = ()
     if not must_answer(entity, timeline):
