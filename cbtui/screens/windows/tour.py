@@ -36,7 +36,9 @@ class TourStop(NamedTuple):
 
 
 STOPS = (
-    TourStop("guide", "A lesson is an ordinary ROS 2 node. It runs now, very slowly, and this is its guide."),
+    TourStop(
+        "guide", "A lesson is an ordinary ROS 2 node. It starts now, runs slowly, and this is its guide."
+    ),
     TourStop(
         "lanes",
         "Time goes from left to right. The top lane is a thread: each stroke is a call of a callback.",

@@ -252,6 +252,11 @@ def test_the_tour_promises_no_exercise_that_its_lesson_may_lack() -> None:
     assert "if it has one" in told
 
 
+def test_the_tour_does_not_say_that_a_node_runs_which_is_being_started() -> None:
+    assert "runs now" not in STOPS[0].text
+    assert "starts now" in STOPS[0].text
+
+
 async def test_the_number_of_no_lesson_does_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("cbtui.app.lessons", lambda: lessons()[:8])
     app = menu()
