@@ -3,6 +3,7 @@
 import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import partial
 
 import pytest
 from textual.pilot import Pilot
@@ -201,32 +202,32 @@ async def test_the_cursor_goes_from_bar_to_bar_of_the_lane_that_was_clicked_on()
         assert lanes.selection is None
 
 
-@pytest.mark.parametrize(
-    ("key", "sentence"),
-    [
-        ("enter", "Code is shown beside a run"),
-        ("d", "Diagnoses are listed in a run"),
-        ("right_curly_bracket", "No bar is later"),
-        ("full_stop", "This is the end"),
-        ("right", "This is the end"),
-        ("P", "P, predict, works in a run, not in a comparison."),
-        ("space", "␣, pause, works in a run"),
-        ("plus", "+, speed, works in a run"),
-        ("1", "1, pane, works in a run"),
-        ("tab", "tab, next pane, works in a run"),
-        ("ctrl+r", "^r, start over, works in a run"),
-    ],
-)
-async def test_a_key_that_does_nothing_says_why_at_the_top_and_covers_no_figure(
-    key: str, sentence: str
-) -> None:
+def says(app: ComparingConsole, sentence: str) -> bool:
+    return sentence in lines_of(app)[0]
+
+
+async def test_a_key_that_does_nothing_says_why_at_the_top_and_covers_no_figure() -> None:
     async with compared(*sides(), size=NARROW) as (app, pilot):
         for other in ("s", "x"):
             await pilot.press(other)
             await until(pilot, lambda: bool(app.screen.query(Toast)))
-        await pilot.press(key)
-        await until(pilot, lambda: sentence in lines_of(app)[0])
-        assert "run A  shared-group" in text_of(app)
+        for key, sentence in (
+            ("enter", "Code is shown beside a run"),
+            ("full_stop", "This is the end"),
+            ("d", "Diagnoses are listed in a run"),
+            ("right", "This is the end"),
+            ("right_curly_bracket", "No bar is later"),
+            ("P", "P, predict, works in a run, not in a comparison."),
+            ("space", "␣, pause, works in a run"),
+            ("plus", "+, speed, works in a run"),
+            ("1", "1, pane, works in a run"),
+            ("tab", "tab, next pane, works in a run"),
+            ("ctrl+r", "^r, start over, works in a run"),
+        ):
+            assert not says(app, sentence)
+            await pilot.press(key)
+            await until(pilot, partial(says, app, sentence))
+            assert "run A  shared-group" in text_of(app)
 
 
 async def test_a_key_that_was_moved_says_by_its_new_place_that_it_is_for_a_run() -> None:

@@ -142,23 +142,20 @@ async def test_a_narrator_that_came_with_a_step_goes_when_the_run_goes_on_live(k
         assert narrator.display == stays
 
 
-@pytest.mark.parametrize(
-    ("keys", "said"),
-    [
-        (["comma"], "This is the beginning: no event is before it."),
-        (["left_square_bracket"], "This is the beginning."),
-        (["left_curly_bracket"], "There is no earlier bar here."),
-        (["0", "right_square_bracket"], "The end is on screen already."),
-        (["0", "right_curly_bracket"], "There is no later bar here."),
-        (["greater_than_sign"] * 20, "No shorter stretch can be shown."),
-        (["less_than_sign"] * 20, "No longer stretch can be shown."),
-    ],
-)
-async def test_a_key_that_leads_no_further_says_so(keys: list[str], said: str) -> None:
+async def test_a_key_that_leads_no_further_says_so() -> None:
     async with console() as (app, pilot):
-        app.lesson_screen.navigation.seek(0)
-        await press(pilot, *keys)
-        assert [note.message for note in app._notifications][-1] == said
+        for keys, said in (
+            (["comma"], "This is the beginning: no event is before it."),
+            (["left_square_bracket"], "This is the beginning."),
+            (["left_curly_bracket"], "There is no earlier bar here."),
+            (["0", "right_square_bracket"], "The end is on screen already."),
+            (["0", "right_curly_bracket"], "There is no later bar here."),
+            (["greater_than_sign"] * 20, "No shorter stretch can be shown."),
+            (["less_than_sign"] * 20, "No longer stretch can be shown."),
+        ):
+            app.lesson_screen.navigation.seek(0)
+            await press(pilot, *keys)
+            assert [note.message for note in app._notifications][-1] == said
 
 
 @pytest.mark.parametrize(
