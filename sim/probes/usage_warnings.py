@@ -135,6 +135,15 @@ class UsageWarnings:
         told = {"kind": NoticeKind.OVERRULED, "problem": problem, "advice": advice}
         self._warn(f"{problem}: what was asked for is stored last; {advice}", self._here.entity, **told)
 
+    def parameters_unanswered(self, callback: Callable[..., object]) -> None:
+        """Warn of an on-set callback that returns no SetParametersResult."""
+        name = getattr(callback, "__name__", "a parameter callback")
+        code = getattr(callback, "__code__", None)
+        problem = f"{name} returned no SetParametersResult, so rclpy refuses what was to be set"
+        advice = f"end {name} with: return SetParametersResult(successful=True)"
+        place = (code.co_filename, code.co_firstlineno) if code else ("", 0)
+        self._tell_of(place, NoticeKind.UNANSWERED, problem, advice)
+
     def cancel_ignored(self, entity: TracedEntity, seconds: int) -> None:
         """Warn that an execute callback has gone on so long after the cancel of its goal was accepted."""
         problem = (

@@ -70,3 +70,28 @@ def test_what_was_not_declared_or_is_shut_down_already_is_told_with_the_call_to_
     told = diagnose(timeline)[0].explained(timeline)
     assert told.cure.startswith(cure)
     assert str(told.place) == "node.py:5"
+
+
+FORGETS = """
+import rclpy
+from rclpy.parameter import Parameter
+
+def asked(parameters):
+    pass
+
+rclpy.init()
+node = rclpy.create_node("node")
+node.declare_parameter("speed", 1)
+node.add_on_set_parameters_callback(asked)
+for value in (2, 3):
+    refused = node.set_parameters([Parameter("speed", value=value)])
+"""
+
+
+def test_a_parameter_callback_that_returns_nothing_is_told_with_its_line(tmp_path: Path) -> None:
+    run = run_program(tmp_path, FORGETS)
+    (found,) = diagnose(run.timeline)
+    told = found.explained(run.timeline)
+    assert told.what == "asked returned no SetParametersResult, so rclpy refuses what was to be set"
+    assert told.cure == "end asked with: return SetParametersResult(successful=True)"
+    assert str(told.place) == "node.py:5"

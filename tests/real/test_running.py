@@ -387,6 +387,34 @@ def test_a_sleep_by_simulated_time_that_stops_its_clock_is_a_deadlock(tmp_path: 
     assert "clock_callback" in {each.callback for each in timeline.entities.values()}
 
 
+UNANSWERED = """
+from rclpy.parameter import Parameter
+
+
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.declare_parameter("speed", 1)
+        self.add_on_set_parameters_callback(self.asked)
+        self.create_timer(0.2, self.tick)
+
+    def asked(self, parameters):
+        pass
+
+    def tick(self):
+        refused = self.set_parameters([Parameter("speed", value=2)])
+"""
+
+
+@pytest.mark.parametrize("ground", ["model", "ros2"])
+def test_a_parameter_callback_that_returns_nothing_is_told_once(tmp_path: Path, ground: str) -> None:
+    timeline = programs.run(tmp_path, UNANSWERED, ground=ground, seconds=1.5).timeline
+    (found,) = (each for each in diagnose(timeline) if each.rule.id == "slip")
+    told = found.explained(timeline)
+    assert told.what == "asked returned no SetParametersResult, so rclpy refuses what was to be set"
+    assert told.place is not None
+
+
 def test_the_robot_leaves_a_real_run_whose_program_publishes_for_its_sensors() -> None:
     told: list[object] = []
     with DefaultSelector() as selector:

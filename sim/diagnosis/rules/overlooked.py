@@ -58,10 +58,10 @@ class AnswerOverlooked(Rule):
 
 
 class Slip(Rule):
-    """A line does not do what it seems to: its callbacks share a variable, or what it calls never runs."""
+    """A line does not do what it seems to: callbacks share a variable, never run, or do not answer."""
 
     id = "slip"
-    summary = "callbacks of a loop share its variable, or what is called never runs"
+    summary = "callbacks of a loop share its variable, never run, or do not answer"
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each line once, as the engine reports it."""
@@ -99,6 +99,7 @@ _WHY = {
     NoticeKind.LATE_BOUND: "a function looks up its variables when called, and by then the loop is over",
     NoticeKind.NEVER_AWAITED: "calling an async def only makes a coroutine, which runs when it is awaited",
     NoticeKind.NEVER_ITERATED: "rclpy calls a callback and drops what it returns, also a generator",
+    NoticeKind.UNANSWERED: "such a callback is asked whether the values may be set, and None is no answer",
 }
 
 

@@ -25,6 +25,7 @@ from sim.ros.node.rosout import RosoutPublisher, offer_rosout, withdraw_rosout
 from sim.ros.node.time_source import TimeSource
 from sim.ros.node.type_description_service import TypeDescriptionService
 from sim.ros.parameters.checks import PARAM_REL_TOL
+from sim.ros.parameters.on_set import OnSetCallbacks
 from sim.ros.parameters.parameter import Parameter
 from sim.ros.parameters.store import ParameterChange, ParameterStore
 from sim.ros.scheduling.agenda import Agenda
@@ -79,11 +80,12 @@ class Node:
         self._node_names = NodeNames(node_name, namespace or "", Remapping(rules))
         given = parameters_for(self._node_names.full_name, sources)
         overrides = [Parameter(name, value=value) for name, value in given.items()]
+        usage = self._context.probe.usage
         self._parameter_store = ParameterStore(
             [*overrides, *(parameter_overrides or ())],
             self._publish_parameter_change,
-            self._context.probe.usage.parameter_overruled,
-            self._context.probe.usage.refused,
+            OnSetCallbacks(usage.parameter_overruled, usage.parameters_unanswered),
+            usage.refused,
             allow_undeclared=allow_undeclared_parameters,
         )
         self._graph_queries = Graph(self)

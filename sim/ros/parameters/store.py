@@ -17,12 +17,10 @@ from sim.ros.naming.validation import validate_parameter_name
 from sim.ros.parameters.checks import has_wrong_type, objection
 from sim.ros.parameters.declaration import read_declaration
 from sim.ros.parameters.listing import listed
-from sim.ros.parameters.nested_sets import NestedSetDetector
+from sim.ros.parameters.on_set import AnyParameter, OnSetCallback, OnSetCallbacks, result_for
 from sim.ros.parameters.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
 
-AnyParameter: TypeAlias = Parameter[Any]
 PreSetCallback: TypeAlias = Callable[[list[AnyParameter]], list[AnyParameter]]
-OnSetCallback: TypeAlias = Callable[[list[AnyParameter]], Any]
 PostSetCallback: TypeAlias = Callable[[list[AnyParameter]], None]
 
 _NOT_SET = Parameter.Type.NOT_SET
@@ -45,28 +43,27 @@ class ParameterChange:
 class ParameterStore:
     """The parameters of a node by name. Callbacks run on the thread that sets parameters, the newest first.
 
-    ``publish`` is called with every change, ``overruled`` with each name that a callback sets without effect,
-    ``refused`` with the names that are refused together, and the reason.
+    ``publish`` is called with every change, ``refused`` with the names that are refused together, and the
+    reason.
     """
 
     def __init__(
         self,
         overrides: Iterable[AnyParameter],
         publish: Callable[[ParameterChange], None],
-        overruled: Callable[[str], None],
+        on_set: OnSetCallbacks,
         refused: Callable[[Sequence[str], str], None],
         *,
         allow_undeclared: bool,
     ) -> None:
         self._publish = publish
         self._refused = refused
-        self._nested_sets = NestedSetDetector(overruled)
+        self._on_set = on_set
         self._parameters: dict[str, AnyParameter] = {}
         self._descriptors: dict[str, Any] = {}
         self._parameter_overrides = {each.name: each for each in overrides}
         self._allow_undeclared_parameters = allow_undeclared
         self._pre_set_parameters_callbacks: list[PreSetCallback] = []
-        self._on_set_parameters_callbacks: list[OnSetCallback] = []
         self._post_set_parameters_callbacks: list[PostSetCallback] = []
 
     # Declaring
@@ -133,7 +130,7 @@ class ParameterStore:
         if has_wrong_type(parameter, descriptor):
             raise InvalidParameterTypeException(parameter, Parameter.Type(descriptor.type).name)
         if not reason:
-            result = self._ask_callbacks([parameter])
+            result = self._on_set.ask([parameter])
             if result.successful:
                 self._descriptors[parameter.name] = descriptor
                 change = ParameterChange()
@@ -244,10 +241,10 @@ class ParameterStore:
             asked = tuple(self._pre_set_parameters_callbacks)
             chosen = [parameter for callback in asked for parameter in callback(list(parameter_list))]
             if not chosen:
-                return _result(_NOTHING_LEFT)
+                return result_for(_NOTHING_LEFT)
         self._require_declared(chosen)
         reason = self._objection_to(chosen)
-        result = _result(reason) if reason else self._ask_callbacks(chosen)
+        result = result_for(reason) if reason else self._on_set.ask(chosen)
         if not result.successful:
             self._refused([each.name for each in chosen], result.reason)
             return result
@@ -272,14 +269,6 @@ class ParameterStore:
             if reason := objection(parameter, descriptor):
                 return reason
         return ""
-
-    def _ask_callbacks(self, parameters: list[AnyParameter]) -> Any:
-        with self._nested_sets.setting(each.name for each in parameters):
-            for callback in tuple(self._on_set_parameters_callbacks):
-                result = callback(parameters)
-                if not result.successful:
-                    return result
-        return _result("")
 
     def _store(self, parameter: AnyParameter, change: ParameterChange) -> None:
         known = self.get_parameter_or(parameter.name).type_ is not _NOT_SET
@@ -313,7 +302,7 @@ class ParameterStore:
         """
         if not callable(callback):
             raise TypeError("Callback must be callable, got {}", type(callback))
-        self._on_set_parameters_callbacks.insert(0, callback)
+        self._on_set.callbacks.insert(0, callback)
 
     def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
         """Call ``callback`` with the parameters that were set."""
@@ -325,7 +314,7 @@ class ParameterStore:
 
     def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
         """Remove ``callback``; ValueError if it was not added."""
-        self._on_set_parameters_callbacks.remove(callback)
+        self._on_set.callbacks.remove(callback)
 
     def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
         """Remove ``callback``; ValueError if it was not added."""
@@ -393,7 +382,3 @@ class ParameterStore:
 def _require_names(names: Iterable[object]) -> None:
     if not all(isinstance(name, str) for name in names):
         raise TypeError("All names must be instances of type str")
-
-
-def _result(reason: str) -> Any:
-    return rcl_interfaces.SetParametersResult(successful=not reason, reason=reason)

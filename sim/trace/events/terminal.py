@@ -106,6 +106,8 @@ class NoticeKind(StrEnum):
     """A callback makes a coroutine and drops it, so that nothing of it runs."""
     NEVER_ITERATED = "never iterated"
     """A callback is a generator function, so that nothing of it runs."""
+    UNANSWERED = "unanswered"
+    """A parameter callback returned no result, so that the parameter is refused."""
     UNMATCHED = "unmatched"
     """The run was asked to change a callback that the program does not have."""
     JOB_DIED = "job died"

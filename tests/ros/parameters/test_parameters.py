@@ -287,12 +287,13 @@ def test_the_newest_callback_is_asked_first_and_the_first_refusal_counts() -> No
     with_node(check)
 
 
-def test_a_callback_that_forgets_its_result_is_an_error() -> None:
+def test_a_callback_that_forgets_its_result_refuses() -> None:
     def check(node: Node) -> None:
         node.declare_parameter("a", 1)
         node.add_on_set_parameters_callback(lambda _: None)
-        with pytest.raises(AttributeError, match="'NoneType' object has no attribute 'successful'"):
-            node.set_parameters([Parameter("a", value=2)])
+        with pytest.warns(UserWarning, match="Callback returned an invalid type, it should return Set"):
+            told = node.set_parameters([Parameter("a", value=2)])
+        assert told == [refused("Callback returned an invalid type")]
         assert node.get_parameter("a").value == 1
 
     with_node(check)

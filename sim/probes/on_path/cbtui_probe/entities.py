@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import inspect
 import sys
-import threading
 import time
 import weakref
 from functools import wraps
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
@@ -16,6 +14,7 @@ from rclpy.qos import QoSPolicyKind
 
 from .callbacks import Calls, is_own
 from .naming import written_at
+from .parameters import watch_parameters
 from .recorder import now
 from .states import STATE, WatchedEntity, nothing, state_of
 from .unseen import UNSEEN, leave_out_probe
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
     from .tuning import Tuning
 
 _INCOMPATIBLE = "RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS"
-_ADVICE = "return the value from a pre-set callback, or refuse what was asked for"
 
 
 def _type_of(made: Any) -> str:
@@ -38,15 +36,6 @@ def _type_of(made: Any) -> str:
         return ""
     kind = made_for if isinstance(made_for, type) else type(made_for)  # rclpy takes a message for its class
     return "/".join([*kind.__module__.split(".")[:2], kind.__name__])
-
-
-def _overruled(name: str, frame: FrameType | None) -> str:
-    while frame is not None and not is_own(frame):
-        frame = frame.f_back
-    place = ""
-    if frame is not None:
-        place = f" ({Path(frame.f_code.co_filename).name}:{frame.f_lineno}, in {frame.f_code.co_name})"
-    return f"a parameter callback sets '{name}' while that is being set{place}"
 
 
 class _Execution:
@@ -82,33 +71,7 @@ class Entities:
         self._watch_rates(node_class)
         self._watch_publishers(node_class)
         self._watch_waitables(node_class)
-        self._watch_parameters(node_class)
-
-    def _watch_parameters(self, node_class: Any) -> None:
-        """Report once each parameter that an on-set callback sets while it is being set."""
-        set_all = node_class._set_parameters_atomically_common
-        recorder, here = self._recorder, threading.local()
-        told: set[tuple[int, str]] = set()
-
-        @wraps(set_all)
-        def set_known(node: Any, parameters: Any, *args: Any, **kwargs: Any) -> Any:
-            outer = getattr(here, "parameters", {})
-            own = {(id(node), each.name): each for each in parameters}
-            for key in (own.keys() & outer.keys()) - told:
-                if node._parameters.get(key[1]) is not outer[key]:  # else it is stored: a post-set callback
-                    told.add(key)
-                    problem = _overruled(key[1], sys._getframe(1))
-                    text = f"{problem}: what was asked for is stored last; {_ADVICE}"
-                    kind, entity = "overruled", recorder.here.entity
-                    recorder.put("notice", now(), "WARN", text, entity, False, kind, problem, _ADVICE)
-            here.parameters = {**outer, **own}
-            try:
-                with UNSEEN:
-                    return set_all(node, parameters, *args, **kwargs)
-            finally:
-                here.parameters = outer
-
-        node_class._set_parameters_atomically_common = set_known
+        watch_parameters(node_class, self._recorder)
 
     def watch_rhythms(self, timer_class: Any) -> None:
         """Follow changes of timers' periods and resets, which change when a timer is due."""

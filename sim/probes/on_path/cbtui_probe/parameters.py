@@ -1,0 +1,74 @@
+"""Hooks the setting of parameters, to tell what their callbacks do wrong."""
+
+from __future__ import annotations
+
+import sys
+import threading
+from functools import wraps
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from .callbacks import is_own
+from .recorder import now
+from .unseen import UNSEEN
+
+if TYPE_CHECKING:
+    from types import FrameType
+
+    from .recorder import Recorder
+
+_ADVICE = "return the value from a pre-set callback, or refuse what was asked for"
+
+
+def watch_parameters(node_class: Any, recorder: Recorder) -> None:
+    """Report once each parameter that an on-set callback overrules, and that one gives no answer."""
+    set_all = node_class._set_parameters_atomically_common
+    here = threading.local()
+    told: set[tuple[int, str]] = set()
+
+    @wraps(set_all)
+    def set_known(node: Any, parameters: Any, *args: Any, **kwargs: Any) -> Any:
+        outer = getattr(here, "parameters", {})
+        own = {(id(node), each.name): each for each in parameters}
+        for key in (own.keys() & outer.keys()) - told:
+            if node._parameters.get(key[1]) is not outer[key]:  # else it is stored: a post-set callback
+                told.add(key)
+                problem = _overruled(key[1], sys._getframe(1))
+                text = f"{problem}: what was asked for is stored last; {_ADVICE}"
+                kind, entity = "overruled", recorder.here.entity
+                recorder.put("notice", now(), "WARN", text, entity, False, kind, problem, _ADVICE)
+        here.parameters = {**outer, **own}
+        try:
+            with UNSEEN:
+                result = set_all(node, parameters, *args, **kwargs)
+        finally:
+            here.parameters = outer
+        if result.reason == "Callback returned an invalid type" and (key := (id(node), "")) not in told:
+            told.add(key)
+            problem, advice, place = _unanswered(node._on_set_parameters_callbacks)
+            text, entity = f"{problem}; {advice}", recorder.here.entity
+            recorder.put("notice", now(), "WARN", text, entity, False, "unanswered", problem, advice, place)
+        return result
+
+    node_class._set_parameters_atomically_common = set_known
+
+
+def _overruled(name: str, frame: FrameType | None) -> str:
+    while frame is not None and not is_own(frame):
+        frame = frame.f_back
+    place = ""
+    if frame is not None:
+        place = f" ({Path(frame.f_code.co_filename).name}:{frame.f_lineno}, in {frame.f_code.co_name})"
+    return f"a parameter callback sets '{name}' while that is being set{place}"
+
+
+def _unanswered(callbacks: Any) -> tuple[str, str, tuple[str, int]]:
+    """What is wrong with an on-set callback that returned no result, what to do, and its line."""
+    own = [each for each in callbacks if not getattr(each, "__module__", "").startswith("rclpy.")]
+    only = own[0] if len(own) == 1 else None
+    name, code = getattr(only, "__name__", "a parameter callback"), getattr(only, "__code__", None)
+    return (
+        f"{name} returned no SetParametersResult, so rclpy refuses what was to be set",
+        f"end {name} with: return SetParametersResult(successful=True)",
+        (code.co_filename, code.co_firstlineno) if code else ("", 0),
+    )
