@@ -42,7 +42,7 @@ class CallbackStatistics:
     """The statistics of a callback's calls in a window. A distribution without values is None.
 
     - ``calls``: the number that started in the window. A resumption starts no call.
-    - ``duration``: of those that started in the window and have ended; of a suspended call, each segment.
+    - ``duration``: of those that started and ended in the window; of a suspended call, each segment.
     - ``wait``: how long the callback, or its message, had waited before each call: the length of the last
       series of waits that ended in the window and before the call, and belongs to no earlier call. 0 if there
       is none. It counts from its beginning, which may be before the window.
@@ -113,7 +113,7 @@ def statistics_incrementally(
     errors = 0
     for part in split(window, timeline.calls_of(entity, window)):
         begun = [span for span in timeline.spans_of(entity, part) if span.start >= part.start]
-        lengths.extend(span.end - span.start for span in begun if span.end is not None)
+        lengths.extend(span.end - span.start for span in begun if span.end_at(window.end) < window.end)
         errors += sum(bool(span.error) for span in begun)
         calls = timeline.calls_begun(entity, part)
         starts.extend(span.start for span in calls)
