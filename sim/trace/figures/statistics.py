@@ -113,7 +113,8 @@ def statistics_incrementally(
     errors = 0
     for part in split(window, timeline.calls_of(entity, window)):
         begun = [span for span in timeline.spans_of(entity, part) if span.start >= part.start]
-        lengths.extend(span.end - span.start for span in begun if span.end_at(window.end) < window.end)
+        ended = ((span.start, span.end_at(window.end)) for span in begun)
+        lengths.extend(end - start for start, end in ended if end < window.end)
         errors += sum(bool(span.error) for span in begun)
         calls = timeline.calls_begun(entity, part)
         starts.extend(span.start for span in calls)
