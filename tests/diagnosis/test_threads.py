@@ -91,6 +91,17 @@ def test_threads_change_nothing_where_all_callbacks_share_a_group() -> None:
     assert told == "4 threads change nothing: all callbacks share group A"
 
 
+def test_threads_change_something_where_calls_may_have_done_callbacks_which_are_in_no_group() -> None:
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        node.create_client(SetBool, "lamp")
+        node.create_timer(1.0, lambda: None)
+        node.create_timer(1.0, lambda: None)
+        spin(node, 2)
+
+    assert rules(diagnosed(program, until=5.0)) == []
+
+
 def test_threads_change_something_where_the_timer_of_a_rate_is_in_a_group_beside_that_of_all_others() -> None:
     def program(_: Simulation) -> None:
         node = Node("n")

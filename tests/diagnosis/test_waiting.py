@@ -449,3 +449,49 @@ def test_a_timer_that_seldom_waits_but_comes_too_seldom_by_that_is_worth_a_remar
     if told:
         told = f"often waited 350 ms: group A was held by slow (19 times in all){told}"
         assert run.explained("group-starvation").what == told
+
+
+WAITS_IN_A_TASK = """
+import time
+import rclpy
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+class N(Node):
+    def __init__(self):
+        super().__init__("n")
+        self.create_service(SetBool, "lamp", lambda request, response: response)
+        self.client = self.create_client(SetBool, "lamp")
+        self.create_timer(1.0, self.ask)
+
+    def ask(self):
+        self.client.call_async(SetBool.Request()).add_done_callback(self.answered)
+
+    def answered(self, future):
+        WAIT
+
+rclpy.init()
+rclpy.spin(N())
+"""
+
+
+@pytest.mark.parametrize(
+    ("wait", "kept"),
+    [
+        ("time.sleep(1.8)", "was kept by no callback of a node"),
+        (
+            "self.client.call(SetBool.Request())",
+            "waited in a call of /lamp, made by no callback of a node",
+        ),
+    ],
+)
+def test_a_thread_that_a_done_callback_keeps_runs_no_callback_of_a_node(
+    tmp_path: Path, wait: str, kept: str
+) -> None:
+    timeline = run_program(tmp_path, WAITS_IN_A_TASK.replace("WAIT", wait), 6.0).timeline
+    (told,) = (each.explained(timeline) for each in diagnose(timeline) if each.rule.id == "no-free-worker")
+    assert f": the only thread {kept}: by a done-callback or another task, such as answered (line 18)" in (
+        told.what
+    )
+    assert str(told.place) == "node.py:18"

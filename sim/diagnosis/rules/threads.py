@@ -54,6 +54,7 @@ class GroupsChangeNothing(Rule):
     """Groups without threads, or threads without groups: each alone changes nothing.
 
     With one thread groups matter to callbacks that await or spin: they hold their groups while others run.
+    Threads matter to the done-callbacks of calls, which are in no group.
     """
 
     id = "groups-change-nothing"
@@ -66,7 +67,8 @@ class GroupsChangeNothing(Rule):
         if view.known < _WARMED_UP or not view.threads_needed:
             return
         only = _only_group(view.timeline)
-        if only is not None:
+        calls = any(each.kind is EntityKind.CLIENT for each in view.few_entities)
+        if only is not None and not calls:
             first = view.timeline.group_members(only.id)[0]
             yield Finding(self, 0, view.end, first.id, detail=_THREADS)
         node = _node_with_groups(view.timeline)
