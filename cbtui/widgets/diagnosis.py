@@ -151,8 +151,8 @@ def with_worst_problem(
 def _is_known(found: ExplainedFinding, at: Nanoseconds) -> bool:
     """Whether all that a finding says had happened by a moment."""
     finding, explanation = found.finding, found.explanation
-    stuck = explanation.for_ever or explanation.until
-    return (finding.known_at if stuck else finding.until) <= at
+    from_start = explanation.for_ever or explanation.until or finding.rule.known_from_start
+    return (finding.known_at if from_start else finding.until) <= at
 
 
 def _key(action: str, keymap: Keymap) -> str:

@@ -169,6 +169,8 @@ class Rule(ABC):
     """Whether the rule finds effects of a callback that can never continue."""
     dated_by_first: ClassVar[bool] = False
     """Whether ``at`` is when the first occurrence began; ``until`` is the worst one's end all the same."""
+    known_from_start: ClassVar[bool] = False
+    """Whether all that a finding says held at its ``at``, as one event has it."""
     hides: ClassVar[frozenset[str]] = frozenset()
     """The rules that are not told beside a finding, of its culprit if both have one: their advice would not
     help while it stands, or says the same."""

@@ -543,6 +543,19 @@ def test_in_80_columns_a_long_sentence_has_its_reason_first(lesson: str, shown: 
     assert line(told, 80, problems="1 problem · d").startswith(f" ! {shown}  ")
 
 
+@pytest.mark.parametrize(
+    ("lesson", "rule"),
+    [("synchroniser-never-fires", "never-synchronised"), ("clock-set-back", "times-kept")],
+)
+def test_a_problem_that_one_event_shows_is_told_of_past_moments_from_that_on(lesson: str, rule: str) -> None:
+    monitor = FindingsMonitor(run_lesson(lesson, 3.0, 1.0).timeline)
+    monitor.update()
+    (found,) = (each for each in monitor.findings if each.finding.rule.id == rule)
+    calm, at = Diagnosis("", DiagnosisLevel.FINE), found.finding.at
+    assert with_worst_problem(calm, [found], at=at - 1) is calm
+    assert with_worst_problem(calm, [found], at=at) == with_worst_problem(calm, [found])
+
+
 def test_a_sentence_that_does_not_fit_ends_with_a_clause() -> None:
     what = "deadlock: pick waits for /gripper for ever; the reply of /gripper can never be taken in"
     deadlock = Diagnosis(f"at 1.0 s: {what}", DiagnosisLevel.TROUBLE, time="at 1.0 s: ")

@@ -85,6 +85,7 @@ class TimesKept(Rule):
 
     id = "times-kept"
     summary = "a node keeps times of a simulated clock that is set back"
+    known_from_start = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each node of which the trace says so, with the callback that sets the time if it is known."""

@@ -24,6 +24,7 @@ class NeverSynchronised(Rule):
 
     id = "never-synchronised"
     summary = "a synchroniser gets messages, and never brings any together"
+    known_from_start = True
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each synchroniser that the engine reports, unless it has begun to hand on since."""
