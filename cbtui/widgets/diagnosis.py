@@ -223,7 +223,7 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
         ready = f"{name_of(first, timeline)} is ready" if first else ""
         if is_held_by_own_call(first, moment, timeline):
             ready = _overdue(timeline.entities[first], moment, timeline, turns.get(first, moment.at))
-        waits = stuck or _no_reply(pending, moment.at, timeline) or ready
+        waits = stuck or _no_reply(pending, moment.at, timeline, ready or "no callback waits") or ready
         level = DiagnosisLevel.PENDING if waits else DiagnosisLevel.FINE
         none = "no callback waits" if any(each.doing is Doing.WAITS for each in own) else "nothing waits"
         return Diagnosis(stuck or f"{waits or none}; {threads}", level)
@@ -235,16 +235,16 @@ def _at_rest(moment: Moment, timeline: Timeline, peak: int) -> Diagnosis:
     return Diagnosis(f"{text}; {briefly}", DiagnosisLevel.PENDING, at_length=f"{text}; {threads}")
 
 
-def _no_reply(pending: Sequence[Call], at: Nanoseconds, timeline: Timeline) -> str:
+def _no_reply(pending: Sequence[Call], at: Nanoseconds, timeline: Timeline, others: str) -> str:
     """The text on the oldest call without a reply, the newest first in ``pending``; "" if there is none."""
     if not pending:
         return ""
     by_program = [call for call in pending if call.caller]
     if not by_program:  # the note beside it tells of those from outside
-        return "no callback waits"
+        return others
     call = by_program[-1]
     caller = name_of(call.caller, timeline)
-    return f"{caller} has no reply from {call.service} for {duration(at - call.sent)}; no callback waits"
+    return f"{caller} has no reply from {call.service} for {duration(at - call.sent)}; {others}"
 
 
 def _stuck(moment: Moment, timeline: Timeline) -> str:

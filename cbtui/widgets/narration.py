@@ -17,7 +17,7 @@ from sim.trace.figures.waiting import (
     waits_at,
     waits_since,
 )
-from sim.trace.model import Blocked, Deed, EntityInfo, Nanoseconds, Span, Wait, Window
+from sim.trace.model import Blocked, Deed, EntityInfo, Moment, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 _ORDER = (
@@ -48,10 +48,10 @@ def narration(timeline: Timeline, at: Nanoseconds, stepped: bool = False) -> tup
     If time was ``stepped`` to a moment without an action, return what else happens at that moment.
     """
     last = timeline.neighbour(at + 1, -1)
+    if stepped and at > (last or 0):
+        return _without_decision(timeline, at, last or 0)
     if last is None:
         return ("nothing has happened yet",)
-    if stepped and last < at:
-        return _without_decision(timeline, at, last)
     first, *more = _decided(timeline, last) or ("the executor looks again",)
     return (f"{timestamp(last)}: {first}", *more, *_waits(timeline, at, last))
 
@@ -349,17 +349,23 @@ def _turn(each: EntityId, since: Nanoseconds, timeline: Timeline, at: Nanosecond
     entity, moment = timeline.entities[each], timeline.moment(at)
     queued, waited = moment.queues[entity.id].depth, moment.at - since
     is_ready = f"has {queued} queued" if queued else _readied(moment.waiting[each], timeline)
+    is_ready = "is there" if entity.kind is EntityKind.CLIENT and queued == 1 else is_ready
     lasted = f"{', the next' if queued else ''} for {duration(waited)}" if waited else ""
-    when = "its last call still runs" if is_held_by_own_call(each, moment, timeline) else "it is free to run"
+    when = "no thread is free" if moment.running and not _idle(moment, timeline) else "it is free to run"
+    when = "its last call still runs" if is_held_by_own_call(each, moment, timeline) else when
     return f"{entity.spoken_name} {is_ready}{lasted}: {when}"
+
+
+def _idle(moment: Moment, timeline: Timeline) -> int:
+    """The number of the executors' threads that run nothing at a moment."""
+    return max(0, thread_count(timeline) - len(moment.running))
 
 
 def _at_rest(timeline: Timeline, at: Nanoseconds) -> str:
     moment = timeline.moment(at)
-    busy = len(moment.running)
-    threads = max(busy, thread_count(timeline))
-    if busy == threads:
+    idle, busy = _idle(moment, timeline), len(moment.running)
+    if not idle:
         return "nothing else is ready"
-    idle, verb = threads - busy, "is" if threads - busy == 1 else "are"
+    threads, verb = idle + busy, "is" if idle == 1 else "are"
     everybody = {1: "the only thread", 2: "both threads"}.get(threads, f"all {threads} threads")
     return f"nothing else is ready: {f'{idle} of {threads} threads' if busy else everybody} {verb} idle"

@@ -212,6 +212,7 @@ class RunStores:
 
     def _ready(self, event: ev.EntityReady) -> None:
         self.queues[event.entity].arrive(event.t, event.depth, event.message)
+        self.active.note(event.entity, event.t)
 
     def _message_dropped(self, event: ev.MessageDropped) -> None:
         self.queues[event.entity].lose(event.t, event.depth, event.message)

@@ -113,6 +113,34 @@ def test_a_step_to_a_moment_without_a_decision_is_told_at_its_time() -> None:
     assert narration(timeline, ns(1.5))[0].startswith("1.000 s: ")
 
 
+@pytest.mark.parametrize(("threads", "when"), [(2, "it is free to run"), (1, "no thread is free")])
+def test_a_step_to_an_arrival_tells_it_before_the_executor_looks(threads: int, when: str) -> None:
+    run = Run()
+    node = run.node("/n")
+    run.executor("MultiThreadedExecutor", threads)
+    tick = run.timer(run.exclusive(node), "tick", 1.0)
+    hold = run.service(run.exclusive(node), "/clamp", "hold")
+    reply = run.client(run.exclusive(node), "/clamp")
+    run.start(tick, run.thread("Thread-1"), 1.0)
+    run.message(hold, 1.0)
+    run.message(reply, 1.0)
+    timeline = told(run)
+    assert narration(timeline, ns(1.0), stepped=True)[1] == (
+        f"hold has 1 queued: {when}; reply of /clamp is there: {when}"
+    )
+    said = diagnosis_at(timeline, ns(1.0), Concurrency(timeline)).text
+    assert said.startswith("hold is ready; ")
+
+
+def test_a_first_step_to_a_moment_without_an_action_is_told_as_any_other() -> None:
+    run = Run()
+    run.timer(run.exclusive(run.node("/n")), "tick", 1.0)
+    run.log("one", 1.0)
+    timeline = told(run)
+    assert narration(timeline, ns(1.0), stepped=True)[0] == "1.000 s: a line is written to the log"
+    assert narration(timeline, ns(1.0)) == ("nothing has happened yet",)
+
+
 @pytest.mark.parametrize(("linear", "angular", "does"), [(0.1, 0.2, "drives"), (0.0, 0.2, "turns")])
 def test_a_step_in_which_the_robot_moves_on_says_how(linear: float, angular: float, does: str) -> None:
     run = Run()

@@ -176,7 +176,7 @@ def next_in_turn(moment: Moment, timeline: Timeline) -> dict[EntityId, Nanosecon
     found = {
         entity: arrived
         for entity in sorted(timeline.active_since(moment.at))
-        if entity not in moment.waiting and timeline.entities[entity].kind in _QUEUES
+        if entity not in moment.waiting and timeline.entities[entity].kind in (*_QUEUES, EntityKind.CLIENT)
         if (arrived := moment.queues[entity].next_arrived) is not None
     }
     held = {wait.entity for wait in waits_at(moment, timeline) if not wait.is_for_own_call}
