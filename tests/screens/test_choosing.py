@@ -55,6 +55,7 @@ async def test_who_may_go_on_is_asked_and_shown_in_the_code() -> None:
         text = text_of(app)
         assert PUZZLE.task.split(".")[0] in " ".join(text.split("│")[0].split()) or "keeps one" in text
         assert "Choice 1, 0 moves. Who goes on?" in text
+        assert app.screen.query_one(ChoiceView).sheet.task.endswith("A move is a choice other than 1.")
         assert "1 order, line 20 (runs now," in text
         assert "2 Pool-0_1 looks for work" in text
         assert app.screen.query_one(CodeView).picked == 20
@@ -293,7 +294,7 @@ async def test_the_solution_is_shown_choice_by_choice_and_solves_nothing() -> No
         await until(pilot, lambda: len(sessions.sessions) == 2)
         for advised in (0, 1, 1):  # moves:1=1,2=1
             await settle(pilot)
-            assert f"The solution takes {advised + 1}." in news(app)
+            assert f"The solution chooses {advised + 1}." in news(app)
             await pilot.press("enter")
         assert sessions.latest.commands == [Choose(0), Choose(1), Choose(1)]
         assert Progress().of(PUZZLE.id).solution

@@ -20,6 +20,7 @@ from sim.engine.setup import RunSetup
 from sim.quantities.plural import counted
 from sim.trace.events import AnyEvent, ChoiceAsked
 
+_MOVE = "A move is a choice other than 1."
 _EARLY = 9
 """The most options that are kept for choices to come; a held key types many."""
 
@@ -85,13 +86,13 @@ class Choices(ScreenPart):
     def sheet(self) -> ChoiceSheet:
         """Return the content of the pane."""
         puzzle, question = self.puzzle, self.question
-        task = "" if puzzle is None else puzzle.task
+        task = _MOVE if puzzle is None else f"{puzzle.task} {_MOVE}"
         if self.reached is not None and puzzle is not None:
             done = f"✓ Done in {counted(self.moves, 'move')}; the solution takes {len(solution_of(puzzle))}."
             return ChoiceSheet(f"{done}{self.reached}", task)
         if question is not None:
             advised = None if self.solution is None else self.solution.get(question.number, 0)
-            asks = "Who goes on?" if advised is None else f"The solution takes {advised + 1}."
+            asks = "Who goes on?" if advised is None else f"The solution chooses {advised + 1}."
             return ChoiceSheet(
                 f"Choice {len(self.made) + 1}, {counted(self.moves, 'move')}. {asks}",
                 task,
