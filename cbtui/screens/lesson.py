@@ -28,8 +28,9 @@ from cbtui.screens.teaching.exercise_help import ExerciseHelp
 from cbtui.screens.teaching.learning import Learning, signs
 from cbtui.screens.teaching.predictions import Predictions
 from cbtui.screens.windows.prediction import PredictionExit
-from cbtui.screens.windows.tour import TourScreen
+from cbtui.screens.windows.tour import LINE, TourScreen
 from cbtui.widgets.code import CodeView
+from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellView
 from lessons.lesson import Lesson
@@ -146,9 +147,10 @@ class LessonScreen(RunScreen[LiveRun]):
             super().start()
 
     def _show_round(self, place: str) -> None:
-        """Bring the lanes or a pane to the fore."""
+        """Bring the lanes, the line above the keys or a pane to the fore."""
         self.query_one(Lanes).set_class(place == "lanes", "-shown")
-        if place != "lanes":
+        self.query_one(DiagnosisLine).set_class(place == LINE, "-shown")
+        if place in self.panes.names:
             self.panes.show(place)
 
     async def _end_tour(self, _: None) -> None:

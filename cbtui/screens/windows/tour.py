@@ -21,10 +21,11 @@ _LEAST = 6.0
 _WORDS_A_SECOND = 3
 """How quickly somebody reads who looks at the place, too."""
 _TICK = 0.5
+LINE = "the line above the keys"
 
 
 class TourStop(NamedTuple):
-    """A part of the screen, ``lanes`` or a pane, and what it is for."""
+    """A part of the screen, ``lanes``, ``LINE`` or a pane, and what it is for."""
 
     place: str
     text: str
@@ -54,9 +55,7 @@ STOPS = (
     ),
     TourStop("robot", "What the node does to its robot, and what the node knows of the world."),
     TourStop("log", "What the node logs. `space` pauses, `[` looks back: every pane shows that moment."),
-    TourStop(
-        "lanes", "The line above the keys says who waits for whom. `d` tells what went wrong, and the cure."
-    ),
+    TourStop(LINE, "This line says who waits for whom. `d` tells what went wrong, and the cure."),
     TourStop(
         "guide",
         "So a lesson goes: predict, run, `a` explains, `e` is its exercise if it has one. `?` has every key.",
@@ -123,6 +122,7 @@ class TourScreen(WindowScreen[None]):
         self.query_one(".window").border_title = f"Tour {place + 1}/{len(STOPS)}: {stop.place}"
         self.query_one(Prose).text = with_keys_in_force(stop.text, keymap_of(self.app))
         self._show_left()
+        self.set_class(stop.place != "lanes", "-over-lanes")
         self._show(stop.place)
 
     def _show_left(self) -> None:

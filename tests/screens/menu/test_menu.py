@@ -15,7 +15,7 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.windows.help import HelpScreen
 from cbtui.screens.windows.prediction import PredictionScreen
-from cbtui.screens.windows.tour import STOPS, TourScreen
+from cbtui.screens.windows.tour import LINE, STOPS, TourScreen
 from cbtui.terminal import pending_keys
 from cbtui.widgets.description_pane import described, of_lesson
 from cbtui.widgets.diagnosis_line import DiagnosisLine
@@ -27,10 +27,12 @@ from lessons.catalogue import lessons
 from lessons.lesson import Lesson
 from lessons.progress import Progress
 from lessons.puzzles import puzzles, puzzles_of
-from tests.support.console import NARROW, TALL, WIDE, predict
+from tests.support.builder import ns
+from tests.support.console import NARROW, TALL, WIDE, predict, settle
 from tests.support.daily import first_daily
 from tests.support.exercises import until
 from tests.support.fake_session import FakeEngines
+from tests.support.lesson_runs import shared_group_run
 from tests.support.pictures import lines_of, text_of
 
 HEAVY = {"numpy", "pybullet", "rosbags", "pygments", "markdown_it", "multiprocessing", "cbtui.screens.lesson"}
@@ -232,15 +234,27 @@ async def test_keys_turn_the_pages_of_the_tour_and_its_last_page_ends_it() -> No
         await until(pilot, lambda: isinstance(app.screen, PredictionScreen))
 
 
-async def test_the_tour_leaves_the_line_above_the_keys_in_sight() -> None:
-    app = menu()
-    async with app.run_test(size=NARROW) as pilot:
+@pytest.mark.parametrize("size", [NARROW, WIDE])
+async def test_the_tour_covers_neither_what_it_tells_of_nor_the_line_above_the_keys(
+    size: tuple[int, int],
+) -> None:
+    app = CbtuiApp(open_session=FakeEngines(shared_group_run().events, ns(2.0)))
+    async with app.run_test(size=size) as pilot:
         await pilot.press("T")
         await until(pilot, lambda: isinstance(app.screen, TourScreen))
-        await until(pilot, lambda: app.screen.query_one(".window").region.height > 0)
-        line = app.screen_stack[-2].query_one(DiagnosisLine)
-        assert line.region.height == 1
-        assert not app.screen.query_one(".window").region.overlaps(line.region)
+        for stop in STOPS:
+            lesson = app.screen_stack[-2]
+            await until(pilot, lambda: lesson.query_one(Lanes).region.height > 6)  # noqa: B023 it is the same
+            await settle(pilot)
+            window = app.screen.query_one(".window").region
+            line = lesson.query_one(DiagnosisLine)
+            assert line.region.height == 1
+            assert line.has_class("-shown") is (stop.place == LINE)
+            told = {LINE: line, "lanes": lesson.query_one(Lanes)}.get(stop.place)
+            for place in (line, told or lesson.query_one(f"#{stop.place}")):
+                assert place.region
+                assert not window.overlaps(place.region)
+            await pilot.press("enter")
 
 
 def test_no_page_of_the_tour_turns_faster_than_one_reads() -> None:
