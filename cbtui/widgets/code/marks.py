@@ -169,13 +169,16 @@ def _at_line(
 
 def standing_at(options: Sequence[StandingThread], files: SourceFiles) -> dict[SourceFile, LineMarks]:
     """Return the lines in front of which the threads stand that may be chosen, with their numbers, from 1."""
-    found: defaultdict[SourceFile, defaultdict[int, list[str]]] = defaultdict(lambda: defaultdict(list))
+    found: defaultdict[SourceFile, defaultdict[int, dict[str, str]]] = defaultdict(lambda: defaultdict(dict))
     for number, option in enumerate(options, start=1):
         file = files.of(option.file) if option.line else None
         if file is not None:
-            found[file][option.line].append(f"{number} {option.thread}")
+            found[file][option.line][str(number)] = f"{number} {option.thread}"
     return {
-        file: {line: LineMark((f"▶ {', '.join(each)}", "▶"), -1) for line, each in lines.items()}
+        file: {
+            line: LineMark((f"▶ {', '.join(each.values())}", f"▶ {', '.join(each)}"), -1)
+            for line, each in lines.items()
+        }
         for file, lines in found.items()
     }
 

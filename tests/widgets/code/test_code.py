@@ -6,7 +6,15 @@ from textual.app import App, ComposeResult
 
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.code.highlight import TokenKind, highlight
-from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, lines_at, marks_at, text_beside
+from cbtui.widgets.code.marks import (
+    CallbackActivity,
+    CallbackMark,
+    StandingThread,
+    lines_at,
+    marks_at,
+    standing_at,
+    text_beside,
+)
 from cbtui.widgets.code.source_files import SourceFiles
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
@@ -303,6 +311,17 @@ async def test_a_narrow_view_says_it_in_fewer_words(path: Path) -> None:
 def test_code_gives_way_to_no_mark_that_goes_at_once() -> None:
     assert text_beside(("· Pool-0_0",), 5) == ""
     assert text_beside(("▶ computes", "▶"), 5) == " ▶ "
+
+
+@pytest.mark.parametrize(
+    ("room", "shown"), [(5, " ▶ 1, 2 "), (13, " ▶ 1, 2 "), (40, " ▶ 1 Pool-0_0, 2 Pool-0_1 ")]
+)
+def test_a_thread_to_choose_keeps_its_number_where_its_name_has_no_room(
+    path: Path, room: int, shown: str
+) -> None:
+    options = [StandingThread(f"Pool-0_{each}", str(path), 9) for each in (0, 1)]
+    [lines] = standing_at(options, SourceFiles(path)).values()
+    assert text_beside(lines[9].texts, room) == shown
 
 
 async def test_a_line_that_is_too_long_for_the_mark_of_a_thread_moves_to_the_left(path: Path) -> None:
