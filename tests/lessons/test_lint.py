@@ -73,7 +73,7 @@ def test_what_does_not_come_out_so_is_told_with_its_file(
     ("file", "old", "new", "fault"),
     [
         ("guide.md", "`t` changes", "`%` changes", "guide.md: no key `%` exists"),
-        ("explain.md", "you saw", "you saw (`ctrl+f9`)", "explain.md: no key `ctrl+f9` exists"),
+        ("explain.md", "there is", "there is (`ctrl+f9`)", "explain.md: no key `ctrl+f9` exists"),
         ("lesson.toml", 'key = "t"', 'key = "%"', "lesson.toml: no key '%' exists, which a [[try]] names"),
         ("lesson.toml", "Press `space`", "Press `end`", "lesson.toml: no key `end` exists"),
         (

@@ -207,7 +207,7 @@ async def test_a_page_that_was_not_predicted_gives_nothing_away() -> None:
         assert "No prediction yet" in app.page
         assert LESSON.task is not None
         assert LESSON.task in app.page
-        for told in ("still wait", FIRST.because, SECOND.because, "# What you saw", "Four workers"):
+        for told in ("still wait", FIRST.because, SECOND.because, "# What there is to see", "Four workers"):
             assert told not in app.page
 
 
@@ -280,7 +280,7 @@ async def test_a_key_holds_the_prediction_against_a_run_and_explains() -> None:
         assert f"✗ You said: {SECOND.answers[0]}\n\n→ What happened: **{SECOND.answers[1]}**" in app.page
         assert FIRST.because in app.page
         assert "Checked against a run of 30 s." in app.page
-        assert "What you saw" in app.page
+        assert "What there is to see" in app.page
         assert "Four workers" in app.page
         assert app.kept().seen
 
@@ -292,7 +292,7 @@ async def test_an_explanation_says_while_its_call_was_not_made() -> None:
         await until_shown(pilot, app, "Not yet: nobody has called `/walk_round` in this run. `s` does.")
         app.engines.latest._deliver([ServiceCalled(ns(3.1), 1, "/walk_round", 0, "")])
         await until(pilot, lambda: "Not yet" not in app.page)
-        assert "What you saw" in app.page
+        assert "What there is to see" in app.page
 
 
 @pytest.mark.slow
@@ -430,7 +430,7 @@ async def test_who_has_watched_a_lesson_gets_straight_to_its_run() -> None:
     async with console() as (app, pilot):
         assert top(app) is LessonScreen
         assert app.started()
-        assert "What you saw" in app.page
+        assert "What there is to see" in app.page
         assert FIRST.because not in app.page
         await press(pilot, "a")
         await until_shown(pilot, app, FIRST.because)
