@@ -5,7 +5,7 @@ action is available now.
 """
 
 from cbtui.keys.action import CHECKS, CHOICE, PANES, KeyAction, Scope
-from cbtui.keys.refused import NOT_ALWAYS, OWN_TIME
+from cbtui.keys.refused import NOT_ALWAYS, OWN_TIME, SIZES
 
 _ON_A_SCREEN = (Scope.MENU, Scope.LESSON, Scope.COMPARE)
 _ON_A_PANE = (Scope.LOG, Scope.CODE, Scope.CHECKS, Scope.CHOICE)
@@ -41,6 +41,7 @@ _OPTION = "Highlight another thread, and its line"
 _OPTION_NUMBER = "Let the thread with this number go on"
 _ANSWER_NUMBER = "Highlight the answer with this number"
 _NO_TIME = "Say why time cannot be changed here"
+_NO_SIZE = "Say why the size stays"
 _PANE = f"Go to a pane: {', '.join(PANES)}"
 
 _ROWS: dict[Scope, tuple[_Row, ...]] = {
@@ -131,6 +132,7 @@ _ROWS: dict[Scope, tuple[_Row, ...]] = {
         ("no_follow", "f", "", "Say where the log is followed"),
         ("no_compare", "C", "", "Say what can be compared"),
         *((f"no_time('{name}')", key, "", _NO_TIME) for name, key in OWN_TIME.items()),
+        *((f"no_size('{name}')", key, "", _NO_SIZE) for name, key in SIZES.items()),
         ("no_take_over", "W", "", "Say when you can choose which thread goes on"),
         *(
             (f"no_use('{name}')", key, "", "Say why that key does nothing here")

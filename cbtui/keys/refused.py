@@ -9,6 +9,8 @@ OWN_TIME = {
     "take_over": "W",
 }
 """The actions that need a time that can be stopped, as real ROS 2's cannot."""
+SIZES = {"wider": "ctrl+right", "narrower": "ctrl+left", "taller": "ctrl+up", "lower": "ctrl+down"}
+"""The actions that need room in the layout."""
 NOT_ALWAYS = {
     **OWN_TIME,
     "step_back": "comma",

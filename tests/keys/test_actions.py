@@ -80,6 +80,7 @@ def test_only_actions_that_rule_each_other_out_share_a_key() -> None:
         *["space", "enter", "full_stop", "comma", "colon", "minus", "plus"],
         *(f"{side}_{what}_bracket" for side in ("left", "right") for what in ("square", "curly")),
         *["less_than_sign", "greater_than_sign", "equals_sign"],
+        *(f"ctrl+{arrow}" for arrow in ("left", "right", "up", "down")),
     }
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from msgspec import Meta, Struct, ValidationError, convert, to_builtins
 
-from cbtui.screens.layout import Layout
+from cbtui.screens.layout import GRID_FROM, Layout
 from cbtui.screens.parts.panes import LANES_ALONE, PANE_ALONE, WITHOUT_ROBOT, PaneLayout
 from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.sized import SizedScreen
@@ -27,8 +27,8 @@ _SCENE_LEAST = 34
 """Columns of a scene's pane in which its names and most of its reasons have room."""
 _WIDE_FROM = 160
 """Columns of a screen from which the code has more of them than the scene."""
-_LANES_BESIDE_NARRATOR = 5
-"""Rows that the lanes keep when the narrator takes its rows from them."""
+_LANES_ROWS = 5
+"""Rows that the lanes keep, be it beside the narrator."""
 
 _Third = Annotated[int, Meta(ge=_LEAST_ACROSS, le=_ACROSS - 2 * _LEAST_ACROSS)]
 
@@ -83,7 +83,7 @@ class SizeKeys(ScreenPart):
     def apply(self) -> None:
         """Give the panes their sizes; to be called when the layout or the shown panes have changed."""
         sizes, screen, alone = self._sizes, self.screen, self.screen.has_class(LANES_ALONE)
-        height = max(_LANES_BESIDE_NARRATOR, self._height * sizes.lanes // 100 - self._narrated)
+        height = max(_LANES_ROWS, self._height * sizes.lanes // 100 - self._narrated)
         screen.query_one(Lanes).styles.max_height = "100%" if alone else height
         screen.query_one("#panes").styles.grid_rows = f"{sizes.top}fr {_DOWN - sizes.top}fr"
         spans = {"left": sizes.left, "right": sizes.right, "bottom": sizes.bottom}
@@ -97,6 +97,8 @@ class SizeKeys(ScreenPart):
         """Offer the keys that have an effect."""
         if action == "usual_sizes":
             return self._chosen is not None
+        if action == "no_size":
+            return self._changed(str(parameters[0])) is None
         return self._changed(action) is not None
 
     def action_wider(self) -> None:
@@ -118,6 +120,22 @@ class SizeKeys(ScreenPart):
     def action_usual_sizes(self) -> None:
         """Give everything its usual size."""
         self._take(PaneSizes(self.screen.layout_now))
+
+    def action_no_size(self, wanted: str) -> None:
+        """Say why the size stays."""
+        self.tell(self._why_not(wanted))
+
+    def _why_not(self, wanted: str) -> str:
+        screen, lanes = self.screen, self.screen.query_one(Lanes)
+        on_lanes, is_grid = lanes.has_focus, screen.layout_now is Layout.GRID
+        if screen.has_class(LANES_ALONE) or screen.has_class(PANE_ALONE):
+            return "What fills the screen has no other size."
+        if wanted in ("wider", "narrower") and (on_lanes or not is_grid):
+            small = f"In a terminal below {GRID_FROM.width} × {GRID_FROM.height} a pane has"
+            return f"{'The lanes have' if on_lanes else small} the whole width."
+        if lanes.shows_everything and (wanted == "taller") is on_lanes and (on_lanes or not is_grid):
+            return "The lanes are all on screen: they need no more rows."
+        return f"It gets no {wanted}: that is the limit."
 
     @property
     def _chosen(self) -> PaneSizes | None:
@@ -174,7 +192,7 @@ class SizeKeys(ScreenPart):
             side, value = "top", sizes.top + (step if current in _UPPER else -step)
         else:
             rows = step if lanes.has_focus else -step
-            if rows > 0 and lanes.shows_everything:
+            if lanes.shows_everything if rows > 0 else lanes.outer_size.height <= _LANES_ROWS:
                 return None
             height = lanes.outer_size.height + self._narrated + rows
             side, value = "lanes", ceil(100 * height / self._height)

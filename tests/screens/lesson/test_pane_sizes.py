@@ -97,6 +97,26 @@ async def test_rows_go_between_lanes_and_pane_on_a_small_screen() -> None:
         assert not app.lesson_screen.check_action("wider", ())
 
 
+@pytest.mark.parametrize(
+    ("size", "keys", "told"),
+    [
+        (NARROW, ["ctrl+right"], "In a terminal below 120 × 34 a pane has the whole width."),
+        (NARROW, ["ctrl+down"], "The lanes are all on screen: they need no more rows."),
+        (NARROW, ["ctrl+up"] * 9, "It gets no taller: that is the limit."),
+        (NARROW, ["enter", "ctrl+left"], "The lanes have the whole width."),
+        (WIDE, ["z", "ctrl+left"], "What fills the screen has no other size."),
+    ],
+)
+async def test_a_key_for_sizes_that_changes_none_says_why(
+    size: tuple[int, int], keys: list[str], told: str
+) -> None:
+    app = RecordedConsole("shared-group", EVENTS, 12.9)
+    async with app.run_test(size=size) as pilot:
+        await settle(pilot)
+        await press(pilot, *keys)
+        assert {note.message for note in app._notifications} == {told}
+
+
 @pytest.mark.slow
 async def test_a_size_ends_where_something_else_would_have_no_room() -> None:
     app = RecordedConsole("split-groups", split_groups_run().events, 9.4)
