@@ -5,7 +5,7 @@ from itertools import islice
 
 from sim.quantities.durations import duration
 from sim.trace.events import Doing, EntityId, EntityKind, NodeId, Reason
-from sim.trace.model import AWAIT, Call, EntityInfo, Nanoseconds, Position, Queue, Wait, Window
+from sim.trace.model import AWAIT, Call, EntityInfo, ExecutorInfo, Nanoseconds, Position, Queue, Wait, Window
 from sim.trace.participants import Participants
 from sim.trace.timeline import Timeline
 
@@ -119,7 +119,9 @@ _MOST_ENTITIES = 1000
 
 def executor_label(timeline: Timeline) -> str:
     """Return the run's executors as code would make them: ``MultiThreadedExecutor(4)``."""
-    return " + ".join(
-        executor.kind if executor.kind in _SINGLE_THREADED else f"{executor.kind}({executor.threads})"
-        for executor in timeline.executors.values()
-    )
+    return " + ".join(map(executor_made, timeline.executors.values()))
+
+
+def executor_made(executor: ExecutorInfo) -> str:
+    """Return one executor as code would make it."""
+    return executor.kind if executor.kind in _SINGLE_THREADED else f"{executor.kind}({executor.threads})"

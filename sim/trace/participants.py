@@ -36,6 +36,7 @@ class Participants:
         self.threads: dict[ThreadId, ThreadInfo] = {}
         self.executors: dict[ExecutorId, ExecutorInfo] = {}
         self.nodes: dict[NodeId, str] = {}
+        self.ran_on: dict[NodeId, ThreadId] = {}
         self.groups: dict[GroupId, GroupInfo] = {}
         self.entities: dict[EntityId, EntityInfo] = {}
         self._members: dict[GroupId, list[EntityInfo]] = {}
@@ -65,6 +66,11 @@ class Participants:
     def add_node(self, event: NodeAppeared) -> None:
         """Add a node."""
         self.nodes[event.node] = event.name
+
+    def note_call(self, entity: EntityId, thread: ThreadId) -> None:
+        """Note that a callback of its node runs on a thread."""
+        if entity in self.entities:
+            self.ran_on[self.entities[entity].node] = thread
 
     def add_group(self, event: GroupAppeared) -> None:
         """Add a callback group with the next letter."""

@@ -230,6 +230,7 @@ class RunStores:
     def _callback_started(self, event: ev.CallbackStarted) -> None:
         self.active.note(event.entity, event.t)
         self.execution.start(event)
+        self.participants.note_call(event.entity, event.thread)
         self.blocking.go_on(event.thread, event.t)
         self.queues[event.entity].take(event.t, event.depth, event.message)
         if self.scans.carried_by(event.message) and self._takes_messages(event.entity):

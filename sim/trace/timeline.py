@@ -4,7 +4,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 
 from sim.trace import events as ev
 from sim.trace.ending import UntilEnding
-from sim.trace.events import AnyEvent, EntityId, ExecutorId, GroupId, MessageId, NodeId, ProcessId, ThreadId
+from sim.trace.events import AnyEvent, EntityId, ExecutorId, GroupId, MessageId, ProcessId, ThreadId
 from sim.trace.lazy import LazyMapping
 from sim.trace.makings import Making
 from sim.trace.model import (
@@ -61,8 +61,8 @@ class Timeline:
         """When programs ended, in a run of several."""
         self.executors: dict[ExecutorId, ExecutorInfo] = run.participants.executors
         """The executors, in order of appearance."""
-        self.nodes: dict[NodeId, str] = run.participants.nodes
-        """The names of the nodes, in order of appearance."""
+        self.nodes, self.ran_on = run.participants.nodes, run.participants.ran_on
+        """The names of the nodes, in order of appearance, and on which thread each ran a callback last."""
         self.groups: dict[GroupId, GroupInfo] = run.participants.groups
         """The callback groups, in order of appearance, which is the order of their letters."""
         self.entities: dict[EntityId, EntityInfo] = run.participants.entities

@@ -138,3 +138,17 @@ def test_timers_of_one_function_and_period_are_listed_once(count: int, said: str
     run = run_program(tmp_path, _NODE.format(made))
     found = page_of_program("node.py", "virtual", run.timeline)["found"]
     assert found.splitlines()[-1].endswith(f": ``get_name`` every 1.0 {said}")
+
+
+def test_the_guide_says_of_each_node_who_spins_it(tmp_path: Path) -> None:
+    idle, alarm = "idle = Node('idle')", "alarm = Node('alarm')\nalarm.create_timer(0.1, print)"
+    run = run_program(
+        tmp_path,
+        f"{_NODE.partition('{}')[0]}{idle}\n{alarm}\nnode.create_timer(0.1, str)\nrclpy.spin(node)",
+        seconds=1.0,
+    )
+    assert page_of_program("node.py", "virtual", run.timeline)["found"].splitlines()[2:5] == [
+        "- node ``/server``, in SingleThreadedExecutor",
+        "- node ``/idle``, of which nothing has run so far",
+        "- node ``/alarm``, spun by nobody so far",
+    ]

@@ -10,7 +10,7 @@ from cbtui.text.markdown import as_it_is
 from sim.diagnosis import Explanation, with_stop
 from sim.quantities.durations import duration
 from sim.quantities.plural import counted, plural
-from sim.trace.descriptions import executor_label, silent_topics
+from sim.trace.descriptions import executor_label, executor_made, silent_topics
 from sim.trace.events import EntityKind, NodeId, Reason
 from sim.trace.model import EntityInfo
 from sim.trace.timeline import Timeline
@@ -58,15 +58,35 @@ def unspun_nodes(timeline: Timeline) -> Set[NodeId]:
     return {timeline.entities[each.entity].node for each in waits if each.reason is Reason.NOBODY_SPINS}
 
 
+def nodes_spun(timeline: Timeline, unspun: Set[NodeId]) -> Mapping[NodeId, str]:
+    """Return what is known of who spins the first nodes."""
+    return {node: _spun(node, unspun, timeline) for node in islice(timeline.nodes, MOST)}
+
+
+def _spun(node: NodeId, unspun: Set[NodeId], timeline: Timeline) -> str:
+    """In which executor a node's callbacks ran last; one without workers uses the thread that spins it."""
+    if not timeline.executors:
+        return "in no executor yet"
+    if node not in timeline.ran_on:
+        return "spun by nobody so far" if node in unspun else "of which nothing has run so far"
+    thread = timeline.threads.get(timeline.ran_on[node])
+    pools = {each.executor for each in timeline.threads.values()}
+    known = timeline.executors.get(thread.executor) if thread else None
+    spinning = [known] if known else [each for each in timeline.executors.values() if each.id not in pools]
+    return f"in {' or '.join(dict.fromkeys(map(executor_made, spinning))) or executor_label(timeline)}"
+
+
 def _found(timeline: Timeline, unmet: Sequence[UnmetChange]) -> str:
     """The nodes with their executors, and the groups with their callbacks; what was to be changed in vain."""
     if not timeline.nodes:
         ended = timeline.ended
         return "No node yet: the program starts." if ended is None else f"It made no node: {ended.reason}"
-    names = _listed(f"``{name}``" for name in timeline.nodes.values())
-    lines = [
-        f"- {plural(len(timeline.nodes), 'node')} {names}, in {executor_label(timeline) or 'no executor yet'}"
-    ]
+    states = nodes_spun(timeline, unspun_nodes(timeline))
+    more = ", …" if len(timeline.nodes) > len(states) else ""
+    lines = []
+    for state in dict.fromkeys(states.values()):
+        alike = [f"``{timeline.nodes[node]}``" for node, its in states.items() if its == state]
+        lines.append(f"- {plural(len(alike), 'node')} {_listed(iter(alike))}{more}, {state}")
     for group in islice(timeline.groups.values(), MOST):
         own = _listed(_callback(each) for each in timeline.group_members(group.id) if programs_own(each))
         if own:

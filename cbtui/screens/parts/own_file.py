@@ -10,7 +10,7 @@ from textual.screen import Screen
 from cbtui.runs.judged.cures import cures_of
 from cbtui.runs.live.file_watch import CANNOT_WATCH, content_of, contents
 from cbtui.runs.live.live_run import LiveRun
-from cbtui.runs.setup.program_page import MOST, page_of_program, unspun_nodes
+from cbtui.runs.setup.program_page import MOST, nodes_spun, page_of_program, unspun_nodes
 from cbtui.runs.setup.unmet_changes import UnmetChange, UnmetChanges
 from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
@@ -81,12 +81,14 @@ class OwnFile(ScreenPart):
         A program that fails before it has a callback, for example with a syntax error, is shown at its line.
         """
         timeline, findings = self.runs.timeline, self.runs.findings.findings
+        unspun = unspun_nodes(timeline)
         what = (timeline.nodes, timeline.executors, timeline.groups, timeline.entities, timeline.names_sent)
         state = (
             *(min(len(each), MOST + 1) for each in what),
             timeline.ended is None,
             timeline.arena is None,
-            unspun_nodes(timeline),
+            unspun,
+            nodes_spun(timeline, unspun),
             [each.explanation for each in findings if each.is_problem],
         )
         if state != self._shown:
