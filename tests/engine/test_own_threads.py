@@ -2,7 +2,9 @@
 
 from pathlib import Path
 
-from sim.trace.events import CallbackAt, Doing, OwnThreadAt
+import pytest
+
+from sim.trace.events import CallbackAt, Doing, OwnThreadAt, Printed
 from tests.support.engine_runs import run_program
 
 _NODE = """
@@ -69,3 +71,28 @@ def test_who_asks_the_time_again_and_again_computes(tmp_path: Path) -> None:
     own = [each for each in events if isinstance(each, OwnThreadAt)]
     assert {(each.name, each.doing, each.call) for each in own} == {("asks", Doing.COMPUTES, "")}
     assert (bool(own[0].frames), own[-1].frames) == (True, ()), "it is told of until it is over"
+
+
+_POOL = """
+import threading
+from concurrent.futures import ThreadPoolExecutor
+import rclpy
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+
+rclpy.init()
+node = Node("n")
+pools = ThreadPoolExecutor(), MultiThreadedExecutor(2), ThreadPoolExecutor()
+name = lambda: threading.current_thread().name
+tick = lambda: print(*(each.submit(name).result() for each in pools[::2]), name())
+node.create_timer(0.5, tick)
+rclpy.spin(node, pools[1])
+"""
+
+
+@pytest.mark.parametrize("clock", ["virtual", "real"])
+def test_the_pools_of_a_program_and_of_its_executors_have_one_numbering(clock: str, tmp_path: Path) -> None:
+    run = run_program(tmp_path, _POOL, seconds=0.8, clock=clock)
+    assert "ThreadPoolExecutor-0_0 ThreadPoolExecutor-2_0 ThreadPoolExecutor-1_0" in [
+        each.text for each in run.events if isinstance(each, Printed)
+    ]

@@ -10,6 +10,7 @@ import sys
 import threading
 from collections import UserList
 from collections.abc import Callable, Generator, Iterator, Mapping, MutableMapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from itertools import count
@@ -126,7 +127,8 @@ def simulate_processes() -> None:
     """Prepare this process for several simulated ones.
 
     Threads inherit their process; ``sys.argv`` and the changed variables of ``os.environ`` are those of the
-    simulated process. Other threads keep the present arguments. Call it once, with the host installed.
+    simulated process, and so are the numbers of Python's thread pools. Other threads keep the present
+    arguments. Call it once, with the host installed.
     """
     _main_process()
     make: Any = threading.Thread.__init__
@@ -137,6 +139,8 @@ def simulate_processes() -> None:
 
     thread_class: Any = threading.Thread
     thread_class.__init__ = make_inheriting
+    pool_class: Any = ThreadPoolExecutor
+    pool_class._counter = staticmethod(lambda: next(current_process().pool_numbers))
     sys.argv = _Arguments()  # type: ignore[assignment]
     os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 -- nothing is to be cleared
 
