@@ -128,6 +128,14 @@ class UsageWarnings:
             "rclpy.shutdown() there"
         )
 
+    def published_inactive(self, topic: str, *, is_node_active: bool) -> None:
+        """Warn that a lifecycle publisher, though its node is active or as it is not, drops its messages."""
+        problem = f"publish() on {topic} by a lifecycle publisher that is not active: nothing is sent"
+        advice = "activate the node: trigger_activate() once trigger_configure() has succeeded"
+        if is_node_active:
+            advice = "end on_activate with: return super().on_activate(state), which activates the publishers"
+        self._tell(("publish",), NoticeKind.INACTIVE, problem, advice, topic)
+
     def parameter_overruled(self, name: str) -> None:
         """Warn that a parameter callback on the calling thread sets a parameter that is being set."""
         problem = f"a parameter callback sets '{name}' while that is being set ({place_of_caller()})"
@@ -170,10 +178,12 @@ class UsageWarnings:
     def _caller(self) -> tuple[int, int, int]:
         return threading.get_ident(), self._here.entity, self._here.begun
 
-    def _tell(self, functions: Sequence[str], kind: NoticeKind, problem: str, advice: str) -> None:
+    def _tell(
+        self, functions: Sequence[str], kind: NoticeKind, problem: str, advice: str, topic: str = ""
+    ) -> None:
         called, file, line = call_into_ros()
         if called in functions and line:
-            self._tell_of((file, line), kind, problem, advice)
+            self._tell_of((file, line), kind, problem, advice, topic=topic)
 
     def _tell_of(
         self,
@@ -183,10 +193,11 @@ class UsageWarnings:
         advice: str,
         number: int = 0,
         entity: int = 0,
+        topic: str = "",
     ) -> None:
         if (*place, number) not in self._told:
             self._told.add((*place, number))
-            told = {"kind": kind, "problem": problem, "advice": advice, "place": place}
+            told = {"kind": kind, "problem": problem, "advice": advice, "place": place, "topic": topic}
             self._warn(
                 f"{problem} ({Path(place[0]).name}:{place[1]}); {advice}", entity or self._here.entity, **told
             )

@@ -254,3 +254,50 @@ def test_what_a_function_of_a_loop_closes_over_is_not_kept_alive() -> None:
     del held
     gc.collect()
     assert gone() is None
+
+
+_LIFECYCLE = """
+import rclpy
+from rclpy.lifecycle import LifecycleNode
+from std_msgs.msg import String
+
+class Talker(LifecycleNode):
+    def on_configure(self, state):
+        self.words = self.create_lifecycle_publisher(String, "words", 10)
+        self.create_timer(0.5, lambda: self.words.publish(String()))
+        return super().on_configure(state)
+
+    def on_activate(self, state):
+        {ends}
+
+rclpy.init()
+talker = Talker("talker")
+talker.trigger_configure()
+{then}
+rclpy.spin(talker)
+"""
+_KEPT = "return super().on_activate(state)"
+_FORGOTTEN = "return super().on_configure(state)"
+
+
+@pytest.mark.parametrize(
+    ("ends", "then", "cure"),
+    [
+        (_KEPT, "", "activate the node: trigger_activate() once trigger_configure() has succeeded"),
+        (
+            _FORGOTTEN,
+            "talker.trigger_activate()",
+            f"end on_activate with: {_KEPT}, which activates the publishers",
+        ),
+        (_KEPT, "talker.trigger_activate()", None),
+        (_KEPT, "talker.create_timer(2.2, talker.trigger_activate)", None),
+    ],
+)
+def test_a_lifecycle_publisher_that_is_never_active_is_told_of_with_its_line(
+    ends: str, then: str, cure: str | None, tmp_path: Path
+) -> None:
+    run = run_program(tmp_path, _LIFECYCLE.format(ends=ends, then=then), seconds=3.0)
+    told = [each.explained(run.timeline) for each in diagnose(run.timeline) if each.rule.id == "slip"]
+    assert [(each.cure, each.place and each.place.first_line) for each in told] == (
+        [(cure, 9)] if cure else []
+    )

@@ -58,10 +58,10 @@ class AnswerOverlooked(Rule):
 
 
 class Slip(Rule):
-    """A line does not do what it seems to: callbacks share a variable, never run, or do not answer."""
+    """A line does not do what it seems to: callbacks share a variable, nothing runs, answers or is sent."""
 
     id = "slip"
-    summary = "callbacks of a loop share its variable, never run, or do not answer"
+    summary = "callbacks of a loop share its variable, never run or answer, or nothing is sent"
 
     def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each line once, as the engine reports it."""
@@ -85,6 +85,10 @@ class Slip(Rule):
             remedies += tuple(replace(each, own_groups=(notice.entity,)) for each in remedies)
         return Explanation(notice.problem, _WHY[notice.kind], advice, place, remedies=remedies)
 
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Irrelevant once something was sent on the topic after all."""
+        return None if _notice_of(found).topic in timeline.names_sent else self.weight
+
 
 def _client_beside(entity: EntityId, timeline: Timeline) -> str:
     """Return the service of a client in a callback's mutually exclusive group; "" for none."""
@@ -99,6 +103,7 @@ _WHY = {
     NoticeKind.LATE_BOUND: "a function looks up its variables when called, and by then the loop is over",
     NoticeKind.NEVER_AWAITED: "calling an async def only makes a coroutine, which runs when it is awaited",
     NoticeKind.NEVER_ITERATED: "rclpy calls a callback and drops what it returns, also a generator",
+    NoticeKind.INACTIVE: "a lifecycle publisher drops what is published until on_activate() has activated it",
     NoticeKind.UNANSWERED: "such a callback is asked whether the values may be set, and None is no answer",
 }
 

@@ -118,6 +118,8 @@ class NoticeKind(StrEnum):
     """An exception ended a coroutine that was given to a thread's loop, and nobody asks for its result."""
     RAISED_AT_END = "raised at end"
     """A program ended by an exception once the run was over, as in a ``finally`` after Ctrl-C."""
+    INACTIVE = "inactive"
+    """A lifecycle publisher that was never active has dropped messages for a while."""
 
 
 class Notice(TraceEvent, frozen=True, tag="notice"):
@@ -142,6 +144,8 @@ class Notice(TraceEvent, frozen=True, tag="notice"):
     """The exception that ended a thread or a program, as ``ValueError: no scan``."""
     thread: WireOnly[ThreadId] = 0
     """The thread of the call that makes no progress; 0 if it is not known."""
+    topic: WireOnly[str] = ""
+    """The topic on which nothing was sent so far."""
 
 
 class KeyboardAsked(TraceEvent, frozen=True, tag="keyboard"):
