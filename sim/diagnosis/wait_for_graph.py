@@ -38,6 +38,7 @@ class WaitForGraph:
         self._moment: Moment = timeline.moment(at)
         self._threads_of = self._threads_by_entity()
         self._queued_at = dict(self._queue_owners())
+        self._suspended = self._suspended_callbacks()
         self.stuck = self._permanently_stuck(dict(self._waiting()))
 
     def deadlocks(self) -> Iterator[tuple[StuckCallback, ...]]:
@@ -108,8 +109,10 @@ class WaitForGraph:
                 since = span.start if position.loop[0] else position.start
                 until = time_limit(position)
                 yield OnThread(thread), StuckCallback(OnThread(thread), span.entity, since, obstacle, until)
-        for entity in self._suspended():
-            calls = [call for call in self._outstanding() if call.caller == entity]
+        for entity in self._suspended:
+            begun = [span.start for _, span in self._running_spans() if span.entity == entity]
+            until = min(begun, default=self._at)  # what was sent later may be of a call that runs
+            calls = [call for call in self._outstanding() if call.caller == entity and call.sent <= until]
             obstacles = [self._obstacle(call) for call in calls]
             kept = [each for each in obstacles if each is not None]
             if kept and len(kept) == len(obstacles) >= self._suspended_in(entity):
@@ -118,9 +121,19 @@ class WaitForGraph:
                 if (obstacle := self._completion_obstacle(each)) is not None:
                     yield Suspended(entity), StuckCallback(Suspended(entity), entity, each.start, obstacle)
 
-    def _suspended(self) -> list[EntityId]:
+    def _suspended_callbacks(self) -> list[EntityId]:
+        """The callbacks with suspended calls: those on no thread, and those that await with a lock."""
         holders = {entity for holding in self._moment.holders.values() for entity in holding}
-        return sorted(holders - self._threads_of.keys())
+        stands = (self._timeline.position_on(thread, self._at) for thread in self._moment.running)
+        keepers = {each.keeper for each in stands if each is not None and self._awaits_with_lock(each)}
+        return sorted(holders - self._threads_of.keys() | keepers)
+
+    def _awaits_with_lock(self, wanting: Position) -> bool:
+        """Whether a call awaits behind the line at which its callback took a lock, and has since the wait."""
+        file, line = wanting.taken_at
+        awaits = lasting_awaits(wanting.keeper, self._at, self._timeline) if wanting.keeper else ()
+        earlier = (each for each in awaits if each.start <= wanting.start)
+        return any(frame.file == file and frame.line > line for each in earlier for frame in each.frames)
 
     def _suspended_in(self, entity: EntityId) -> int:
         """The number of suspended calls of an entity's callback, as far as the trace shows."""
@@ -174,7 +187,7 @@ class WaitForGraph:
         if not position.waits_for_lock:
             text = f"{me} waits for {thread_name(holder, self._timeline)} to end"
             return Obstacle(WaitedFor.THREAD, text, (holder,))
-        if keeper in self._suspended():
+        if keeper in self._suspended:
             more, holder = " and keeps while it awaits", Suspended(keeper)
         elif keeper:
             stands = (self._timeline.position_on(thread, self._at) for thread in self._moment.running)
@@ -295,7 +308,7 @@ class WaitForGraph:
             entity = self._timeline.entities.get(span.entity)
             if entity is not None and self._serves(entity.id, call) and span.message == call.id:
                 return self._callback_obstacle(call, entity.id, OnThread(thread), span.start)
-        for suspended in self._suspended():
+        for suspended in self._suspended:
             if self._serves(suspended, call):
                 return self._callback_obstacle(call, suspended, Suspended(suspended))
         return None

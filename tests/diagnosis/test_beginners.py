@@ -205,7 +205,7 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("job_raises", "thread-raised", "10.0 / (2 - self.n)", "ask the future that submit() returns for"),
         ("sensor_misspelt", "misspelt-topic", "self.create_subscription", "subscribe to /scan"),
         ("messages_in_bursts", "dropped-messages", "self.create_subscription", "a queue of 5"),
-        ("lock_across_await", "self-made-deadlock", "with self.lock", "let go of the lock before the call"),
+        ("lock_across_await", "self-made-deadlock", "with self.lock", "let go of the lock before the await"),
         (
             "lock_across_await_in_one_group",
             "self-made-deadlock",
@@ -246,6 +246,19 @@ def test_a_beginners_mistake_is_one_problem_at_its_line(
     assert told.place.file == str(path)
     assert culprit in path.read_text().splitlines()[told.place.first_line - 1]
     assert cure in told.cure
+
+
+@pytest.mark.parametrize("clock", ["virtual", "real"])
+def test_a_lock_across_an_await_is_told_as_kept_when_further_calls_of_the_callback_want_it(
+    tmp_path: Path, clock: str
+) -> None:
+    program = (PROGRAMS / "lock_across_await.py").read_text().replace("MutuallyExclusive", "Reentrant")
+    program = program.replace("(Job())", "(Job(), rclpy.executors.MultiThreadedExecutor(4))")
+    program = program.replace("(1.0, self.ask", "(0.3, self.ask")
+    timeline = run_program(tmp_path, program, 1.5, clock=clock).timeline
+    [told] = [each.explained(timeline) for each in diagnose(timeline)]
+    assert "which ask took at node.py:19 and keeps while it awaits; /work is answered by work" in told.what
+    assert "let go of the lock before the await" in told.cure
 
 
 def test_a_future_that_only_a_callback_of_the_same_group_completes_is_a_deadlock() -> None:

@@ -84,7 +84,8 @@ class SelfMadeDeadlock(Rule):
         if about == _OWN_LOCK and stands[-1].keeper:
             about = _LEFT_LOCK
         if found.waited_for >= {WaitedFor.LOCK, WaitedFor.REPLY}:
-            about = _LOCK_AND_CALL
+            there = timeline.positions_of(found.culprit, Window(found.at, found.until + 1))
+            about = _LOCK_AND_AWAIT if any(each.call == AWAIT for each in there) else _LOCK_AND_CALL
         why, cure = _WHY.get(about, _WHY_REPLY), _CURES.get(about, "")
         if about == WaitedFor.RATE:
             keep = apart if _shares_group(found.subject, timeline) else "keep it"
@@ -183,6 +184,7 @@ _WHY_REPLY = "the executor brings request and reply, and each needs a group that
 _OWN_LOCK = "its own lock"
 _LEFT_LOCK = "a lock that was left"
 _LOCK_AND_CALL = "a lock and a reply"
+_LOCK_AND_AWAIT = "a lock and an awaited reply"
 _WHY = {
     _OWN_LOCK: "it holds the lock already, and a Lock cannot be taken twice",
     _LEFT_LOCK: "a lock stays taken when the call is over that took it, until somebody releases it",
@@ -195,12 +197,14 @@ _WHY = {
     WaitedFor.THREAD: "the thread waits for what comes only once the callback that joins it has returned",
     WaitedFor.LOCK: "each keeps its lock while it waits for the other's, so neither lets go",
     _LOCK_AND_CALL: "the lock is held during a call, and whoever has to answer needs it",
+    _LOCK_AND_AWAIT: "the lock is held during an await, and whoever has to answer needs it",
 }
 _CURES = {
     _OWN_LOCK: "take it once, let go of it before, or use threading.RLock",
     _LEFT_LOCK: "take the lock by with, which releases it on every way out",
     WaitedFor.LOCK: "take locks in the same order everywhere, and let go of one before you take the next",
     _LOCK_AND_CALL: "let go of the lock before the call, and take it again when the reply is there",
+    _LOCK_AND_AWAIT: "let go of the lock before the await, and take it again when the reply is there",
 }
 
 
