@@ -73,6 +73,11 @@ class FactoryWorker:
         """Whether it has a seat: its callback runs, though it may still be on its way to it."""
         return self.stay in (WorkerState.COMES, WorkerState.WORKS)
 
+    @property
+    def begins(self) -> bool:
+        """Whether its call has only just begun: later it works, though it may still be seen on its way."""
+        return self.stay is WorkerState.COMES and not self.step
+
 
 @dataclass(frozen=True, slots=True)
 class TimerTick:

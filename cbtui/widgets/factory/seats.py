@@ -191,7 +191,7 @@ class SeatPainter:
         self._canvas.write(at, line, text, WARN if trouble else FAINT, room)
 
     def _took(self, worker: FactoryWorker) -> str:
-        if worker.stay is WorkerState.COMES or worker.span is None:
+        if worker.begins or worker.span is None:
             return "starts"
         return duration(max(0, self._scene.now - worker.span.start))
 

@@ -203,7 +203,8 @@ def activity_texts(worker: FactoryWorker, timeline: Timeline) -> tuple[str, ...]
         case WorkerState.STOPPED:
             return ("spins no more", "stopped", "stopped")
         case _:
-            return (*(f"{word} {_letter(worker, timeline)}" for word in _WHERE[worker.stay]), "")
+            words = _WHERE[WorkerState.WORKS if worker.inside and not worker.begins else worker.stay]
+            return (*(f"{word} {_letter(worker, timeline)}" for word in words), "")
 
 
 _WHERE = {
@@ -257,12 +258,15 @@ def finished_texts(worker: FactoryWorker, callback: str, timeline: Timeline) -> 
     took = duration(length) if length else "no time"
     waited = time_waited(timeline, span) if span is not None and length else 0
     did = f"waited {duration(waited)}" if 2 * waited > length else f"took {took}"
+    ran = "just ran"
+    if span is not None and span.error:
+        did, ran = f"raised after {took}" if length else "raised at once", "raised"
     return (
         f"{callback} {did}  {worker.name}",
         f"{callback} {did}",
-        f"{callback} just ran",
-        f"{short_name(callback)} just ran",
-        f"{short_name(callback)} ran",
+        f"{callback} {ran}",
+        f"{short_name(callback)} {ran}",
+        f"{short_name(callback)} {ran.removeprefix('just ')}",
         short_name(callback),
     )
 

@@ -91,6 +91,29 @@ def test_a_call_that_takes_no_time_is_seen_for_a_glance() -> None:
     assert [worker.stay for worker in scene_at(timeline, 1.2).workers] == [WorkerState.IDLE]
 
 
+def test_a_call_that_has_run_a_while_is_not_told_to_start_though_its_worker_still_walks() -> None:
+    run = Run()
+    pack = run.timer(run.exclusive(run.node("/n")), "pack", 1.0)
+    run.callback(pack, run.thread("MainThread"), 1.0, 0.5)
+    begun, later = (plain(FactoryPainter().paint(told(run), ns(at), 90, 9)) for at in (1.0, 1.1))
+    assert "starts" in begun
+    assert "MainThread goes to A" in begun
+    assert "100 ms" in later
+    assert "MainThread works in A" in later
+
+
+@pytest.mark.parametrize(("lasted", "did"), [(0.0, "raised at once"), (0.5, "raised")])
+def test_of_a_call_that_raised_that_is_told(lasted: float, did: str) -> None:
+    run = Run()
+    watch, thread = run.timer(run.exclusive(run.node("/n")), "watch", 1.0), run.thread("MainThread")
+    run.start(watch, thread, 1.0)
+    run.fail(watch, thread, 1.0 + lasted, "KeyError: 1")
+    run.end(watch, thread, 1.0 + lasted)
+    picture = plain(FactoryPainter().paint(told(run), ns(1.01 + lasted), 78, 9))
+    assert f"watch {did}" in picture
+    assert "watch took" not in picture
+
+
 @pytest.mark.parametrize("threads", [(0, 1), (1, 0), (0, 0)])
 def test_of_calls_that_ended_at_one_moment_the_last_one_just_ran(threads: tuple[int, int]) -> None:
     run = Run()

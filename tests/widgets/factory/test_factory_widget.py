@@ -37,8 +37,8 @@ async def test_a_longer_glance_keeps_workers_walking() -> None:
         seated = lines_of(view)
         view.glance = ns(1.0)
         await pilot.pause()
-        assert any("starts" in line for line in lines_of(view))
-        assert not any("starts" in line for line in seated)
+        assert any("◂☻" in line for line in lines_of(view))
+        assert not any("◂☻" in line for line in seated)
 
 
 async def test_a_timeline_that_grew_is_painted_when_it_is_set_again() -> None:
