@@ -101,6 +101,8 @@ class EntityInfo:
     interface_type: str = ""
     made_at: tuple[str, int] = ("", 0)
     """File and line of the program's own that made it; empty for none."""
+    first_due: Nanoseconds | None = None
+    """When a timer falls due first, unless it is cancelled; None if unknown, as on a simulated clock."""
 
     @property
     def label(self) -> str:

@@ -40,6 +40,7 @@ class Participants:
         self.groups: dict[GroupId, GroupInfo] = {}
         self.entities: dict[EntityId, EntityInfo] = {}
         self._members: dict[GroupId, list[EntityInfo]] = {}
+        self._on_simulated_time: set[NodeId] = set()
 
     def members(self, group: GroupId) -> tuple[EntityInfo, ...]:
         """The entities of a group, empty for an unknown one."""
@@ -84,6 +85,10 @@ class Participants:
         entity = EntityInfo(*msgspec.structs.astuple(event)[1:])
         if entity.kind is EntityKind.TIMER and entity.file.endswith(_RATES):
             entity = replace(entity, callback="rate's timer")  # rclpy has no name for it
+        if entity.name == "/clock":
+            self._on_simulated_time.add(entity.node)
+        if entity.period > 0 and entity.node not in self._on_simulated_time:
+            entity = replace(entity, first_due=event.t + entity.period)
         self.entities[event.entity] = entity
         self._members.setdefault(event.group, []).append(entity)
         return entity

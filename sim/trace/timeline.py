@@ -314,10 +314,10 @@ class Timeline:
         times += [time for time in lost if time is not None]
         return min(times, default=None) if step > 0 else max(times, default=None)
 
-    def cancelled_since(self, timer: EntityId, since: Nanoseconds, at: Nanoseconds) -> bool:
-        """Whether a timer was cancelled between two moments, these included, and not reset by the second."""
+    def cancel_since(self, timer: EntityId, since: Nanoseconds, at: Nanoseconds) -> ev.TraceEvent | None:
+        """The latest cancellation of a timer, or reset of a cancelled one, between two moments inclusive."""
         latest = self._run.cancels[timer].latest(at)
-        return isinstance(latest, ev.TimerCancelled) and latest.t >= since
+        return latest if latest is not None and latest.t >= since else None
 
     @property
     def names_sent(self) -> Collection[str]:

@@ -18,7 +18,7 @@ from cbtui.widgets.lanes.rows import (
 )
 from sim.diagnosis.words import thread_count
 from sim.trace.descriptions import mismatch_of
-from sim.trace.events import EntityKind, GroupKind, Reason, ThreadId
+from sim.trace.events import EntityKind, GroupKind, Reason, ThreadId, TimerCancelled
 from sim.trace.figures.waiting import wait_told
 from sim.trace.model import (
     Blocked,
@@ -324,17 +324,18 @@ class _SceneBuilder:
             return TimerTick(waits.since, 0)
         period = timer.period
         spans = self._timeline.spans_of(timer.id, Window(self._now - 2 * period, self._now + 1))
-        if self._timeline.cancelled_since(timer.id, spans[-1].start if spans else 0, self._now):
+        begun = spans[-1].start if spans else 0
+        cancel = self._timeline.cancel_since(timer.id, begun, self._now)
+        if isinstance(cancel, TimerCancelled):
             return TimerTick(None, 0, is_cancelled=True)
-        if not spans or period <= 0:
-            return TimerTick(None, 0)
-        last = spans[-1]
-        if self._is_over:
-            return TimerTick(None, last.age)
-        due = last.start - last.age + period
-        if due < last.start:
-            due += (1 + (last.start - due) // period) * period
-        return TimerTick(due if due > self._now else None, last.age)
+        late = spans[-1].age if spans else 0
+        due = begun - late + period if spans else timer.first_due if not self._timeline.begun else None
+        due = due if cancel is None else cancel.t + period
+        if due is None or self._is_over or period <= 0:
+            return TimerTick(None, late)
+        if due < begun:
+            due += (1 + (begun - due) // period) * period
+        return TimerTick(due if due >= self._now else None, late)
 
 
 _NO_QUEUE = Queue(0, 0)

@@ -18,7 +18,7 @@ from cbtui.widgets.lanes.rows import (
 from cbtui.widgets.lanes.service_calls import LatestCalls
 from sim.quantities.durations import duration
 from sim.trace.descriptions import mismatch_of
-from sim.trace.events import EntityKind, GroupKind
+from sim.trace.events import EntityKind, GroupKind, TimerCancelled
 from sim.trace.figures.waiting import wait_told, waits_for_others
 from sim.trace.model import EntityInfo, GroupInfo, Moment, Span, ThreadInfo, Window
 from sim.trace.timeline import Timeline
@@ -127,7 +127,7 @@ class LaneStatus:
             lasted = self.moment.at - wait.since
             return TextRun(f"late {duration(lasted)}" if lasted else "is due", WARN)
         since = 0 if latest is None else latest.start
-        if self.timeline.cancelled_since(timer.id, since, self.moment.at):
+        if isinstance(self.timeline.cancel_since(timer.id, since, self.moment.at), TimerCancelled):
             return TextRun("cancelled", FAINT)
         if latest is None:
             return TextRun("", PLAIN)

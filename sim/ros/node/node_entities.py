@@ -202,6 +202,8 @@ class NodeEntities:
                 self._node, period, callback, group, clock or self._node.get_clock(), autostart=autostart
             )
             self._agenda.add(timer)
+            if not autostart:
+                self._node.context.probe.timer_cancelled(timer)
         return timer
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:

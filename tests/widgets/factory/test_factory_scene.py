@@ -9,7 +9,7 @@ from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.factory import FactoryPainter
 from cbtui.widgets.factory.scene import Area, FactoryScene, WorkerState, scene_of
 from cbtui.widgets.lanes.painter import LanePainter
-from sim.trace.events import Reason, TimerCancelled
+from sim.trace.events import Reason, TimerCancelled, TimerReset
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.properties import examples
@@ -112,6 +112,28 @@ def test_of_a_call_that_raised_that_is_told(lasted: float, did: str) -> None:
     picture = plain(FactoryPainter().paint(told(run), ns(1.01 + lasted), 78, 9))
     assert f"watch {did}" in picture
     assert "watch took" not in picture
+
+
+def test_a_timer_is_on_its_way_from_when_it_is_made_and_due_at_its_moment() -> None:
+    run = Run()
+    node = run.node("/n")
+    run.timer(run.exclusive(node), "tick", 1.0)
+    run.log("one", 1.5)
+    due = [scene_at(told(run), at).areas[0].belts[0].tick for at in (0.5, 1.0, 1.5)]
+    assert [None if each is None else each.due for each in due] == [ns(1.0), ns(1.0), None]
+    assert "is due" in plain(FactoryPainter().paint(told(run), ns(1.0), 78, 9))
+
+
+def test_when_a_timer_is_due_is_unknown_on_a_simulated_clock_and_anew_after_a_reset() -> None:
+    run = Run()
+    simulated, node = run.node("/s"), run.node("/n")
+    run.subscription(run.exclusive(simulated), "/clock", "")
+    run.timer(run.exclusive(simulated), "tick", 1.0)
+    again = run.timer(run.exclusive(node), "again", 1.0)
+    run.add(TimerCancelled(ns(0.1), again))
+    run.add(TimerReset(ns(0.6), again))
+    ticks = [belt.tick for area in scene_at(told(run), 0.7).areas for belt in area.belts if belt.tick]
+    assert [each.due for each in ticks] == [None, ns(1.6)]
 
 
 @pytest.mark.parametrize("threads", [(0, 1), (1, 0), (0, 0)])
