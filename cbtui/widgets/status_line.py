@@ -9,7 +9,7 @@ from textual.reactive import reactive
 from cbtui.learning.stage import LessonStep, StepState
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.live.findings import Standstill
-from cbtui.runs.live.live_run import RunState, ShownRun
+from cbtui.runs.live.live_run import LiveRun, RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import fit
 from cbtui.widgets.lanes.names import short_thread
@@ -64,6 +64,8 @@ class RunStatus:
     """Nanoseconds since the last callback stopped for ever; None if others run."""
     moves: str = ""
     """The one thread that goes on beside the callbacks that stopped; "" for none."""
+    goal: Nanoseconds | None = None
+    """The moment at which a run that goes on will pause; None if there is none."""
 
 
 _TENTH = 0.1
@@ -115,6 +117,7 @@ def status_of(
         steps=steps,
         still=None if still is None else timeline.end - still.since,
         moves="" if still is None else short_thread(still.moves),
+        goal=run.goal if isinstance(run, LiveRun) else None,
     )
 
 
@@ -201,6 +204,8 @@ def _state(status: RunStatus, turn: int) -> TextRun:
         return TextRun(f"{_TURNING[turn % len(_TURNING)]} STARTING", _STRONG)
     if status.state is RunState.LIVE and status.still is not None:
         return TextRun(f"✗ STUCK {duration(status.still)}{_still(status)}", _WARN)
+    if status.state is RunState.LIVE and status.goal is not None:
+        return TextRun(f"● LIVE to {status.goal / 1e9:.9g} s", _STRONG)
     return _STATES[status.state]
 
 

@@ -164,3 +164,11 @@ def test_the_real_clock_has_speeds_but_none_without_limit() -> None:
     for _ in range(10):
         run.change_speed(1)
     assert run.speed == 20.0
+
+
+def test_a_run_has_a_goal_until_another_command_for_time(run: LiveRun) -> None:
+    for other in (run.pause, run.resume, run.step):
+        run.run_until(5)
+        assert run.goal == 5
+        other()
+        assert run.goal is None

@@ -94,6 +94,13 @@ def test_a_program_in_which_nothing_moves_is_not_only_live() -> None:
     assert "◂ BACK 2.0 s" in line(replace(still, back=ns(2.0)), 100)
 
 
+def test_a_run_that_is_sent_to_a_moment_says_to_which() -> None:
+    sent = replace(LIVE, goal=99_999_000_000_000)
+    for width in (80, 140):
+        assert "● LIVE to 99999 s " in line(sent, width)
+    assert "99999" not in line(replace(sent, state=RunState.PAUSED), 140)
+
+
 def test_a_stuck_run_keeps_the_step_of_its_lesson() -> None:
     steps = (LessonStep("Predict", StepState.DONE), LessonStep("Run", StepState.CURRENT))
     stuck = line(replace(LIVE, still=ns(14.1), dropped=0, steps=steps), 80)

@@ -153,6 +153,8 @@ class LiveRun:
         self.paused = False
         self.stepped = False
         """Whether the last command that concerned time was a step."""
+        self.goal: Nanoseconds | None = None
+        """The moment to which the run was last sent; None if it goes on without an end, or was stopped."""
         self._silent = False
         self._time_passes = True
         self._over = False
@@ -292,12 +294,12 @@ class LiveRun:
 
     def pause(self) -> None:
         """Stop time."""
-        self.paused, self.stepped, self._time_passes = True, False, False
+        self.paused, self.stepped, self._time_passes, self.goal = True, False, False, None
         self._session.send(Pause())
 
     def resume(self) -> None:
         """Let time pass again."""
-        self.paused, self.stepped, self._time_passes = False, False, True
+        self.paused, self.stepped, self._time_passes, self.goal = False, False, True, None
         self._session.send(Resume())
 
     def choose(self, option: int) -> None:
@@ -306,12 +308,12 @@ class LiveRun:
 
     def step(self) -> None:
         """Run to the next scheduling decision, and pause there."""
-        self.stepped = True
+        self.stepped, self.goal = True, None
         self._session.send(Step())
 
     def run_until(self, moment: Nanoseconds) -> None:
         """Run to a future moment, and pause there."""
-        self.paused, self.stepped, self._time_passes = False, False, True
+        self.paused, self.stepped, self._time_passes, self.goal = False, False, True, moment
         self._session.send(RunUntil(moment))
 
     def reset_world(self) -> None:
