@@ -241,6 +241,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
                 self.watch(pane, "note", self.panes.update_titles)
         for lines in (*self.query(CodeView), *self.query(LogLines), *self.query(ChecksView)):
             self.watch(lines, "picked", self.redraw)
+        self.watch(self.query_one(LogLines), "follows", self.redraw)
         # Collect garbage before the first key: it takes longer than drawing.
         self.call_after_refresh(collect_now)
 

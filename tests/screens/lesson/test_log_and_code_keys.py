@@ -55,6 +55,15 @@ def tabs(app: RecordedConsole) -> str:
     return next(line for line in lines_of(app) if "1 Guide" in line)
 
 
+async def test_the_keys_tell_at_once_whether_the_log_is_followed() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, LOG)
+        for before, after in (("f stay", "f follow"), ("f follow", "f stay")):
+            assert before in lines_of(app)[-1]
+            await pilot.press("f")
+            await until(pilot, lambda: after in lines_of(app)[-1])  # noqa: B023 it is of this turn
+
+
 @pytest.mark.parametrize("pane", ["2", "5"])
 @pytest.mark.parametrize(("key", "line"), [("slash", LogFilter), ("colon", Prompt)])
 async def test_what_is_typed_in_one_go_goes_where_its_first_key_leads(
