@@ -1,6 +1,7 @@
 """The screen on which the learner schedules the threads: of a puzzle, or of a run from a moment on."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
 
@@ -98,6 +99,8 @@ class ChoosingScreen(RunScreen[LiveRun]):
     def diagnosis(self) -> Diagnosis:
         """Return the diagnosis; at an open choice a thread may wait that the trace does not tell of yet."""
         told = super().diagnosis()
+        if told.stays and told.level is DiagnosisLevel.FINE and self._choices.reached is not None:
+            return replace(told, text=f"the goal is reached; {self.key('run_again')} begins again")
         if self._open_question is None or told.level is not DiagnosisLevel.FINE:
             return told
         return Diagnosis("time stands still until you choose who goes on", DiagnosisLevel.PENDING)

@@ -48,6 +48,10 @@ def offered(app: CbtuiApp) -> set[str]:
     return {action.id for action in app.screen.query_one(KeyBar).working()}
 
 
+def shown_keys(app: CbtuiApp) -> set[str]:
+    return {action.name for action in app.screen.query_one(KeyBar).offered}
+
+
 async def test_who_may_go_on_is_asked_and_shown_in_the_code() -> None:
     app = console(Asking())
     async with app.run_test(size=NARROW) as pilot:
@@ -189,13 +193,13 @@ async def test_a_key_that_is_too_early_is_taken_back_before_a_choice_is() -> Non
 
 
 @pytest.mark.parametrize("looks_back", [False, True])
-async def test_a_number_after_the_end_is_told_that_the_run_is_over(looks_back: bool) -> None:
+async def test_a_number_of_no_pane_after_the_end_is_told_that_the_run_is_over(looks_back: bool) -> None:
     app = console(Asking())
     async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)
         await pilot.press("1", "1")
         await settle(pilot)
-        await pilot.press(*["left_square_bracket"] * looks_back, "5")
+        await pilot.press(*["left_square_bracket"] * looks_back, "8")
         await settle(pilot)
         assert [note.message for note in app._notifications] == ["The run is over: r begins again."]
 
@@ -271,6 +275,24 @@ async def test_a_choice_is_taken_back_by_a_run_up_to_it() -> None:
         await until(pilot, lambda: len(sessions.sessions) == 3)
         assert sessions.latest.setup.seed == "ask:"
         assert not Progress().of(PUZZLE.id).passed
+
+
+@pytest.mark.parametrize("second", ["1", "2"])
+async def test_after_the_end_of_a_puzzle_numbers_lead_to_panes(second: str) -> None:
+    app = console(Asking())
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        assert "show_pane" not in shown_keys(app)
+        await pilot.press("2")
+        await settle(pilot)
+        await pilot.press(second)
+        await settle(pilot)
+        assert "show_pane" in shown_keys(app)
+        assert "choose" not in shown_keys(app)
+        assert ("the goal is reached; r begins again" in lines_of(app)[-2]) is (second == "2")
+        for number, pane in (("2", "code"), ("7", "choice"), ("1", "guide")):
+            await pilot.press(number)
+            assert shown(app).panes.current == pane
 
 
 async def test_the_rest_goes_on_by_itself_when_wanted() -> None:

@@ -89,7 +89,7 @@ class Choices(ScreenPart):
         task = _MOVE if puzzle is None else f"{puzzle.task} {_MOVE}"
         if self.reached is not None and puzzle is not None:
             done = f"✓ Done in {counted(self.moves, 'move')}; the solution takes {len(solution_of(puzzle))}."
-            return ChoiceSheet(f"{done}{self.reached}", task)
+            return ChoiceSheet(f"{done}{self.reached}", task, is_over=True)
         if question is not None:
             advised = None if self.solution is None else self.solution.get(question.number, 0)
             asks = "Who goes on?" if advised is None else f"The solution chooses {advised + 1}."
@@ -103,9 +103,10 @@ class Choices(ScreenPart):
         if self.runs.run.alive:
             return ChoiceSheet("The run goes on …", task)
         if puzzle is None:
-            return ChoiceSheet("The run is over.", task)
+            return ChoiceSheet("The run is over.", task, is_over=True)
         undo, again = self.host.key("undo"), self.host.key("run_again")
-        return ChoiceSheet(f"✗ Not this time. {undo} takes a choice back, {again} begins again.", task)
+        missed = f"✗ Not this time. {undo} takes a choice back, {again} begins again."
+        return ChoiceSheet(missed, task, is_over=True)
 
     def choose(self, option: int) -> None:
         """Let the thread of an option go on; before the next choice is asked, keep the option for that."""

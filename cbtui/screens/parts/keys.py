@@ -101,7 +101,8 @@ class OfferedKeys:
         on_pane = (labels for kind, labels in _FIRST_ON.items() if isinstance(self.screen.focused, kind))
         bar.first = next(on_pane, on_lanes or self.first())
         options = self.screen.focused
-        hidden = {"show_pane"} if isinstance(options, ChoiceOptions) else set()  # there digits choose
+        digits_choose = isinstance(options, ChoiceOptions) and not options.is_over
+        hidden = {"show_pane"} if digits_choose else set()
         if isinstance(options, ChoiceOptions) and not options.option_count:
             hidden.add("choose")
         bar.offered = tuple(each for each in bar.working() if each.name not in hidden)

@@ -31,6 +31,8 @@ class ChoiceSheet:
     options: tuple[ChoiceOption, ...] = ()
     kept: tuple[str, ...] = ()
     advised: int | None = None
+    is_over: bool = False
+    """Whether nothing more can be chosen."""
 
 
 def options_of(question: ChoiceAsked, timeline: Timeline) -> Iterator[ChoiceOption]:

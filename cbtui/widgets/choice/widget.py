@@ -11,15 +11,20 @@ from textual.message import Message
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
-from cbtui.keys.action import Scope
+from cbtui.keys.action import PANES, Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.widgets.choice.sheet import ChoiceSheet
+
+_PANE_NUMBERS = range(1, len(PANES) + 2)
+"""Those of the panes, of which the choice is the last."""
 
 
 class ChoiceOptions(OptionList, inherit_bindings=False):
     """The threads that may go on; a digit, a click or enter chooses one."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.CHOICE)]
+    is_over = False
+    """Whether nothing more can be chosen."""
 
     @dataclass
     class ChosenUnseen(Message):
@@ -28,7 +33,9 @@ class ChoiceOptions(OptionList, inherit_bindings=False):
         option: int
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer choosing only if there is a thread; numbers do not switch panes here."""
+        """Offer choosing only if there is a thread; once nothing more is chosen, numbers switch panes."""
+        if action == "choose":
+            return not self.is_over or parameters[0] not in _PANE_NUMBERS
         if action in ("cursor_up", "cursor_down", "take"):
             return self.option_count > 0
         return super().check_action(action, parameters)
@@ -69,6 +76,7 @@ class ChoiceView(VerticalScroll, can_focus=False):
         task.display = bool(sheet.task)
         task.update(sheet.task)
         self.query_one("#news", Static).update(sheet.news)
+        self.query_one(ChoiceOptions).is_over = sheet.is_over
         self.query_one("#kept", Static).update("\n".join(["Not now:", *sheet.kept] if sheet.kept else []))
         if sheet.options != before.options or sheet.news != before.news:
             options = self.query_one(ChoiceOptions)
