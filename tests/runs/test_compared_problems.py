@@ -131,6 +131,8 @@ def test_of_a_hang_shortly_before_the_end_of_the_runs_is_said_what_each_shows() 
     assert told(stuck, well) == "Run A has a deadlock, run B shows none up to 2.000 s."
     assert told(well, stuck) == "Run B has a deadlock, run A shows none up to 2.000 s."
     assert speaks(stuck, well) is None
+    well = run_lesson("split-groups", 1.95).timeline  # as on the real clock, on which no two ends are one
+    assert told(stuck, well) == "Run A has a deadlock, run B shows none up to 1.950 s."
 
 
 CAMERA = """

@@ -7,6 +7,7 @@ from typing import TypeVar
 from cbtui.runs.judged.cures import NOTICED, Problem, name_of, problem_of
 from sim.diagnosis import Diagnoses, Weight, sentence
 from sim.quantities.durations import timestamp
+from sim.quantities.nanoseconds import SECOND
 from sim.quantities.plural import counted
 from sim.trace.figures.comparison import Comparison, unlike_commands
 from sim.trace.figures.comparison_rows import RUNS
@@ -15,6 +16,9 @@ from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
 KeyT = TypeVar("KeyT")
+
+_ALIKE: Nanoseconds = SECOND // 10
+"""By how much the ends of two runs of one length may differ on the real clock."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +114,7 @@ class ComparedProblems:
         if len(_missing({**first, **second}, (), other)) == len(first or second):
             is_new = f"{RUNS[1]} has a {name} that {RUNS[0]} has not"
             return f"The {name} is gone." if first else sentence(is_new)
-        if other.end < has.end:
+        if other.end + _ALIKE < has.end:
             return ""
         one, none = RUNS if first else RUNS[::-1]
         return sentence(f"{one} has a {name}, {none} shows none up to {timestamp(other.end)}")
