@@ -83,6 +83,18 @@ class GroupInfo:
 _NAMES_THAT_SAY_NOTHING = ("callback", "<lambda>")
 
 
+def spoken_name(kind: EntityKind, name: str, callback: str) -> str:
+    """Return the callback's function, else the topic, service or action, else the kind.
+
+    A function whose name says nothing gives way to these; that of a message filter is ``callback``.
+    A client is named after the reply that it takes, so that it is not mistaken for the service.
+    """
+    if kind is EntityKind.CLIENT and name and not callback:
+        return f"reply of {name}"
+    named = "" if callback in _NAMES_THAT_SAY_NOTHING else callback
+    return named or name or callback or kind.value
+
+
 @dataclass(frozen=True, slots=True)
 class EntityInfo:
     """Something with a callback: a timer, subscription, service, client, guard condition or waitable."""
@@ -112,15 +124,8 @@ class EntityInfo:
 
     @property
     def spoken_name(self) -> str:
-        """The callback's function, else the topic, service or action, else the kind.
-
-        A function whose name says nothing gives way to these; that of a message filter is ``callback``.
-        A client is named after the reply that it takes, so that it is not mistaken for the service.
-        """
-        if self.kind is EntityKind.CLIENT and self.name and not self.callback:
-            return f"reply of {self.name}"
-        named = "" if self.callback in _NAMES_THAT_SAY_NOTHING else self.callback
-        return named or self.name or self.callback or self.kind.value
+        """Its name in sentences and tables."""
+        return spoken_name(self.kind, self.name, self.callback)
 
 
 class Lasting:

@@ -611,3 +611,9 @@ def test_the_callback_that_decides_the_verdict_is_the_most_notable() -> None:
 def test_the_compared_part_on_the_real_clock_begins_with_the_first_calls() -> None:
     compared = compare(on_the_real_clock(1.0, 3), on_the_real_clock(1.0, 3), Window(0, ns(3.0)))
     assert "\n0 to 3 s; each from its first call on;" in comparison_text(compared, "a", "b")
+
+
+def test_a_callback_whose_function_says_nothing_has_the_name_that_it_has_elsewhere() -> None:
+    timeline = run(["callback"], called(1, 0.5, 0.6))
+    (pair,) = compare(timeline, timeline, Window(0, ns(1.0))).callbacks
+    assert pair.name == timeline.entities[1].spoken_name

@@ -195,6 +195,15 @@ def test_callbacks_of_one_name_are_told_apart_by_their_topics() -> None:
     assert names == ["timer_callback", "odom_callback (/odom)", "odom_callback (/scan)"]
 
 
+def test_callbacks_of_one_name_in_one_node_are_told_apart_by_their_lines() -> None:
+    run = Run()
+    group = run.exclusive(run.node("/press"))
+    for line in (18, 19):
+        run.timer(group, "<lambda>", 1.0, lines=(line, line))
+    names = [each.name for each in summary_of(run).callbacks]
+    assert names == ["<lambda> (/press, line 18)", "<lambda> (/press, line 19)"]
+
+
 def test_service_calls_tell_how_many_were_answered_and_how_soon() -> None:
     run, _, _, _ = small_run()
     run.call("/a", 1.0, replied=1.5)

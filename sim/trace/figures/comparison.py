@@ -16,7 +16,7 @@ from sim.trace.figures.statistics import CallbackStatistics, statistics_incremen
 from sim.trace.figures.summary import RobotFigures, robot_incrementally, trail_in_parts
 from sim.trace.figures.waiting import waited_by
 from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end
-from sim.trace.model import EntityInfo, Nanoseconds, Span, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Span, Window, spoken_name
 from sim.trace.timeline import Timeline
 
 CallbackKey: TypeAlias = tuple[str, str, str, str, int]
@@ -316,14 +316,13 @@ def _partners(first: Iterable[CallbackKey], second: Iterable[CallbackKey]) -> di
 
 def _short_name(key: CallbackKey) -> str:
     _, kind, callback, name, _ = key
-    if kind == EntityKind.CLIENT and name and not callback:
-        return f"reply of {name}"  # as everywhere: it is not the service
-    return callback or name or kind
+    return spoken_name(EntityKind(kind), name, callback)
 
 
 def _long_name(key: CallbackKey) -> str:
     node, _, _, name, number = key
-    place = name if name.startswith(f"{node}/") else " ".join(part for part in (node, name) if part)
+    known = "" if name == _short_name(key) else name
+    place = known if known.startswith(f"{node}/") else " ".join(part for part in (node, known) if part)
     return f"{_short_name(key)} ({place}{f' #{number}' if number > 1 else ''})"
 
 

@@ -146,16 +146,25 @@ def _callbacks(timeline: Timeline, whole: Window) -> Iterator[CallbackFigures]:
 def _names(timeline: Timeline) -> dict[EntityId, str]:
     """The name of each entity: its callback, with topic, service or node if the name is not unique.
 
-    The server and a client of an action have its name both, so that the node tells them apart.
+    The server and a client of an action have its name both, so that the node tells them apart; callbacks
+    of one name in one node are told apart by their lines.
     """
-    spoken = {entity.id: entity.spoken_name for entity in timeline.entities.values()}
+    entities = timeline.entities.values()
+    spoken = {entity.id: entity.spoken_name for entity in entities}
     shared = Counter(spoken.values())
-    return {
-        entity.id: spoken[entity.id]
-        if shared[spoken[entity.id]] == 1
-        else f"{spoken[entity.id]} ({_known_by(entity) or node_name(entity.node, timeline)})"
-        for entity in timeline.entities.values()
+    placed = {
+        entity.id: (_known_by(entity) or node_name(entity.node, timeline))
+        for entity in entities
+        if shared[spoken[entity.id]] > 1
     }
+    lines: defaultdict[tuple[str, str], set[int]] = defaultdict(set)
+    for each, place in placed.items():
+        lines[spoken[each], place].add(timeline.entities[each].first_line)
+    for each, place in placed.items():
+        first = timeline.entities[each].first_line
+        line = f", line {first}" if first and len(lines[spoken[each], place]) > 1 else ""
+        spoken[each] += f" ({place}{line})"
+    return spoken
 
 
 def _known_by(entity: EntityInfo) -> str:
