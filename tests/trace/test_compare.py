@@ -617,3 +617,13 @@ def test_a_callback_whose_function_says_nothing_has_the_name_that_it_has_elsewhe
     timeline = run(["callback"], called(1, 0.5, 0.6))
     (pair,) = compare(timeline, timeline, Window(0, ns(1.0))).callbacks
     assert pair.name == timeline.entities[1].spoken_name
+
+
+def test_a_run_that_ends_in_its_first_call_is_compared_with_the_first_call_of_the_other_one() -> None:
+    began = RunStarted(0, "run", "real", 0)
+    short = run([TIMER], [began, *called(1, 1.0, 1.01), RunEnded(ns(1.02), "exception", failed=True)])
+    other = run([TIMER], [began, *called(1, 1.05, 1.06), *called(1, 2.05, 2.06)])
+    (pair,) = compare(short, other, Window(0, covered(short))).callbacks
+    assert pair.calls == (1, 1)
+    nothing_yet = compare(other, other, Window(0, ns(0.5)))
+    assert not nothing_yet.callbacks

@@ -203,12 +203,17 @@ def unlike_commands(first: Timeline, second: Timeline, end: Nanoseconds) -> tupl
 
 
 def _windows(first: Timeline, second: Timeline, window: Window) -> tuple[Window, Window]:
-    """The window in each run: as long in both, and from the first call if the real clock began before."""
+    """The window in each run: as long in both, and from the first call if the real clock began before.
+
+    That of one run may come only after the window, which an early end of the other one has cut.
+    """
     if window.start or not (first.is_real or second.is_real):
         return window, window
-    starts = [_first_call(each, window) for each in (first, second)]
+    starts = [_first_call(each, Window(0, each.end + 1)) for each in (first, second)]
     ends = [at for at, run in zip(starts, (first, second), strict=True) if run.end + 1 == window.end]
     length = window.end - max(ends or starts)
+    if length <= 0:
+        return window, window
     return Window(starts[0], starts[0] + length), Window(starts[1], starts[1] + length)
 
 
