@@ -171,6 +171,25 @@ def test_a_goal_that_may_still_be_executed_is_not_told(tmp_path: Path, program: 
     assert "goal-never-executed" not in {each.rule.id for each in diagnose(timeline)}
 
 
+@pytest.mark.parametrize("executor", ["", ", MultiThreadedExecutor(2)"])
+def test_an_execute_callback_that_returns_nothing_is_told_with_its_line_and_an_edit(
+    tmp_path: Path, executor: str
+) -> None:
+    right = ACCEPTED.replace(", handle_accepted_callback=goals.append", "")
+    right = right.replace("spin(node)", f"spin(node{executor})")
+    program = right.replace("    return Fibonacci.Result()\n", "")
+    (found,) = diagnose(timeline := run_program(tmp_path, program, seconds=3.0).timeline)
+    said = found.explained(timeline)
+    assert said.what.startswith("execute returned no result: the program raised AssertionError: ")
+    assert said.cure == "end execute with: return Fibonacci.Result()"
+    assert said.place is not None
+    assert said.place.first_line == 7
+    (remedy,) = said.remedies
+    assert remedy.edit is not None
+    assert remedy.edit.applied(program) == right
+    assert diagnose(run_program(tmp_path, right, seconds=3.0).timeline) == ()
+
+
 @pytest.mark.parametrize(
     ("execute", "loops"),
     [

@@ -1,7 +1,8 @@
-"""Edits of action servers: what executes a goal, and what ends one that is cancelled."""
+"""Edits of action servers: what executes a goal, what ends one that is cancelled, and its result."""
 
 import ast
 
+from sim.diagnosis.edits.functions import add_at_end, defined_at
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor, indentation
 
 
@@ -35,6 +36,17 @@ def execute_accepted_goals(source: SourceEditor, line: int) -> None:
                 source.cut_behind(max(before, key=_place), each.value)
                 return
     raise NotSimpleError
+
+
+def return_result(source: SourceEditor, line: int, server: tuple[str, int]) -> None:
+    """End the execute callback that is defined at a line by returning a result.
+
+    ``server`` is where the ActionServer is made.
+    """
+    callback = defined_at(source, line)
+    if source.nodes(ast.Return, callback):
+        raise NotSimpleError
+    add_at_end(source, callback, f"return {_action_of(source, callback.name, server[1])}.Result()")
 
 
 def _place(node: ast.expr) -> tuple[int, int]:

@@ -28,7 +28,7 @@ def fit_parameters(source: SourceEditor, line: int) -> None:
         begin = f"lambda {', '.join(_parameters(source, lambdas[0]))}"
         source.replace(lambdas[0], source.code_of(lambdas[0]).replace("lambda", begin, 1))
         return
-    callback = _defined_at(source, line)
+    callback = defined_at(source, line)
     wanted, given = _parameters(source, callback), callback.args.args
     own = _own(source, callback)
     has_own = any(each.arg in ("self", "cls") for each in given[:own])
@@ -57,7 +57,7 @@ def fit_parameters(source: SourceEditor, line: int) -> None:
     elif surplus:
         source.cut_behind(given[own + len(wanted) - 1], surplus[-1])
     if "response" in missing and not source.nodes(ast.Return, callback):
-        _return_at_end(source, callback, "response")
+        add_at_end(source, callback, "return response")
 
 
 def _own(source: SourceEditor, callback: ast.FunctionDef) -> int:
@@ -99,11 +99,11 @@ def _parameters(source: SourceEditor, callback: ast.FunctionDef | ast.Lambda) ->
 
 def return_response(source: SourceEditor, line: int) -> None:
     """End the service's callback that is defined at a line by returning its response."""
-    callback = _defined_at(source, line)
+    callback = defined_at(source, line)
     returns = source.nodes(ast.Return, callback)
     if len(callback.args.args) != 2 + _own(source, callback) or returns:
         raise NotSimpleError
-    _return_at_end(source, callback, callback.args.args[-1].arg)
+    add_at_end(source, callback, f"return {callback.args.args[-1].arg}")
 
 
 def await_coroutine(source: SourceEditor, line: int) -> None:
@@ -125,13 +125,15 @@ def await_coroutine(source: SourceEditor, line: int) -> None:
     source.insert_before(call, "await ")
 
 
-def _return_at_end(source: SourceEditor, callback: ast.FunctionDef, name: str) -> None:
+def add_at_end(source: SourceEditor, callback: ast.FunctionDef, statement: str) -> None:
+    """Add a statement at the end of a function."""
     last = callback.body[-1]
     kept = source.lines_behind(last.lineno - 1, last)
-    source.replace_lines(last, last, f"{kept}{indentation(last)}return {name}\n")
+    source.replace_lines(last, last, f"{kept}{indentation(last)}{statement}\n")
 
 
-def _defined_at(source: SourceEditor, line: int) -> ast.FunctionDef:
+def defined_at(source: SourceEditor, line: int) -> ast.FunctionDef:
+    """Return the function that is defined at a line, if the program itself does not call it."""
     callback = source.uncalled_at(line)
     if callback.lineno != line:
         raise NotSimpleError

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator
 
+from sim.diagnosis.edits.actions import return_result
 from sim.diagnosis.edits.fields import write_float
 from sim.diagnosis.edits.functions import fit_parameters, hand_over_function
 from sim.diagnosis.edits.names import rename_definition
@@ -19,7 +20,7 @@ from sim.diagnosis.rule import (
     made_at,
     place_of,
 )
-from sim.diagnosis.rules.known_errors import NO_FLOAT, known_reason
+from sim.diagnosis.rules.known_errors import NO_FLOAT, NO_RESULT, known_reason
 from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of, raised_last
 from sim.diagnosis.words import listed, often, who
 from sim.interpreter.exception_text import UNREADABLE
@@ -89,7 +90,12 @@ class ProgramRaised(Rule):
             cure = "hand over the function itself, without calling it: self.tick, not self.tick()"
             place = made_at(entity)
             remedies = by_edit(place, "hand over the function itself", hand_over_function)
-        return Explanation(ended.problem, why, ended.advice or cure, place, remedies=remedies)
+        what = ended.problem
+        if (entity := _without_result(ended, timeline)) is not None:
+            subject, place = who(entity.id, timeline), place_of(entity.id, timeline)
+            what, cure = f"{subject} returned no result: {what}", cure.replace("that callback", subject)
+            remedies = by_edit(place, cure, return_result, entity.made_at)
+        return Explanation(what, why, ended.advice or cure, place, remedies=remedies)
 
 
 def _ends_by_exceptions(timeline: Timeline) -> Iterator[RunEnded]:
@@ -123,6 +129,17 @@ def _called_too_soon(ended: RunEnded, timeline: Timeline) -> EntityInfo | None:
     kinds = (EntityKind.TIMER, EntityKind.SUBSCRIPTION, EntityKind.SERVICE)
     entities = (each for each in timeline.entities.values() if each.kind in kinds and not each.callback)
     return next((each for each in entities if made_at(each)), None)
+
+
+def _without_result(ended: RunEnded, timeline: Timeline) -> EntityInfo | None:
+    """Return the execute callback that returned no result, if that ended a program, and no other has run."""
+    if not NO_RESULT.fullmatch(ended.error or ""):
+        return None
+    goals = (
+        each for each in timeline.entities.values() if each.kind is EntityKind.WAITABLE and each.callback
+    )
+    ran = [each for each in goals if timeline.spans_of(each.id, Window(0, ended.t + 1))]
+    return ran[0] if len(ran) == 1 else None
 
 
 _futures_used = asked_of_file(futures_used)

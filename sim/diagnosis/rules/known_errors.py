@@ -14,6 +14,9 @@ def known_reason(error: str) -> tuple[str, str] | None:
 NO_FLOAT = re.compile(r"AssertionError: The '(\w+)' field must be of type 'float'")
 """The error of a whole number in a field of type float; the group is the field."""
 
+NO_RESULT = re.compile(r"AssertionError: The 'result' field must be a sub message of type '(\w+)_Result'")
+"""The error of an action's execute callback that returned no result; the group is the action."""
+
 _NODE_PROPERTIES = (
     "clients|context|default_callback_group|guards|publishers|services|subscriptions|timers|waitables"
 )
@@ -71,6 +74,11 @@ _KNOWN = tuple(
             NO_FLOAT.pattern,
             r"a field of type float takes no int, and no bool: 1 is an int",
             r"write a float: 1.0 in place of 1, or float(...)",
+        ),
+        (
+            NO_RESULT.pattern,
+            r"an action's execute callback returned no \1.Result, which is what rclpy sends",
+            r"end that callback with: return \1.Result()",
         ),
         (
             r"TypeError: 'NoneType' object does not support the context manager protocol",
