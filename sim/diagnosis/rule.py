@@ -47,6 +47,7 @@ class WaitedFor(StrEnum):
     CLOCK = "the simulated time"
     LOCK = "a lock"
     THREAD = "the end of a thread"
+    JOB = "the result of a job"
     FUTURE = "a future"
 
 

@@ -3,10 +3,10 @@
 A callback that is blocked in ``Client.call``, or suspended in ``await``, needs a reply, and so does one that
 waits for the reply in a loop or for an event. The reply needs the service's callback, then the client, then a
 worker for the future's done-callback. ``Rate.sleep`` needs the rate's timer, ``Clock.sleep_for`` on simulated
-time the subscription of ``/clock``, a lock its holder, ``Thread.join`` the thread, and an awaited future the
-callbacks that complete it. Each of these can wait for other callbacks: those that hold its group, those that
-occupy the threads, or the service's callback, which may be blocked itself. A callback is stuck if all
-callbacks that it waits for are stuck. With a timeout it is stuck until that is over.
+time the subscription of ``/clock``, a lock its holder, ``Thread.join`` the thread, a job its pool's thread,
+and an awaited future what completes it. Each of these can wait for other callbacks: those that hold its
+group, those that occupy the threads, or the service's callback, which may be blocked itself. A callback is
+stuck if all callbacks that it waits for are stuck. With a timeout it is stuck until that is over.
 
 Source: the usual test of a wait-for graph in which a request for one of several equal resources waits for
 all their owners to be stuck (Holt, "Some Deadlock Properties of Computer Systems", 1972).
@@ -25,7 +25,7 @@ from sim.diagnosis.timeline_view import pool_of
 from sim.diagnosis.waiters import Obstacle, OnThread, StuckCallback, Suspended, Waiter, thread_name
 from sim.diagnosis.words import awaited_lock, group_of, listed, threads_for, who
 from sim.trace.events import CallId, Doing, EntityId, EntityKind, GroupKind, Reason, ThreadId
-from sim.trace.model import Call, Moment, Nanoseconds, Position, Span, Window
+from sim.trace.model import RESULT, Call, Moment, Nanoseconds, Position, Span, Window
 from sim.trace.timeline import Timeline
 
 
@@ -181,12 +181,13 @@ class WaitForGraph:
         return None
 
     def _held_obstacle(self, position: Position) -> Obstacle:
-        """A thread that is to end, or a lock: what a call that is over left locked is waited for in a row."""
+        """A thread, its job or a lock: what a call that is over left locked is waited for in a row."""
         me, keeper, more = self._name(OnThread(position.thread)), position.keeper, ""
         holder: Waiter = OnThread(position.holder)
         if not position.waits_for_lock:
-            text = f"{me} waits for {thread_name(holder, self._timeline)} to end"
-            return Obstacle(WaitedFor.THREAD, text, (holder,))
+            ends, thread = position.call != RESULT, thread_name(holder, self._timeline)
+            text = f"{me} waits for {thread} to end" if ends else f"{me} waits for the job on {thread}"
+            return Obstacle(WaitedFor.THREAD if ends else WaitedFor.JOB, text, (holder,))
         if keeper in self._suspended:
             more, holder = " and keeps while it awaits", Suspended(keeper)
         elif keeper:

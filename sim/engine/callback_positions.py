@@ -17,6 +17,7 @@ from sim.probes.own_code import is_library, is_own, outwards
 from sim.probes.probe import Probe, RunningCallback
 from sim.trace.events import AnyEvent, CallbackAt, Doing, EntityId, ThreadId
 from sim.trace.events.fields import SourcePlace
+from sim.trace.model import RESULT
 
 _WAITING = ("sim.clock.", "threading", "queue")
 """Modules in which threads wait for each other."""
@@ -24,6 +25,8 @@ _WAITING = ("sim.clock.", "threading", "queue")
 LOCK = "Lock.acquire"
 """The name that a position gives to every way of taking a lock."""
 _JOIN = "Thread.join"
+JOB = "_WorkItem.run"
+"""The function in which a thread of a pool runs its job."""
 _NAMES = {"acquire": LOCK, "__enter__": LOCK, "join": _JOIN}
 
 _TIMEOUTS = ("timeout_sec", "timeout", "time_to_wait")
@@ -102,7 +105,7 @@ class CallbackPositions:
         since, seen = wait_began(top) or now, self._seen.get(ident, 0)
         self._latest[ident] = callback, position
         doing, call, frames, loop, lock = position
-        until = (now if call == _JOIN else since) + timeout if timeout else 0
+        until = (now if call in (_JOIN, RESULT) else since) + timeout if timeout else 0
         where = doing, call, frames, loop, lock.holder, until
         t = since if since > seen else now
         self._record(CallbackAt(t, callback.entity, callback.thread, *where, *lock[1:]))
@@ -121,8 +124,8 @@ def position_of(
 ) -> _Found | None:
     """Return where a thread is, inside its callback if it runs one, and the timeout of its wait.
 
-    The timeout is in nanoseconds, 0 for none; who joins a thread waits no longer than that does now. None:
-    the thread is outside the program's code. ``threads`` are the recorded threads by identifier.
+    The timeout is in nanoseconds, 0 for none; who waits for a thread's end or job waits no longer than that
+    does now. None: the thread is outside the program's code. ``threads`` are the recorded ones by identifier.
     """
     stack = list(takewhile(lambda frame: frame not in calls_the_program, outwards(top)))
     own = [place for place, frame in enumerate(stack) if is_own(frame) and _is_written(frame)]
@@ -137,12 +140,11 @@ def position_of(
     if call == LOCK and (function := decorated(stack[own[0]])) is not None:
         frames = *frames, first_line(function)
     timeout = _timeout(inside[-1]) if inside and doing is not Doing.SLEEPS else 0
-    joined = _joined(inside[-1]) if call == _JOIN else None
-    if joined is not None and joined.ident is not None:
-        lock = WaitedLock(threads.get(joined.ident, 0))
-        there = list(
-            takewhile(lambda frame: not is_own(frame), outwards(sys._current_frames().get(joined.ident)))
-        )
+    ends = {_JOIN: _joined, RESULT: _thread_of_job}.get(call)
+    ident = None if ends is None else ends(inside[-1])
+    if ident is not None:
+        lock = WaitedLock(threads.get(ident, 0))
+        there = list(takewhile(lambda frame: not is_own(frame), outwards(sys._current_frames().get(ident))))
         timeout = timeout or (_timeout(there[-1]) if there else 0)
     return (doing, call, frames, next(filter(None, loops), ("", 0)), lock), timeout
 
@@ -189,10 +191,21 @@ def _timeout(function: FrameType) -> int:
     return int(seconds * 1e9) if isinstance(seconds, int | float) and 0 < seconds <= _LONGEST else 0
 
 
-def _joined(function: FrameType) -> threading.Thread | None:
-    """Return the thread for whose end a function waits."""
+def _joined(function: FrameType) -> int | None:
+    """Return the identifier of the thread for whose end a function waits."""
     values = (function.f_locals.get(name) for name in ("self", "thread"))
-    return next((each for each in values if isinstance(each, threading.Thread)), None)
+    return next((each.ident for each in values if isinstance(each, threading.Thread)), None)
+
+
+def _thread_of_job(function: FrameType) -> int | None:
+    """Return the identifier of a pool's thread that runs the job for whose result a function waits."""
+    wanted = function.f_locals.get("self")
+    for ident, top in sys._current_frames().items():
+        runs = (frame for frame in outwards(top) if frame.f_code.co_qualname == JOB)
+        items = (frame.f_locals.get("self") for frame in runs)
+        if any(item is not None and getattr(item, "future", None) is wanted for item in items):
+            return ident
+    return None
 
 
 def loop_around(file: str, line: int) -> SourcePlace | None:

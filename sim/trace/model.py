@@ -210,6 +210,8 @@ class Frame:
 
 WAITING = (Doing.WAITS, Doing.CALLS_ROS, Doing.READS)
 """What a line does that waits for something else than time."""
+RESULT = "Future.result"
+"""The function in which a position waits for the result of a pool's job."""
 AWAIT = "await"
 """What a position has in place of a function while its call is suspended."""
 
@@ -232,7 +234,7 @@ class Position(Lasting):
     frames: tuple[Frame, ...]
     loop: tuple[str, int] = ("", 0)
     holder: ThreadId = 0
-    """The thread whose callback has the lock that it waits for, or for whose end it waits; 0 for none."""
+    """The thread whose callback has the lock that it waits for, or whose end or job it waits for; 0: none."""
     keeper: EntityId = 0
     """The callback that took that lock in a call that is suspended or over; 0 for none."""
     lock: str = ""

@@ -105,6 +105,12 @@ PROGRAMS = Path(__file__).parent / "beginners"
         ("wait_for_future", "self-made-deadlock", "time.sleep(0.1)", "add_done_callback"),
         ("busy_wait_for_future", "self-made-deadlock", "while not future.done():", "add_done_callback"),
         ("join_in_timer", "self-made-deadlock", "thread.join()", "without join()"),
+        (
+            "result_of_job",
+            "self-made-deadlock",
+            ".result()",
+            "return from tick without result(), and let the job do what comes later; or give tick a callback",
+        ),
         ("while_true", "still-computing", "while True:", "return from tick, and go on in on_ready;"),
         (
             "busy_wait_in_service",
@@ -464,6 +470,23 @@ def test_a_loop_that_sleeps_is_not_told_to_sleep(tmp_path: Path) -> None:
     timeline = run_to_end(program_setup(path, 4.0)).timeline
     (told,) = (each.explained(timeline) for each in diagnose(timeline) if each.rule.id == "stays-in-loop")
     assert told.cure == "give close a callback group of its own"
+
+
+def test_a_circle_through_a_pools_job_names_its_thread_and_is_over_with_its_timeout(tmp_path: Path) -> None:
+    text = (PROGRAMS / "result_of_job.py").read_text()
+    for end, there in (
+        ("", ""),
+        (".result()", ".result(9.0)"),
+        ("Request())", "Request(), timeout_sec=9.0)"),
+    ):
+        timeline = run_program(tmp_path, text.replace(end, there) if end else text, 4.0).timeline
+        found = diagnose(timeline)[0]
+        assert found.ring[:2] == ("tick", "the result of a job")
+        assert found.ring[3:] == ("/fetch", "group A", "tick")
+        told = found.explained(timeline)
+        assert told.for_ever == (not end)
+        until = "in vain until 9.5 s" if end else "deadlock"
+        assert told.what.startswith(f"{until}: tick (node.py:23) waits for the job on ")
 
 
 def test_a_circle_through_a_joined_thread_names_the_thread_and_is_over_with_its_timeout(

@@ -134,6 +134,7 @@ FIT = "define it with the parameters it is called with (diff)"
         ("wait_for_future", [APART, DONE, AWAIT.format("tick")]),
         ("busy_wait_for_future", [DONE, AWAIT.format("tick")]),
         ("join_in_timer", [APART]),
+        ("result_of_job", [APART]),
         ("while_true", [LATER, ASLEEP]),
         ("busy_wait_in_service", ["sleep in the loop, and give close a callback group of its own (diff)"]),
         ("while_sleeping", [STEP.format("wander")]),

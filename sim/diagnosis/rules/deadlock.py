@@ -94,8 +94,10 @@ class SelfMadeDeadlock(Rule):
             cure += f", let {subject} end with destroy_rate()" if is_kept else ""
         elif about == WaitedFor.CLOCK:
             cure = f"return, and let a timer of the node's clock do what comes later; or {apart}"
-        elif about == WaitedFor.THREAD:
-            cure = f"return from {subject} without join(), and let the thread do what comes later; or {apart}"
+        elif about in (WaitedFor.THREAD, WaitedFor.JOB):
+            call, other = ("join", "thread") if about == WaitedFor.THREAD else ("result", "job")
+            cure = f"return from {subject} without {call}(), and let the {other} do what comes later"
+            cure += f"; or {apart}"
         awaits = bool(stands) and stands[-1].call == AWAIT
         answers = must_answer(found.subject, timeline)
         if awaits:
@@ -195,6 +197,7 @@ _WHY = {
     ),
     WaitedFor.FUTURE: "a callback keeps its group while it awaits, and what completes the future needs it",
     WaitedFor.THREAD: "the thread waits for what comes only once the callback that joins it has returned",
+    WaitedFor.JOB: "the job waits for what comes only once the callback that wants its result has returned",
     WaitedFor.LOCK: "each keeps its lock while it waits for the other's, so neither lets go",
     _LOCK_AND_CALL: "the lock is held during a call, and whoever has to answer needs it",
     _LOCK_AND_AWAIT: "the lock is held during an await, and whoever has to answer needs it",
@@ -206,6 +209,8 @@ _CURES = {
     _LOCK_AND_CALL: "let go of the lock before the call, and take it again when the reply is there",
     _LOCK_AND_AWAIT: "let go of the lock before the await, and take it again when the reply is there",
 }
+_TELL_WHO_WAITS = (WaitedFor.LOCK, WaitedFor.THREAD, WaitedFor.JOB)
+"""Where the first obstacle names who waits, and for what."""
 
 
 _keeps_lock = asked_of_file(keeps_lock)
@@ -309,7 +314,7 @@ def _explanation(
 ) -> Explanation:
     subject, wanted, lasts = who(found.subject, timeline), found.ring[1], found.until >= timeline.end
     until = until_when(found.ends, timeline)
-    if found.about in (WaitedFor.LOCK, WaitedFor.THREAD):  # the first obstacle names who waits, and for what
+    if found.about in _TELL_WHO_WAITS:
         waits = f"in vain{until}: " if found.ends or not lasts else "deadlock: "
     elif not lasts:
         waits = f"{subject} waited in vain for {wanted}; "

@@ -15,7 +15,7 @@ from sim.quantities.durations import duration
 from sim.quantities.nanoseconds import SECOND
 from sim.trace.descriptions import doing_of
 from sim.trace.events import Doing, EntityId, EntityKind, GroupKind, Notice, NoticeKind, Severity
-from sim.trace.model import Position, Span, Window
+from sim.trace.model import RESULT, Position, Span, Window
 from sim.trace.timeline import Timeline
 
 _ADVICE = "wait with a timeout, and make sure that something ends the wait"
@@ -125,7 +125,7 @@ def _may_help(
     functions = event_setters(place.file, place.first_line) if place else ()
     known = [each for each in timeline.entities.values() if each.spoken_name in functions]
     if not known:
-        return bool(functions) or not at or at[-1].call != "Future.result"
+        return bool(functions) or not at or at[-1].call != RESULT
     group = timeline.entities[found.subject].group
     is_alone = threads_for([found.subject], found.until, timeline) == 1
     is_exclusive = timeline.groups[group].kind is GroupKind.EXCLUSIVE

@@ -8,6 +8,7 @@ from itertools import takewhile
 from types import FrameType
 
 from sim.clock.virtual_threads import HeldResource, VirtualThread
+from sim.engine.callback_positions import JOB
 from sim.engine.waited_lock import decorated, first_line, name_at, taking
 from sim.engine.watchdogs.thread_positions import place_of
 from sim.interpreter.function_marks import calls_the_program
@@ -15,11 +16,10 @@ from sim.probes import own_code
 from sim.probes.own_code import is_own, outwards, own_frame, place_text
 from sim.quantities.durations import timestamp
 from sim.trace.events import EntityId, Notice, NoticeKind, Severity, SourcePlace
+from sim.trace.model import RESULT
 
 _AWAITS = threading.Condition.wait.__code__
 """The function in which every wait of Python's library ends that is not for a lock."""
-
-_RESULT = "Future.result"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +73,7 @@ def advice_on_pools() -> str:
     for top in sys._current_frames().values():
         inside = list(takewhile(lambda frame: frame not in calls_the_program, outwards(top)))
         names = [frame.f_code.co_qualname for frame in inside]
-        if "_WorkItem.run" in names and _RESULT in names[: names.index("_WorkItem.run")]:
+        if JOB in names and RESULT in names[: names.index(JOB)]:
             where = f"a job that waits for another job ({own_code.place_of(top)}) keeps a worker of its pool"
             return f"{where}: let it call the function itself, or give the pool more workers"
     return ""
@@ -134,7 +134,7 @@ def _library(thread: VirtualThread) -> list[FrameType]:
 
 
 def _cure(thread: VirtualThread) -> str:
-    if pools := _signal(thread) == _RESULT and advice_on_pools():
+    if pools := _signal(thread) == RESULT and advice_on_pools():
         return pools
     if _signal(thread):
         return "wait with a timeout, and let a callback of another group, on another thread, end it"

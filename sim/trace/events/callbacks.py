@@ -161,7 +161,7 @@ class CallbackAt(TraceEvent, frozen=True, tag="callback_at"):
     loop: Maybe[SourcePlace] = ("", 0)
     """The ``while`` around the innermost of them that has one."""
     holder: LockHolderId = 0
-    """Name of the thread whose callback has the lock that it waits for, or for whose end it waits."""
+    """Name of the thread whose callback has the lock that it waits for, or whose end or job it waits for."""
     until: Maybe[Nanoseconds] = 0
     """When the timeout of its wait is over, of the first of several at one line; none if it waits without
     one, or sleeps."""
