@@ -342,6 +342,11 @@ def test_a_callback_that_makes_its_rate_and_keeps_it_is_told_to_destroy_it(tmp_p
     timeline = run_program(tmp_path, program, 2.0).timeline
     told = diagnose(timeline)[0].explained(timeline)
     assert (", let tick end with destroy_rate(), and spin with " in told.cure) == (not more)
+    edit = told.remedies[-1].edit
+    assert (edit is None) == bool(more)
+    if edit is not None:
+        destroyed = "rate.sleep()\n        self.destroy_rate(rate)"
+        assert edit.applied(program) == program.replace("rate.sleep()", destroyed)
 
 
 def test_the_timer_of_a_rate_has_one_name_in_sentences_and_tables() -> None:

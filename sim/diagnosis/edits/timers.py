@@ -2,6 +2,7 @@
 
 import ast
 
+from sim.diagnosis.edits.functions import add_at_end
 from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.source_editor import NotSimpleError, SourceEditor
 
@@ -25,6 +26,24 @@ def keeps_rate(source: SourceEditor, line: int) -> bool:
         return False
     called = {ast.unparse(each.func).rpartition(".")[2] for each in calls}
     return "create_rate" in called and "destroy_rate" not in called
+
+
+def destroy_rate(source: SourceEditor, line: int) -> None:
+    """End the function around a line by destroying the only rate that it makes; it has no ``return``."""
+    function = source.function_at(line)
+    made = [each for each in function.body if isinstance(each, ast.Assign) and _makes_rate(each)]
+    match made:
+        case [ast.Assign(targets=[ast.Name(id=rate)], value=ast.Call(func=ast.Attribute(value=node)))]:
+            if source.nodes(ast.Return, function) or not isinstance(function, ast.FunctionDef):
+                raise NotSimpleError
+            add_at_end(source, function, f"{source.code_of(node)}.destroy_rate({rate})")
+        case _:
+            raise NotSimpleError
+
+
+def _makes_rate(statement: ast.Assign) -> bool:
+    call = statement.value
+    return isinstance(call, ast.Call) and ast.unparse(call.func).endswith(".create_rate")
 
 
 @asked_of_file

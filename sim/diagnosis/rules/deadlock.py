@@ -19,7 +19,7 @@ from sim.diagnosis.edits.locks import (
 )
 from sim.diagnosis.edits.program_file import asked_of_file
 from sim.diagnosis.edits.replies import decides_on_parameters
-from sim.diagnosis.edits.timers import keeps_rate
+from sim.diagnosis.edits.timers import destroy_rate, keeps_rate
 from sim.diagnosis.rule import (
     CodeLocation,
     Explanation,
@@ -131,7 +131,10 @@ class SelfMadeDeadlock(Rule):
         apart = Remedy(both, threads)
         if found.about == WaitedFor.RATE:
             room = apart if _shares_group(found.subject, timeline) else Remedy(threads=threads)
-            return *_without_rate(place, found.subject, timeline), room
+            kept = by_edit(place, f"let {who(found.subject, timeline)} end with destroy_rate()", destroy_rate)
+            is_kept = place is not None and keeps_rate(place.file, place.first_line)
+            rooms = tuple(replace(room, edit=each.edit) for each in kept) if is_kept else (room,)
+            return *_without_rate(place, found.subject, timeline), *rooms
         if found.about == WaitedFor.CLOCK:
             return *edits_for_steps(place, found.subject, timeline), apart
         if WaitedFor.LOCK not in found.waited_for:
