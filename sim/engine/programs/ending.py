@@ -5,6 +5,7 @@ So exit functions and destructors run here before that, and files are flushed.
 """
 
 import atexit
+import concurrent.futures.thread
 import gc
 import io
 import sys
@@ -56,10 +57,17 @@ def finalise(modules_before: set[str], is_own: Callable[[str], bool]) -> None:
 
 
 def run_thread_exit_functions() -> None:
-    """Run the functions that come before the joining of threads: thread pools end idle threads there."""
+    """Run the functions that come before the joining of threads: thread pools end idle threads there.
+
+    Where there is no pool, nothing is waited for: taking their lock would be a choice among threads.
+    """
     exits: list[Callable[[], None]] = threading._threading_atexits  # type: ignore[attr-defined]
+    pools: Any = concurrent.futures.thread
     while exits:
-        exits[-1]()
+        if getattr(exits[-1], "func", None) is pools._python_exit and not pools._threads_queues:
+            pools._shutdown = True
+        else:
+            exits[-1]()
         exits.pop()
 
 
