@@ -223,10 +223,9 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         lanes, robot, factory = self.query_one(Lanes), self.query_one(RobotView), self.query_one(FactoryView)
         robot.actors = self.subject.scene
         lanes.charset = robot.charset = factory.charset = self.charset
-        lanes.service = self.subject.service
+        lanes.service, lanes.changes = self.subject.service, self.changes.words
         self.panes.enlarge("")
         self.panes.name_robot()
-        lanes.changes = self.changes.words
         prompt, takes_lines = self.query_one(Prompt), self._parts.has("prompt")
         prompt.disabled, prompt.display = not takes_lines, takes_lines
         self.panes.show(self.panes.current)
