@@ -12,6 +12,8 @@ import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
+from inspect import getclosurevars
 from typing import Any
 
 from sim.clock.virtual_threads import start_outside
@@ -64,11 +66,16 @@ def run_thread_exit_functions() -> None:
     exits: list[Callable[[], None]] = threading._threading_atexits  # type: ignore[attr-defined]
     pools: Any = concurrent.futures.thread
     while exits:
-        if getattr(exits[-1], "func", None) is pools._python_exit and not pools._threads_queues:
+        if _registered(exits[-1]) is pools._python_exit and not pools._threads_queues:
             pools._shutdown = True
         else:
             exits[-1]()
         exits.pop()
+
+
+def _registered(call: Callable[[], None]) -> object:
+    """Return the function of an entry: a partial before Python 3.13, since then a lambda."""
+    return call.func if isinstance(call, partial) else getclosurevars(call).nonlocals.get("func")
 
 
 def _drop_modules(before: set[str], is_own: Callable[[str], bool]) -> None:
